@@ -133,9 +133,9 @@ def judged(name: str) -> Callable[[float], Callable[[], object]]:
     limits, intent = permitted(recipe, MICROMETRE), intended(recipe, design)
 
     def prepare(count: float) -> Callable[[], object]:
-        run = design.contour.runs[0]
+        run = design.only_surface.contour.runs[0]
         t = np.linspace(run.low, run.high, int(count), endpoint=False)
-        points = design.contour.sample(t).point
+        points = design.only_surface.contour.sample(t).point
         return lambda: judge_contour(Contour.from_vertices(points), intent, phi, limits).judged and None
 
     return prepare

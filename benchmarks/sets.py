@@ -32,9 +32,9 @@ def row(name: str) -> str:
     """Build and turn one."""
     recipe = load(RECIPES / f"{name}.yaml")
     design = designed(recipe)
-    if design.contour is None:
+    if design.only_surface.contour is None:
         return f"| {name} | | | | no contour | | |"
-    contour = Job.of(recipe, design).outlines.within("arcs", TOLERANCE)
+    contour = Job.of(recipe, design).fits[0].within("arcs", TOLERANCE)
     begin = time.process_time()
     assembly = assembly_of(recipe, design, contour)
     checks = [check for check in collision_checks(assembly) if check.name == "collision"]

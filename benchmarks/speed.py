@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
 from camgeo.files.stl import write_stl
@@ -29,6 +30,7 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
+from camgeo.synthesis.part.shapes import disc
 from kin.contour.contour import Contour
 from kin.follower.follower import follower_of
 from kin.law.contacts import Flat, Roller, on_one_arm, opposite
@@ -95,10 +97,12 @@ def stl() -> None:
             t = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
             r = 25.0 + 2.0 * np.cos(3 * t)
             polygon = Polygon(np.column_stack([r * np.cos(t), r * np.sin(t)]), Bound(0.0, 0.0))
+            bore = disc("bore", "BORE", (0.0, 0.0), 5.0)
+            outlines = [LayerOutline("CUT", polygon), LayerOutline(bore.layer, bore.outline, bore.circle)]
             path, other = Path(folder) / "ours.stl", Path(folder) / "numpy.stl"
 
-            def ours(polygon: Polygon = polygon, path: Path = path) -> None:
-                mesh, _ = extruded(polygon, bore=10.0, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+            def ours(outlines: list[LayerOutline] = outlines, path: Path = path) -> None:
+                mesh, _ = extruded(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
                 write_stl(path, mesh)
 
             ours()

@@ -173,13 +173,15 @@ class Design:
         if not 0.0 < within <= MOST:
             raise CallError(f"a tolerance is a length above 0 and up to {MOST:.10g} mm, not {within!r}")
         self._made()
-        return Edges.of(Job.of(self.recipe, self.exact).outline(form, within))
+        (outline,) = Job.of(self.recipe, self.exact).outlines(form, within)
+        return Edges.of(outline)
 
     def _made(self) -> Curve:
-        if self.exact.contour is None:
+        contour = self.exact.only_surface.contour
+        if contour is None:
             failed = next((f": {check}" for check in self.checks if not check.ok), "")
             raise CallError(f"{self.recipe.name}: no contour is made{failed}")
-        return self.exact.contour
+        return contour
 
     # --- to look at ---------------------------------------------------------------------------------------------------
 

@@ -27,6 +27,9 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
 
     Raises BodyError where one of them cannot be made.
     """
+    (disc,) = design.discs
+    if disc.body is None:
+        raise ValueError(f"{recipe.name}: there is no part to be made")
     part = recipe.part
     reach = _reach_of(contour)
     arrangement, view = design.follower.arrangement, view_of(recipe, design)
@@ -34,7 +37,7 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
     field = "" if not rolling else "cam.follower.radius" if arrangement.contacts == 1 else "cam.roller_radius"
     radius = view.touch.radius if rolling else None
     s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, radius, field)
-    drive = Drive(disk_of(part, design.body, contour), reach, shaft_of(part, s), s)
+    drive = Drive(disk_of(part, disc.body, contour), reach, shaft_of(part, s), s)
     if design.driven is not None:
         from camgeo.assembly.linked import linked
 

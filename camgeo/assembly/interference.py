@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ import numpy as np
 from camgeo.assembly.poses import Turning
 from camgeo.checks.declared import CLEARANCE, COLLISION
 from camgeo.fit.pieces import Polygon
-from kin.clearance.clearance import Allowed, Mover, Slab, clearances
+from kin.clearance.clearance import Mover, Slab, clearances
 from kin.clearance.pose import Sampled, Still
 from kin.clearance.pose import Turning as Steady
 from kin.clearance.sweep import swept_box
@@ -80,11 +79,12 @@ def thinnest(assembly: Assembly) -> tuple[float, str]:
     return min(found)
 
 
-def exempt(assembly: Assembly) -> Iterable[Allowed]:
+def exempt(assembly: Assembly) -> Iterable[frozenset[str]]:
     """Pairs that are not held against each other."""
     for one, other in combinations(assembly.members, 2):
-        if one.group == other.group or frozenset({one.name, other.name}) in assembly.touching:
-            yield Allowed(one.name, other.name, -math.inf)
+        pair = frozenset({one.name, other.name})
+        if one.group == other.group or pair in assembly.touching:
+            yield pair
 
 
 def swept_room(bodies: Sequence[Mover]) -> tuple[float, float, float]:

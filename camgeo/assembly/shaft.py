@@ -17,7 +17,6 @@ from camgeo.assembly.body import Plate
 from camgeo.assembly.shapes import disc, retainer
 from camgeo.assembly.sizes import THIN, BodyError, thick
 from camgeo.fit.pieces import ArcSpline
-from camgeo.synthesis.part.shapes import disc as opening_disc
 from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
 
@@ -52,7 +51,7 @@ class Disk:
         return tuple(Plate(p.outline, p.holes, p.low + z, p.high + z) for p in self.plates)
 
 
-def disk_of(part: Part, body: Body | None, contour: ArcSpline | Polygon) -> Disk:
+def disk_of(part: Part, body: Body, contour: ArcSpline | Polygon) -> Disk:
     """Make plates of a cam: disc and hubs with what goes right through them.
 
     A chamfer, a set screw and an engraved mark are left out: the plates are the metal they are cut from.
@@ -60,10 +59,9 @@ def disk_of(part: Part, body: Body | None, contour: ArcSpline | Polygon) -> Disk
     if part.thickness is None or part.bore is None:
         raise ValueError("a cam for a mechanism needs thickness and bore")
     thick("part.thickness", part.thickness)
-    openings = body.openings if body is not None else (opening_disc("bore", "BORE", (0.0, 0.0), 0.5 * part.bore),)
-    through = tuple(opening for opening in openings if opening.depth is None)
+    through = tuple(opening for opening in body.openings if opening.depth is None)
     plates = [Plate(contour, tuple(opening.outline for opening in through), 0.0, part.thickness)]
-    if body is None or part.hub is None:
+    if part.hub is None:
         return Disk(tuple(plates), part.thickness, 0.0, part.thickness)
     radius = 0.5 * part.hub.diameter
     inside = tuple(opening.outline for opening in through if math.hypot(*opening.middle) < radius)

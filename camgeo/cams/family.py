@@ -17,7 +17,7 @@ from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
@@ -63,7 +63,7 @@ class Surface:
     where the cam drives a rise; `place` is where a flat face is touched, mm along it. `series` are figures over the
     shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place on a flat face,
     mm; spin, turns of the roller per turn of the shaft. `name` is that by which contacts and reports tell it from the
-    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft.
+    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft, `layer` is that of drawings.
     """
 
     base: Curve
@@ -75,7 +75,13 @@ class Surface:
     series: Mapping[str, Figure] = field(default_factory=dict)
     name: str = ""
     disc: int = 0
+    layer: str = "CUT"
     _extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @property
+    def prefix(self) -> str:
+        """What names of its columns in tables begin with: its name, where the cam has several."""
+        return f"{self.name}_" if self.name else ""
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
         """Least and greatest value of one of `series`, found once; None of one that there is not."""
@@ -264,10 +270,18 @@ class ExactCam(ABC):
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
         """What kin judges surfaces by, each by its name: a follower made of the same contacts by kin's own means."""
+        return self._followers(self.follower.contacts)
+
+    @cached_property
+    def running(self) -> dict[str, Gauge]:
+        """The follower itself on each surface: with the touch of its first contact, where gauges are wider."""
+        touch = self.follower.contacts[0].touch
+        return self._followers([replace(contact, touch=touch) for contact in self.follower.contacts])
+
+    def _followers(self, contacts: Sequence[Contact[Guide, Touch]]) -> dict[str, Gauge]:
         from kin.follower.follower import followers_of
 
-        sides = {surface.name: surface.side for surface in self.surfaces}
-        return followers_of(self.follower.contacts, self.judged_law, sides)
+        return followers_of(contacts, self.judged_law, {surface.name: surface.side for surface in self.surfaces})
 
     @property
     def gauge(self) -> Gauge:

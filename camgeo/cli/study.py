@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         finally:
             progress.clear()
         failed = [check for check in design.checks if not check.ok]
-        skipped = [] if design.contour is not None else [("files", "a check of the exact contour fails")]
+        skipped = [] if design.contours else [("files", "a check of the exact contour fails")]
         if recipe.part.thickness is None:
             skipped.append(("stl", "part.thickness is not given"))
         study = document(recipe, found, margins(recipe, design), skipped, failed)
@@ -90,7 +90,7 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
 
     from camgeo.sweep.study.tolerance_ladder import climb
 
-    if design.contour is None:
+    if not design.contours:
         return []
     forms = [form for form in arguments.form or FORMS if form != "stl" or recipe.part.thickness is not None]
     found: list[Rung | Ended] = []

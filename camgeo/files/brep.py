@@ -22,6 +22,7 @@ from camgeo.fit.pieces import ArcSpline
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.solid import Drill, Solid
     from camgeo.fit.pieces import Outline
 
@@ -52,15 +53,16 @@ def need_kernel() -> None:
         raise MissingExtraError(message)
 
 
-def solid_shape(outline: Outline, solid: Solid) -> Shape:
-    """Return the kernel's solid: a disc in an outline or a ring about it, with hub, openings, chamfers and set screw.
+def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
+    """Return the kernel's solid: within one outline, the first, with hub, openings, chamfers and set screw.
 
     Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
     finds the solid unsound; TypeError for a chamfer along anything but arcs.
     """
     stack = _Stack()
     top = solid.thickness
-    first, last = _contour(stack, outline, solid)
+    outermost, *others = (one.outline for one in outlines)
+    first, last = _contour(stack, outermost, solid)
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
     within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
     low_hub, high_hub = solid.low < 0.0, solid.high > top
@@ -69,7 +71,7 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
     above: list[Shape] = []
     inner_low: list[Shape] = []
     inner_high: list[Shape] = []
-    if solid.outer is not None:
+    for outline in others:
         foot, head = stack.wall(outline, 0.0, top)
         under.append(foot.wire)
         above.append(head.wire)
@@ -100,9 +102,7 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
 
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
-    """Walls round the disc or ring; its lowest and its highest loop."""
-    if solid.outer is not None:
-        return stack.wall(_disc(0.5 * solid.outer), 0.0, solid.thickness)
+    """Walls on the outermost outline; its lowest and its highest loop."""
     if solid.chamfer is None:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):

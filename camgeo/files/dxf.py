@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
+from camgeo.fit.pieces import BSpline, Outline, Polygon, RationalSpline
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ezdxf.layouts.layout import Modelspace
     from numpy.typing import NDArray
 
+    from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
     from kin.numeric.arrays import Array
 
@@ -33,13 +34,15 @@ VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1
 UNITS = {1.0: ("mm", 4, 1), 25.4: ("inch", 1, 0)}  # mm a unit: name, $INSUNITS, $MEASUREMENT
 APPLICATION = "CAMGEO"  # under this name each entity of the reference carries what it is, as extended data
 
-_CUT, _BORE, _REFERENCE = "CUT", "BORE", "REFERENCE"
-_COLOURS = {_CUT: 7, _BORE: 5, _REFERENCE: 8}
+_REFERENCE = "REFERENCE"
+_COLOURS = {"CUT": 7, "BORE": 5, _REFERENCE: 8}
 _MORE_COLOURS = {
     "HOLES": 5,
     "MARK": 1,
     "ENGRAVE": 3,
     "TOOLPATH": 4,
+    "GROOVE_INNER": 7,
+    "GROOVE_OUTER": 7,
 }  # of layers that are only there when something is on them
 _CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then dash, gap, dash, gap
 _DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
@@ -73,23 +76,13 @@ class Trace:
     outline: Outline
 
 
-@dataclass(frozen=True)
-class Cutout:
-    """What is cut or engraved besides the contour, on a layer of its own: a circle, or a closed chain of arcs."""
-
-    layer: str
-    shape: Circle | ArcSpline
-
-
 Reference = Circle | Point | Trace
 
 
 def write_dxf(
     path: Path,
-    outline: Outline,
+    outlines: Sequence[LayerOutline],
     *,
-    bore: float | None = None,
-    cutouts: Sequence[Cutout] = (),
     reference: Sequence[Reference] = (),
     mm: float = 1.0,
     version: str = "R2010",
@@ -97,12 +90,12 @@ def write_dxf(
     about: str = "",
     remarks: Sequence[str] = (),
 ) -> None:
-    """Write a contour, with its bore and reference geometry, as a DXF drawing with the shaft at the origin.
+    """Write what is cut or engraved, with reference geometry, as a DXF drawing with the shaft at the origin.
 
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
-    control points, knots and weights if it is rational. `bore` is a diameter and all lengths are given in mm; the
-    drawing's unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment
-    on top. `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
+    control points, knots and weights if it is rational, a circle a CIRCLE. All lengths are given in mm; the drawing's
+    unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top.
+    `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
     comments.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
@@ -121,9 +114,9 @@ def write_dxf(
     from ezdxf.enums import InsertUnits
 
     drawing = Drawing.new(VERSIONS[version])
-    _set_layers(drawing, mm, {cutout.layer for cutout in cutouts})
+    _set_layers(drawing, mm, {one.layer for one in outlines})
     space = drawing.modelspace()
-    boxes = _draw_cuts(space, outline, bore, cutouts, mm) + _draw_reference(space, reference, mm)
+    boxes = [_draw_layer(space, one, mm) for one in outlines] + _draw_reference(space, reference, mm)
     corners = np.array(boxes)
     low, high = corners[:, :2].min(axis=0).tolist(), corners[:, 2:].max(axis=0).tolist()
     drawing.set_modelspace_vport(
@@ -144,19 +137,11 @@ def write_dxf(
     _save(path, drawing, header, comments)
 
 
-def _draw_cuts(
-    space: Modelspace, outline: Outline, bore: float | None, cutouts: Sequence[Cutout], mm: float
-) -> list[Box]:
-    """Add all that is cut or engraved; returns the extremes of each in drawing units."""
-    boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
-    if bore is not None:
-        boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
-    for cutout in cutouts:
-        if isinstance(cutout.shape, Circle):
-            boxes.append(_draw_circle(space, cutout.shape, mm, cutout.layer)[1])
-        else:
-            boxes.append(_draw_outline(space, cutout.shape, mm, cutout.layer)[1])
-    return boxes
+def _draw_layer(space: Modelspace, one: LayerOutline, mm: float) -> Box:
+    """Add an outline on its layer; returns its extremes in drawing units."""
+    if one.circle is None:
+        return _draw_outline(space, one.outline, mm, one.layer)[1]
+    return _draw_circle(space, Circle(one.layer, *one.circle), mm, one.layer)[1]
 
 
 def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float) -> list[Box]:

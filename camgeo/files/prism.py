@@ -1,4 +1,4 @@
-"""Prisms as meshes: a contour with its bore and holes, extruded from z = 0 to the thickness, in millimetres.
+"""Prisms as meshes: outlines and what is cut out of them, extruded from z = 0 to the thickness, in millimetres.
 
 Each vertex moves when it is written (`camgeo.files.precision`), and the fit must leave room for that.
 """
@@ -13,79 +13,56 @@ import numpy as np
 
 from camgeo.curve.ring import radius_of, steps_along
 from camgeo.files.mesh import Mesh, MeshFacts
-from camgeo.files.triangulate import disc, region, ring
-from camgeo.fit.pieces import Bound, Polygon
+from camgeo.files.triangulate import region
+from camgeo.fit.bound import EXACT
+from camgeo.fit.pieces import ArcSpline, Bound, Polygon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.precision import Precision
     from camgeo.files.triangulate import Triangles
-    from camgeo.fit.pieces import ArcSpline
     from kin.numeric.arrays import Array
+
+_WORDS = {"BORE": "the bore", "CUT": "the outline"}  # what outlines on layers are called in errors
 
 
 def extruded(
-    polygon: Polygon,
-    *,
-    bore: float | None = None,
-    holes: Sequence[ArcSpline] = (),
-    thickness: float,
-    outer: float | None = None,
-    tolerance: float,
-    precision: Precision,
+    outlines: Sequence[LayerOutline], *, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed solid over a polygon with a round bore of this diameter about the origin or with holes; in mm.
+    """Closed solid over the region within the first outline, which holds all others, and outside of these; in mm.
 
-    With `outer` it is a ring of that diameter, and the polygon its opening.
+    A polygon is a contour as it is fitted. A circle becomes a polygon that straddles it; arcs of other outlines are
+    chords between points of them. All loops keep within `tolerance` of what is meant after their rounding to
+    `precision`. Every edge belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that
+    runs once round the shaft with a bore alone; see `camgeo.files.triangulate`.
 
-    The bore is a polygon that straddles its circle, and so is each round hole; arcs of other holes are chords between
-    points of them. All loops keep within `tolerance` of what is meant after their rounding to `precision`. Every edge
-    belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that runs once round the
-    shaft with a bore alone; see `camgeo.files.triangulate`.
-
-    Raises ToleranceError where the tolerance cannot be held, RegionError where the contour is not simple or the bore
-    reaches it, ValueError for a bore or thickness that is not positive.
+    Raises ToleranceError where the tolerance cannot be held, RegionError where an outline is not simple or reaches
+    another, ValueError for a thickness that is not positive.
     """
-    for what, value in (("bore", bore), ("outer", outer), ("thickness", thickness)):
-        if value is not None and not (math.isfinite(value) and value > 0.0):
-            raise ValueError(f"{what} must be > 0, not {value!r}")
-    contour, moved, dropped = rounded_contour(polygon, precision)
-    bound = polygon.bound.widened(moved)
-    precision.within("the contour", bound.worst, tolerance)
+    if not (math.isfinite(thickness) and thickness > 0.0):
+        raise ValueError(f"thickness must be > 0, not {thickness!r}")
     precision.within("the thickness", abs(precision.number(thickness) - thickness), tolerance)
-
-    if bore is not None and (holes or outer is not None):
-        raise ValueError("a bore beside other holes is one of them")
-    if outer is not None:
-        rim, off, rim_moved = _circle("the outline", outer, tolerance, precision)
-        loops, triangles, hole_off, hole_moved = _with_holes(rim, holes, tolerance, precision, opening=contour)
-        off = max(off, hole_off)
-        moved, bore_bound = max(moved, rim_moved, hole_moved), Bound(off, off)
-    elif holes:
-        loops, triangles, off, hole_moved = _with_holes(contour, holes, tolerance, precision)
-        moved, bore_bound = max(moved, hole_moved), Bound(off, off)
-    elif bore is None:
-        loops, triangles, bore_bound = [contour], disc(contour), None
-    else:
-        inner, off, inner_moved = _circle("the bore", bore, tolerance, precision)
-        moved, bore_bound = max(moved, inner_moved), Bound(off, off)
-        loops, triangles = [contour, inner[::-1]], ring(contour, inner)
-        # the hole's loop as its wall runs, clockwise, has its vertices numbered from the last
-        n, m = len(contour), len(inner)
-        triangles = np.where(triangles < n, triangles, 2 * n + m - 1 - triangles)
-
-    mesh = _standing(loops, triangles, precision.number(thickness))
+    loops, moved, vertices, dropped = [], 0.0, 0, 0
+    bound, others = EXACT, []
+    for layer, outline, _ in outlines:
+        if isinstance(outline, Polygon):
+            loop, by, fallen = rounded_contour(outline, precision)
+            bound = bound.wider(outline.bound.widened(by))
+            precision.within("the contour", bound.worst, tolerance)
+            vertices, dropped = vertices + len(loop), dropped + fallen
+        elif isinstance(outline, ArcSpline):
+            loop, off, by = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
+            others.append(off)
+        else:
+            raise TypeError("a prism has no splines")
+        loops.append(loop)
+        moved = max(moved, by)
+    mesh = _standing(*_turned(loops), precision.number(thickness))
     inner_count = len(loops[1]) if len(loops) > 1 else 0
-    return mesh, MeshFacts(len(mesh.triangles), len(contour), inner_count, dropped, moved, bound, bore_bound)
-
-
-def _circle(what: str, diameter: float, tolerance: float, precision: Precision) -> tuple[Array, float, float]:
-    """Vertices (n, 2) as written of a circle's polygon, how far it is off in all, and how far a vertex moved."""
-    circle, straddle = bore_polygon(diameter, precision.fit_tolerance(tolerance, 0.5 * diameter))
-    rounded, moved = precision.rounded(circle)
-    precision.within(what, straddle + moved, tolerance)
-    return rounded, straddle + moved, moved
+    besides = Bound(max(others), max(others)) if others else None
+    return mesh, MeshFacts(len(mesh.triangles), vertices, inner_count, dropped, moved, bound, besides)
 
 
 def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:
@@ -95,39 +72,28 @@ def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, floa
     return outer[kept], moved, int(np.count_nonzero(~kept))
 
 
-def _with_holes(
-    outer: Array,
-    holes: Sequence[ArcSpline],
-    tolerance: float,
-    precision: Precision,
-    opening: Array | None = None,
-) -> tuple[list[Array], Triangles, float, float]:
-    """Loops and triangles of a rounded loop with holes, how far the holes are off, and the farthest a vertex moved.
-
-    `opening` is a rounded hole besides, the first.
-    """
-    inners, off, moved = [] if opening is None else [opening], 0.0, 0.0
-    for hole in holes:
-        inner, inner_off, inner_moved = rounded_loop(hole, tolerance, precision)
-        inners.append(inner)
-        off, moved = max(off, inner_off), max(moved, inner_moved)
+def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:
+    """Loops as their walls run, all but the first clockwise, and the triangles between them."""
+    outer, *inners = loops
     triangles = region(outer, inners)
-    # the holes' loops as their walls run, clockwise, have their vertices numbered from the last
+    # a loop that is turned has its vertices numbered from the last
     first = np.cumsum([len(outer), *map(len, inners)])
     number = np.arange(first[-1])
     for low, high in pairwise(first.tolist()):
         number[low:high] = number[low:high][::-1]
-    return [outer, *(inner[::-1] for inner in inners)], number[triangles], off, moved
+    return [outer, *(inner[::-1] for inner in inners)], number[triangles]
 
 
-def rounded_loop(hole: ArcSpline, tolerance: float, precision: Precision) -> tuple[Array, float, float]:
+def rounded_loop(
+    hole: ArcSpline, tolerance: float, precision: Precision, what: str = "a hole"
+) -> tuple[Array, float, float]:
     """Vertices (n, 2) as written of a hole's polygon, how far it is off in all, and how far a vertex moved.
 
     Raises ToleranceError where that is more than the tolerance.
     """
     polygon, off = loop_polygon(hole, precision.fit_tolerance(tolerance, float(np.abs(hole.box()).max())))
     inner, moved = precision.rounded(polygon)
-    precision.within("a hole", off + moved, tolerance)
+    precision.within(what, off + moved, tolerance)
     return inner, off + moved, moved
 
 

@@ -55,10 +55,7 @@ class Drill:
 
 @dataclass(frozen=True)
 class Solid:
-    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm.
-
-    A ring of diameter `outer` has neither hub nor chamfer, and the contour is cut out of it.
-    """
+    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm."""
 
     thickness: float
     low: float
@@ -67,7 +64,6 @@ class Solid:
     chamfer: float | None
     cuts: Sequence[Cut]
     drill: Drill | None
-    outer: float | None = None
 
 
 def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:

@@ -8,19 +8,22 @@ from __future__ import annotations
 
 import io
 from contextlib import contextmanager
+from functools import reduce
 from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.files.brep import need_kernel, solid_shape
 from camgeo.files.curves import misfit
 from camgeo.files.precision import converted
+from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.solid import Solid
-    from camgeo.fit.pieces import Bound, Outline
+    from camgeo.fit.pieces import Outline
 
 TIME = "2000-01-01T00:00:00"  # in place of the time of writing
 # The kernel's settings are its own for the whole process: set while a file is written, and set back.
@@ -32,7 +35,7 @@ REAL = "%.16E"
 
 def write_step(
     path: Path,
-    outline: Outline,
+    outlines: Sequence[LayerOutline],
     solid: Solid,
     *,
     tolerance: float,
@@ -40,20 +43,21 @@ def write_step(
     name: str = "",
     about: str = "",
 ) -> Bound:
-    """Write the solid round an outline, mm, in a unit; returns the contour's bound as it is written, mm.
+    """Write the solid in its outlines, mm, in a unit; returns the contours' bound as they are written, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
     `solid_shape` does; OSError as the file system does.
     """
     need_kernel()
-    bound = outline.bound.widened(written_off(outline, units))
+    fitted = [one.outline for one in outlines if one.circle is None]
+    bound = reduce(Bound.wider, (outline.bound.widened(written_off(outline, units)) for outline in fitted))
     if not bound.worst <= tolerance:
         raise ToleranceError(
             f"STEP: the contour would be off by {bound.worst:.6g} mm, more than {tolerance:.6g} mm: circles of nearly "
             "straight arcs are rounded",
             bound.worst,
         )
-    path.write_bytes(_text(solid_shape(outline, solid), units, name, about))
+    path.write_bytes(_text(solid_shape(outlines, solid), units, name, about))
     return bound
 
 

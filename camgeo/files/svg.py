@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.ring import ArcChain, radius_of, steps_along
-from camgeo.files.dxf import UNITS, Circle
+from camgeo.files.dxf import UNITS
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
 
@@ -25,12 +25,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.files.dxf import Cutout
+    from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
     from kin.numeric.arrays import Array
 
 _PAGE_UNIT = {"mm": "mm", "inch": "in"}
 _COLOURS = {"CUT": "#000000", "BORE": "#0000ff", "HOLES": "#0000ff", "MARK": "#ff0000", "ENGRAVE": "#00aa00"}
+_COLOURS |= dict.fromkeys(("GROOVE_INNER", "GROOVE_OUTER"), _COLOURS["CUT"])
 _MARGIN = 1.0  # mm round what is drawn
 _PLACES = 100  # the page's corners lie on whole hundredths of a drawing unit
 _HAIRLINE = 0.1  # mm
@@ -39,20 +40,18 @@ _QUARTER = 0.5 * math.pi
 
 def write_svg(
     path: Path,
-    outline: Outline,
+    outlines: Sequence[LayerOutline],
     *,
-    bore: float | None = None,
-    cutouts: Sequence[Cutout] = (),
     mm: float = 1.0,
     name: str = "",
     about: str = "",
     remarks: Sequence[str] = (),
 ) -> None:
-    """Write a contour, with its bore and openings, as an SVG whose user space has the shaft at its origin.
+    """Write what is cut or engraved as an SVG whose user space has the shaft at its origin.
 
-    A polygon becomes lines, arcs become arcs of a quarter turn at most, a cubic B-spline cubics. `bore` is a diameter
-    and all lengths are given in mm; a unit of the drawing is `mm` mm long (1.0 or 25.4), which the page's width and
-    height and its viewBox state. `name` becomes the title; `about` and `remarks` the description.
+    A polygon becomes lines, arcs become arcs of a quarter turn at most, a cubic B-spline cubics. All lengths are in mm;
+    a unit of the drawing is `mm` mm long (1.0 or 25.4), which the page's width and height and its viewBox state. `name`
+    becomes the title; `about` and `remarks` the description.
 
     Raises ValueError for a unit or a spline that SVG does not have, and for a circle without extent; OSError as the
     file system does.
@@ -60,14 +59,11 @@ def write_svg(
     if mm not in UNITS:
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
     unit = UNITS[mm][0]
-    drawn: dict[str, list[str]] = {"CUT": [_path(outline, mm)]}
-    if bore is not None:
-        drawn["BORE"] = [_circle(Circle("bore", (0.0, 0.0), 0.5 * bore), mm)]
-    for cutout in cutouts:
-        shape = cutout.shape
-        text = _circle(shape, mm) if isinstance(shape, Circle) else _path(shape, mm)
-        drawn.setdefault(cutout.layer, []).append(text)
-    low_x, low_y, wide, high = _page([outline.box(), *(_box(cutout.shape) for cutout in cutouts)], mm)
+    drawn: dict[str, list[str]] = {}
+    for one in outlines:
+        text = _path(one.outline, mm) if one.circle is None else _circle(one.layer, *one.circle, mm)
+        drawn.setdefault(one.layer, []).append(text)
+    low_x, low_y, wide, high = _page([_box(one) for one in outlines], mm)
     size = _PAGE_UNIT[unit]
     description = "; ".join(filter(None, (f"camgeo units: {unit}", about, *remarks)))
     lines = [
@@ -86,11 +82,11 @@ def write_svg(
     path.write_bytes("\n".join(lines).encode("utf-8"))
 
 
-def _box(shape: Circle | Outline) -> Box:
-    """Extremes of a shape, mm."""
-    if not isinstance(shape, Circle):
-        return shape.box()
-    (x, y), r = shape.centre, shape.radius
+def _box(one: LayerOutline) -> Box:
+    """Extremes of an outline, mm."""
+    if one.circle is None:
+        return one.outline.box()
+    (x, y), r = one.circle
     return x - r, y - r, x + r, y + r
 
 
@@ -137,10 +133,10 @@ def _arcs(chain: ArcChain) -> list[str]:
     return found
 
 
-def _circle(circle: Circle, mm: float) -> str:
-    if not circle.radius > 0.0:
-        raise ValueError(f"{circle.name}: radius must be > 0, not {circle.radius!r}")
-    x, y, r = (number(value / mm) for value in (*circle.centre, circle.radius))
+def _circle(layer: str, centre: tuple[float, float], radius: float, mm: float) -> str:
+    if not radius > 0.0:
+        raise ValueError(f"{layer}: radius must be > 0, not {radius!r}")
+    x, y, r = (number(value / mm) for value in (*centre, radius))
     return f'<circle cx="{x}" cy="{y}" r="{r}"/>'
 
 

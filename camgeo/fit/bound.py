@@ -42,5 +42,9 @@ class Bound:
         """Return the bound after every point may have moved by `margin` mm more (rounding to a file's precision)."""
         return Bound(self.outward + margin, self.inward + margin)
 
+    def wider(self, other: Bound) -> Bound:
+        """Return the greater of both on each side: what holds of two contours."""
+        return Bound(max(self.outward, other.outward), max(self.inward, other.inward))
+
 
 EXACT = Bound(0.0, 0.0)

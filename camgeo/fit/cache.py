@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Outlines:
+class Fits:
     """The fits of one contour; files that ask for the same one share it. `unsure`, mm: see `formula_rounding`."""
 
     contour: Curve

@@ -8,6 +8,7 @@ other way, as exact parallels. So what kin is given differs from the nominal par
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import starmap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from camgeo.cams.family import GrownError
 from camgeo.curve.curvature import least_radius
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
-from camgeo.synthesis.design import is_trimmed, sound
+from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.errors import KinError
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.part import Part
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, Disc
     from camgeo.synthesis.part.body import Body
     from camgeo.synthesis.part.shapes import Opening
     from kin.judge.check import Check
@@ -66,31 +67,28 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         least = f"{0.5 * by.kerf / recipe.mm:.6g}"
         remedy = f"leave kerf out, give a clearance of at least {least} too, or a roller"
         raise recipe.error(field, what, None, remedy) from error
-    body = None
     try:
-        if design.body is not None:
-            body = _body(design.body, out, scale)
+        bodies = [None if disc.body is None else _body(disc.body, out, scale) for disc in design.discs]
         part = _part(recipe.part, out, scale)
     except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
-    checks: list[Check] = []
     name = f"{recipe.name}, {by.told(recipe.mm)}"
     made = replace(recipe, name=name, cam=exact.cam, part=part)
     if exact.free:
-        contour = exact.surfaces[0].curve if design.contour is not None else None
+        whole = bool(design.contours)
+        surfaces = [SurfaceDesign(one, one.curve if whole else None, ()) for one in exact.surfaces]
     else:
-        checks, contour = sound(made, exact)
-    if body is not None and body.chamfer is not None and contour is not None:
-        body = replace(body, least_radius=least_radius(contour)[0])
-    changed = replace(
-        design,
-        exact=exact,
-        contour=contour,
-        trimmed=is_trimmed(contour, exact.surfaces[0]),
-        driven=None,
-        body=body,
-    )
-    return Compensated(made, changed, tuple(check for check in checks if not check.ok))
+        surfaces = [sound(made, exact, surface) for surface in exact.surfaces]
+    discs = tuple(starmap(_with_body, zip(discs_of(surfaces), bodies, strict=True)))
+    failed = tuple(check for surface in surfaces for check in surface.checks if not check.ok)
+    return Compensated(made, replace(design, exact=exact, discs=discs, driven=None), failed)
+
+
+def _with_body(disc: Disc, body: Body | None) -> Disc:
+    """The disc with its body, whose chamfer runs along another contour than before."""
+    if body is not None and body.chamfer is not None and disc.contours:
+        body = replace(body, least_radius=least_radius(disc.contours[0][1])[0])
+    return replace(disc, body=body)
 
 
 def _part(part: Part, out: float, scale: float) -> Part:

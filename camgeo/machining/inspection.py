@@ -14,6 +14,7 @@ from camgeo.curve.measures import touched
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Surface
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -27,9 +28,10 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
 
     Each contact has its place, as x and y and as radius and polar angle, the outward normal with its direction, and
     with `manufacture` the centre of the cutter that touches the same point. Of two rollers or faces those of A come
-    first. Raises ValueError for a design without a contour, or with a linkage that does not turn.
+    first, of several surfaces those of the first. Raises ValueError for a design without a contour, or with a linkage
+    that does not turn.
     """
-    if design.contour is None:
+    if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to inspect")
     count = recipe.verify.angles
     shaft = np.linspace(0.0, TURN, count + 1)
@@ -41,14 +43,18 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
         columns["relative_deg"] = np.degrees(relative)
     columns[position.column(recipe.units)] = position.converted(position.rows(relative, 0)[0], recipe.mm)
     for name, parameter in position.parameters(shaft, relative).items():
-        columns |= _contact(recipe, design.contour, parameter, name, unit)
+        for surface, contour in design.contours:
+            columns |= _contact(recipe, (surface, contour), parameter, f"{surface.prefix}{name}", unit)
     return tuple(columns), np.column_stack(list(columns.values()))
 
 
-def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: str) -> dict[str, Array]:
+def _contact(
+    recipe: Recipe, touching: tuple[Surface, Curve], parameter: Array, name: str, unit: str
+) -> dict[str, Array]:
     """Columns of one contact, in the drawn axes and the recipe's unit."""
+    surface, contour = touching
     frame = contour.sample(parameter)
-    outward = recipe.cam.side * frame.normal  # of the metal: in a ring towards the follower within
+    outward = surface.side * frame.normal  # of the metal: in a ring towards the follower within
     normal = np.where(np.abs(outward) < NOTHING, 0.0, outward)
     point = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point)
     columns = _place(recipe, point, name, unit)

@@ -44,9 +44,10 @@ def path_of(recipe: Recipe, design: Design, further: float = 0.0) -> CutterPath:
 
 
 def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
-    if design.contour is None or recipe.manufacture is None:
+    contour = design.only_surface.contour
+    if contour is None or recipe.manufacture is None:
         raise ValueError(f"{recipe.name}: there is nothing to mill")
-    return design.contour, recipe.manufacture
+    return contour, recipe.manufacture
 
 
 def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
@@ -67,7 +68,7 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     contour, asked = _milled(recipe, design)
     told = "no hollow"
     if not no_hollow(contour):
-        radius, at = hollow_radius(recipe.cam.side, contour)
+        radius, at = hollow_radius(design.only_surface.surface.side, contour)
         told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
     try:
         path = path_of(recipe, design)
@@ -132,15 +133,11 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
     hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
     found: list[RoundHole] = []
     others: list[tuple[str, str]] = []
-    if design.body is None:
-        if recipe.part.bore is not None:
-            found.append(RoundHole("bore", (0.0, 0.0), 0.5 * recipe.part.bore))
-    else:
-        for opening in design.body.openings:
-            if opening.circle is not None and opening.depth is None:
-                found.append(RoundHole(opening.name, *opening.circle))
-            else:
-                others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
+    for opening in design.openings:
+        if opening.circle is not None and opening.depth is None:
+            found.append(RoundHole(opening.name, *opening.circle))
+        else:
+            others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
     if not asked.holes:
         return [], [*((hole.name, "manufacture.holes is not true") for hole in found), *others]
     beside = [hole for hole in found if math.hypot(*hole.centre) >= hub]
@@ -162,7 +159,8 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     names = {hole.name for hole in found}
     hub = recipe.part.hub
     top = None if hub is None or hub.side == "bottom" else hub
-    holes = () if design.body is None else tuple(hole for hole in holes_of(design.body) if hole.name in names)
+    (disc,) = design.discs
+    shaped = () if disc.body is None or recipe.part.plain else holes_of(disc.body)
     milling = Milling(
         radius=asked.radius,
         thickness=recipe.part.thickness or 0.0,
@@ -175,7 +173,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     return replace(
         meant,
         bore=meant.bore if "bore" in names else None,
-        holes=holes,
+        holes=tuple(hole for hole in shaped if hole.name in names),
         layers=(),
         cross_holes=(),
         surfaces=tuple(replace(surface, trimmed=surface.trimmed or lost) for surface in meant.surfaces),

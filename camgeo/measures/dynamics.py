@@ -21,10 +21,11 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.dynamics.cycle import Turn
-    from kin.dynamics.drive import Drive, Motion
+    from kin.dynamics.drive import Drive
     from kin.dynamics.excitation import Faces
     from kin.dynamics.impacts import Course
     from kin.dynamics.train import Steady, Train
+    from kin.follower.drive import Excitation
 
 TURNS = 20  # that are followed from rest, unless one repeats the one before
 _DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
@@ -165,7 +166,7 @@ def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[s
     return _with_spring(scene, entry, found[0])
 
 
-def _lowest(motion: Motion) -> float:
+def _lowest(motion: Excitation) -> float:
     """Least position of a motion, m or rad, at the best of 65 places a stretch."""
     import numpy as np
 

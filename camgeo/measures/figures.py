@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from itertools import starmap
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import (
-    BENT,
     CHECKS,
     CLEARANCE,
     COLLISION,
@@ -37,18 +37,22 @@ from camgeo.recipe.figures import (
     SIZE,
 )
 from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width, slack
+from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
+    from camgeo.cams.family import Surface
+    from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, SurfaceDesign
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
+    from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
@@ -58,15 +62,29 @@ _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE
 
 
 class Measured(NamedTuple):
-    """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place."""
+    """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place.
+
+    `surface` is the name of the one that it is of, the worst of several; empty where the cam has one.
+    """
 
     value: float | None
     unit: str
     at_deg: float | None = None
     detail: str = ""
+    surface: str = ""
 
 
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
+
+
+def _least(found: Iterable[Measured]) -> Measured:
+    """The least of what was measured of each surface, `NO_CONTOUR` of none; one without a value is the least."""
+    return min(found, key=lambda one: -math.inf if one.value is None else one.value, default=NO_CONTOUR)
+
+
+def _greatest(found: Iterable[Measured]) -> Measured:
+    """The greatest, in the same way."""
+    return max(found, key=lambda one: math.inf if one.value is None else one.value, default=NO_CONTOUR)
 
 
 def of_design(
@@ -111,7 +129,8 @@ def _nearness(check: Check) -> float:
 
 
 def _of_check(check: Check) -> Measured:
-    return Measured(check.value, check.unit, check.at_deg, "" if check.value is not None else check.detail)
+    detail = "" if check.value is not None else check.detail
+    return Measured(check.value, check.unit, check.at_deg, detail, check.surface)
 
 
 # --- of the curve -----------------------------------------------------------------------------------------------------
@@ -119,71 +138,87 @@ def _of_check(check: Check) -> Measured:
 
 def _radius(_: Recipe, design: Design) -> Measured:
     """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
-    bent = next(check for check in design.checks if check.name in BENT)
-    value = None if bent.value is None else bent.value - design.surface.radius
-    return Measured(value, "mm", bent.at_deg, bent.detail)
+
+    def metal(made: SurfaceDesign) -> Measured:
+        value = None if made.bent.value is None else made.bent.value - made.surface.radius
+        return Measured(value, "mm", made.bent.at_deg, made.bent.detail, made.surface.name)
+
+    return _least(map(metal, design.surfaces))
 
 
 def _pitch_radius(_: Recipe, design: Design) -> Measured:
     """What the check of that name holds: of the places where the cam may undercut, the hollows of a ring."""
-    return _of_check(next(check for check in design.checks if check.name in BENT))
+    return _least(_of_check(made.bent) for made in design.surfaces)
 
 
 def _hollow_radius(_: Recipe, design: Design) -> Measured:
-    if design.contour is None:
-        return NO_CONTOUR
-    radius, at = hollow_radius(design.surface.side, design.contour)
-    if math.isinf(radius):
-        return Measured(radius, "mm", detail="the contour has no concave part")
-    return Measured(radius, "mm", design.motion.shaft_deg(at))
+    def hollow(surface: Surface, contour: Curve) -> Measured:
+        radius, at = hollow_radius(surface.side, contour)
+        if math.isinf(radius):
+            return Measured(radius, "mm", detail="the contour has no concave part", surface=surface.name)
+        return Measured(radius, "mm", design.motion.shaft_deg(at), surface=surface.name)
+
+    return _least(starmap(hollow, design.contours))
 
 
 def _size(_: Recipe, design: Design) -> Measured:
     from camgeo.curve.measures import farthest
 
-    if design.contour is None:
-        return NO_CONTOUR
-    far = farthest(design.contour)
-    return Measured(far.value + slack(far), "mm", design.motion.shaft_deg(far.at))
+    def reach(surface: Surface, contour: Curve) -> Measured:
+        far = farthest(contour)
+        return Measured(far.value + slack(far), "mm", design.motion.shaft_deg(far.at), surface=surface.name)
+
+    return _greatest(starmap(reach, design.contours))
 
 
-def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
+def _pivot_clearance(_: Recipe, design: Design) -> Measured:
     """Of the circle on which the pivot runs round the standing cam; in a ring from within."""
     from camgeo.curve.measures import farthest, nearest
 
-    if design.contour is None:
-        return NO_CONTOUR
-    pivot = design.follower.pivot
-    end = farthest(design.contour) if recipe.cam.side > 0 else nearest(design.contour)
-    value = recipe.cam.side * (pivot - end.value) - slack(end)
-    return Measured(value, "mm", design.motion.shaft_deg(end.at))
+    def beside(surface: Surface, contour: Curve) -> Measured:
+        end = farthest(contour) if surface.side > 0 else nearest(contour)
+        value = surface.side * (design.follower.pivot - end.value) - slack(end)
+        return Measured(value, "mm", design.motion.shaft_deg(end.at), surface=surface.name)
+
+    return _least(starmap(beside, design.contours))
 
 
-def _extremes(recipe: Recipe, design: Design, name: str) -> tuple[Extreme, Extreme]:
-    found = design.surface.extremes(name)
+def _extremes(surface: Surface, name: str) -> tuple[Extreme, Extreme]:
+    found = surface.extremes(name)
     if found is None:
-        raise TypeError(f"{recipe.name} has no {name}")
+        raise TypeError(f"no {name} is known of this follower")
     return found
 
 
-def _on_rise(recipe: Recipe, design: Design) -> Measured:
-    most = _extremes(recipe, design, "slope")[1]
-    return Measured(math.degrees(math.atan(most.value + slack(most))), "deg", degrees(most.at))
+def _on_rise(_: Recipe, design: Design) -> Measured:
+    def rising(surface: Surface) -> Measured:
+        most = _extremes(surface, "slope")[1]
+        value = math.degrees(math.atan(most.value + slack(most)))
+        return Measured(value, "deg", degrees(most.at), surface=surface.name)
+
+    return _greatest(map(rising, design.exact.surfaces))
 
 
-def _on_return(recipe: Recipe, design: Design) -> Measured:
-    least = _extremes(recipe, design, "slope")[0]
-    return Measured(math.degrees(math.atan(slack(least) - least.value)), "deg", degrees(least.at))
+def _on_return(_: Recipe, design: Design) -> Measured:
+    def falling(surface: Surface) -> Measured:
+        least = _extremes(surface, "slope")[0]
+        value = math.degrees(math.atan(slack(least) - least.value))
+        return Measured(value, "deg", degrees(least.at), surface=surface.name)
+
+    return _greatest(map(falling, design.exact.surfaces))
 
 
-def _roller_speed(recipe: Recipe, design: Design) -> Measured:
-    fastest = max(_extremes(recipe, design, "spin"), key=lambda one: abs(one.value))
-    return Measured(abs(fastest.value) + slack(fastest), "", degrees(fastest.at))
+def _roller_speed(_: Recipe, design: Design) -> Measured:
+    def spin(surface: Surface) -> Measured:
+        fastest = max(_extremes(surface, "spin"), key=lambda one: abs(one.value))
+        return Measured(abs(fastest.value) + slack(fastest), "", degrees(fastest.at), surface=surface.name)
+
+    return _greatest(map(spin, design.exact.surfaces))
 
 
 def _face_width(_: Recipe, design: Design) -> Measured:
-    value, at = needed_width(design.surface)
-    return Measured(value, "mm", at)
+    widths = ((surface.name, *needed_width(surface)) for surface in design.exact.surfaces)
+    return _greatest(Measured(value, "mm", at, surface=name) for name, value, at in widths)
 
 
 def _jam_margin(recipe: Recipe, design: Design) -> Measured:
@@ -296,9 +331,9 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
 
 def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     """Measure a figure of a file that has a contour; `checks` are all that were made."""
-    motion, unread = file.motion, "the file could not be judged"
+    unread, surfaces = "the file could not be judged", file.surfaces or (UNREAD,)
     if name == "contour-error":
-        return Measured(file.measured_error, "mm", detail=unread)
+        return _greatest(Measured(one.measured_error, "mm", detail=unread, surface=one.name) for one in surfaces)
     if name == "pieces":
         return Measured(None if file.pieces is None else float(file.pieces), "", detail=unread)
     if name == "output-error":
@@ -310,11 +345,18 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         ]
         lost = "a single flat face has no backlash, and of a trimmed contour it is not judged"
         return _of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
+    dwell = name == "dwell-error"
+    return _greatest(_of_motion_error(one, dwell=dwell) for one in surfaces)
+
+
+def _of_motion_error(surface: SurfaceVerdict, *, dwell: bool) -> Measured:
+    """Greatest error of the motion on a surface of a file, or how far its dwells are from flat."""
+    motion = surface.motion
     if motion is None:
-        return Measured(None, "", detail=unread)
-    if name == "dwell-error":
-        return Measured(motion.dwell_flatness, motion.unit, detail="the motion has no dwell")
-    return Measured(motion.max, motion.unit, motion.at_deg)
+        return Measured(None, "", detail="the file could not be judged", surface=surface.name)
+    if dwell:
+        return Measured(motion.dwell_flatness, motion.unit, None, "the motion has no dwell", surface.name)
+    return Measured(motion.max, motion.unit, motion.at_deg, surface=surface.name)
 
 
 def of_dynamics(name: str, section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str | None, Measured]:

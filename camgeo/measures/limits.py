@@ -69,5 +69,6 @@ def _held(
         detail = measured.detail if value is None or math.isinf(value) else ""
         if value is not None and not ok:
             detail = f"{of_limit(recipe, limit, Missed(value, bound, measured.unit, tolerance))} would satisfy it"
-        found.append(Check(LIMIT + limit.figure, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
+        name, of = LIMIT + limit.figure, measured.surface
+        found.append(Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, of))
     return found

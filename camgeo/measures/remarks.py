@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.checks.declared import BENT, MOTION, PRESSURE
+from camgeo.checks.declared import MOTION, PRESSURE
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.figures import of_design
@@ -120,11 +120,15 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
         return None
-    proved = design.surface.extremes("slope")
+    slopes = [slope for surface in design.exact.surfaces if (slope := surface.extremes("slope")) is not None]
     falling, value, at_deg, of = rule, made.value, made.at_deg, ""
-    if proved is not None and not design.follower.closure:
+    if slopes and not design.follower.closure:
         falling = RETURN_RULE
-        sides = ((proved[1], 1.0, rule, " on the rise"), (proved[0], -1.0, falling, " on the return"))
+        sides = [
+            side
+            for least, most in slopes
+            for side in ((most, 1.0, rule, " on the rise"), (least, -1.0, falling, " on the return"))
+        ]
         over = [(one, math.degrees(math.atan(sign * one.value)), most, name) for one, sign, most, name in sides]
         over = [row for row in over if row[1] > row[2]]
         if not over:
@@ -149,26 +153,32 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
 
     cam = cam.refusing()
     try:
-        checks, contour = sound(replace(recipe, cam=cam), cam.exact())
+        exact = cam.exact()
+        surfaces = [sound(replace(recipe, cam=cam), exact, surface) for surface in exact.surfaces]
     except (CurveError, IntentError):
         return "its curve cannot be made"
-    if contour is None:
-        return f"fails {next(check.name for check in checks if not check.ok)}"
+    contours = [made.contour for made in surfaces if made.contour is not None]
+    if len(contours) < len(surfaces):
+        return f"fails {next(check.name for made in surfaces for check in made.checks if not check.ok)}"
     part = recipe.part
     if part.outer is not None:
-        reach = 2.0 * farthest(contour).value
+        reach = 2.0 * max(farthest(contour).value for contour in contours)
         return f"needs a part.outer above {upward(reach / recipe.mm)}" if reach >= part.outer else ""
-    room = SHAFT * design.surface.curve.size if part.bore is None else 0.5 * part.bore
-    return "leaves no metal round the shaft" if nearest(contour).value <= room else ""
+    room = SHAFT * size_of(design) if part.bore is None else 0.5 * part.bore
+    return "leaves no metal round the shaft" if min(nearest(contour).value for contour in contours) <= room else ""
 
 
 def _roller(recipe: Recipe, design: Design) -> Remark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
-    bent = next(check for check in design.checks if check.name in BENT)
-    roller, radius = recipe.cam.touch.radius, bent.value
-    if design.contour is None or radius is None or recipe.cam.side < 0 or not HALF * radius < roller:
+    round_about = [made for made in design.surfaces if made.surface.side > 0]
+    bent = [(made.bent.value, made) for made in round_about if made.bent.value is not None]
+    if not design.contours or not bent:
+        return None
+    radius, sharpest = min(bent, key=lambda row: row[0])
+    roller = recipe.cam.touch.radius
+    if not HALF * radius < roller:
         return None
     size = design.exact.rounder_pitch(radius, recipe.mm)
     if recipe.cam.sizes:
@@ -179,18 +189,17 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
         f"the roller's radius, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's least "
         f"convex radius; up to half is the rule, which {size} keeps"
     )
-    return Remark("large-roller", roller, HALF * radius, "mm", told, bent.at_deg)
+    return Remark("large-roller", roller, HALF * radius, "mm", told, sharpest.bent.at_deg)
 
 
 def _corner(recipe: Recipe, design: Design) -> Remark | None:
     """Sharp corners that the recipe asks for, where it limits no radius."""
-    if design.contour is None or not is_sharp(design.contour):
+    sharp = [contour for _, contour in design.contours if is_sharp(contour)]
+    if not sharp or any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
         return None
-    if any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
-        return None
-    runs = design.contour.runs
+    runs = sharp[0].runs
     after = [*runs[1:], runs[0]]
-    turns = [(two.low - one.high) % design.contour.shape.period for one, two in zip(runs, after, strict=True)]
+    turns = [(two.low - one.high) % sharp[0].shape.period for one, two in zip(runs, after, strict=True)]
     longest = max(range(len(runs)), key=turns.__getitem__)
     told = (
         f"the contact stays on a sharp corner for {math.degrees(turns[longest]):.4g} degrees: its edge wears, the "
@@ -203,11 +212,11 @@ def _corner(recipe: Recipe, design: Design) -> Remark | None:
 def _cutter(recipe: Recipe, design: Design) -> Remark | None:
     """A hollow that the cutter does not reach into, where no program says so by its checks."""
     made = recipe.manufacture
-    if made is None or design.contour is None or "roller" not in recipe.cam.arrangement.offers:
+    if made is None or not design.contours or "roller" not in recipe.cam.arrangement.offers:
         return None
     if made.layer or any(request.kind == "gcode" for request in recipe.export.files):
         return None
-    radius, at = hollow_radius(design.surface.side, design.contour)
+    radius, at = min(hollow_radius(surface.side, contour) for surface, contour in design.contours)
     if radius >= made.radius:
         return None
     told = (
@@ -219,7 +228,7 @@ def _cutter(recipe: Recipe, design: Design) -> Remark | None:
 
 def _pivot(recipe: Recipe, design: Design) -> Remark | None:
     """A disc that passes over its arm's pivot: it can be made, and lies in another plane than the pivot's pin."""
-    if "arm" not in recipe.cam.arrangement.offers or design.contour is None:
+    if "arm" not in recipe.cam.arrangement.offers or not design.contours:
         return None
     if any(limit.figure == PIVOT_CLEARANCE and limit.at_least is not None for limit in recipe.limits):
         return None
@@ -234,7 +243,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
     """A follower that stands still, and errors permitted that are a good part of its stroke."""
     stroke, arm = _stroke(design)
     length = stroke * arm
-    if length <= STILL * design.surface.curve.size:
+    if length <= STILL * size_of(design):
         return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
     files = [request for request in recipe.export.files if request.kind not in NO_CONTOUR]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
@@ -349,19 +358,22 @@ def dwells_lost(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ..
 
 def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """With a bore the wall is a check."""
-    if recipe.part.bore is not None or design.contour is None:
+    if recipe.part.bore is not None or not design.contours:
         return None
     from camgeo.synthesis.part.walls import Looks, distance_inside, winds
 
-    runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
-    ring = design.contour.sample(np.concatenate(runs)).point
-    if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.surface.curve.size:
-        return None  # by far; what is nearer is looked at closely
-    distance, at = distance_inside(Looks.of(design.contour), (0.0, 0.0))
+    distances = []
+    for surface, contour in design.contours:
+        runs = [np.linspace(run.low, run.high, LOOKS) for run in contour.runs]
+        ring = contour.sample(np.concatenate(runs)).point
+        if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * surface.curve.size:
+            continue  # by far; what is nearer is looked at closely
+        distances.append(distance_inside(Looks.of(contour), (0.0, 0.0)))
+    distance, at = min(distances, default=(math.inf, 0.0))
     if distance > 0.0:
         return None
     told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
-    if -distance <= NOISE * design.surface.curve.size:
+    if -distance <= NOISE * size_of(design):
         told = "the shaft lies on the contour"
     return Remark("shaft-outside", distance, 0.0, "mm", told, design.motion.shaft_deg(at))
 
@@ -387,13 +399,18 @@ def _is_whole(value: float) -> bool:
 
 def _thickness(recipe: Recipe, design: Design) -> Remark | None:
     """A disc that is a bar or a foil: a slip of the unit, mostly."""
-    thickness, size = recipe.part.thickness, design.surface.curve.size
+    thickness, size = recipe.part.thickness, size_of(design)
     if thickness is None or not size or THINNEST * size <= thickness <= THICKEST * size:
         return None
     thick = thickness > size
     rule = (THICKEST if thick else THINNEST) * size
     told = f"part.thickness, {_length(recipe, thickness)}, is {thickness / size:.3g} times the cam's greatest radius"
     return Remark("thick" if thick else "thin", thickness, rule, "mm", told)
+
+
+def size_of(design: Design) -> float:
+    """Size of the largest of its surfaces, mm."""
+    return max(surface.curve.size for surface in design.exact.surfaces)
 
 
 def _length(recipe: Recipe, value: float) -> str:

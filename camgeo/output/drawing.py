@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import TYPE_CHECKING
 
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import converted
+from camgeo.fit.bound import Bound
+from camgeo.output import part_geometry
 from camgeo.output.job import Made
+from camgeo.output.part_geometry import contours_of, openings_of, rim_of
 from kin.judge.check import about
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.files.dxf import Cutout, Reference
+    from camgeo.files.dxf import Reference
     from camgeo.fit.pieces import Outline
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
@@ -22,25 +28,26 @@ COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which not
 
 def make_drawing(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one drawing."""
+    own = request.units not in {None, job.recipe.units}
+
+    def moved(outline: Outline) -> float:
+        return converted(outline) if own else 0.0
+
     with job.refusals(request):
-        own = request.units not in {None, job.recipe.units}
-        outline = job.outline_written(
-            request.as_ or "polyline", job.tolerance(request), lambda found: converted(found) if own else 0.0
-        )
+        contours = job.outlines_written(request.as_ or "polyline", job.tolerance(request), moved)
         checks, tool = _tool_path(job, request)
         with job.clock.stage(f"write {request.kind}"):
-            _write(job, outline, request, path, tool)
-    bound = outline.bound.widened(converted(outline)) if own else outline.bound
-    made = job.judged(request, path, bound, outline.count)
+            _write(job, contours, request, path, tool)
+    bound = reduce(Bound.wider, (outline.bound.widened(moved(outline)) for outline in contours))
+    made = job.judged(request, path, bound, sum(outline.count for outline in contours))
     return Made(made.files, (*(about(check, path.name) for check in checks), *made.checks))
 
 
-def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout]]:
+def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerOutline]]:
     """The path of the cutter's centre where a DXF is to show it, and whether the cutter reaches everything."""
     asked = job.recipe.manufacture
     if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
         return [], []
-    from camgeo.files.dxf import Cutout
     from camgeo.machining.milling import path_arcs, reach_check
 
     with job.clock.stage("cutter path"):
@@ -48,38 +55,23 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout
         if path is None:
             return [check], []
         arcs = path_arcs(job.recipe, path, job.tolerance(request))
-    return [check], [Cutout("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
+    return [check], [LayerOutline("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
 
 
-def _write(job: Job, outline: Outline, request: FileRequest, path: Path, tool: list[Cutout]) -> None:
-    recipe, design = job.recipe.told_for(request), job.design
-    bore, cut, remarks = recipe.part.bore, [], []
-    if design.body is not None:
-        from camgeo.output import part_geometry
-
-        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
-        bore, cut, remarks = None, part_geometry.cutouts(body), part_geometry.remarks(body, recipe.mm)
+def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Path, tool: list[LayerOutline]) -> None:
+    recipe, body = job.recipe.told_for(request), job.body
+    outlines = [*contours_of(job.design, contours), *rim_of(body), *openings_of(body)]
+    remarks = part_geometry.remarks(body, recipe.mm)
     if request.kind == "svg":
         from camgeo.files.svg import write_svg
 
-        write_svg(
-            path,
-            outline,
-            bore=bore,
-            cutouts=cut,
-            remarks=remarks,
-            mm=recipe.mm,
-            name=recipe.name,
-            about=recipe.about,
-        )
+        write_svg(path, outlines, remarks=remarks, mm=recipe.mm, name=recipe.name, about=recipe.about)
         return
     from camgeo.files.dxf import write_dxf
 
     write_dxf(
         path,
-        outline,
-        bore=bore,
-        cutouts=[*cut, *tool],
+        [*outlines, *tool],
         remarks=remarks,
         reference=_reference(job),
         mm=recipe.mm,
@@ -95,8 +87,8 @@ def _reference(job: Job) -> list[Reference]:
     from camgeo.fit.arcs import fit_arcs
     from camgeo.synthesis.part.walls import Looks, distance_inside
 
-    recipe, surface = job.recipe, job.design.surface
-    cam = recipe.cam
+    recipe, cam = job.recipe, job.recipe.cam
+    pitches = {id(surface.base): surface for surface in job.design.exact.surfaces}.values()
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     if recipe.part.hub is not None:
         found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
@@ -104,10 +96,11 @@ def _reference(job: Job) -> list[Reference]:
         if radius is not None:
             found.append(Circle(name, (0.0, 0.0), radius))
             continue
-        least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
-        if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
-            found.append(Circle(name, (0.0, 0.0), least))
-        if surface.radius:
-            pitch = fit_arcs(surface.base, COARSE)
-            found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+        for surface in pitches:
+            least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
+            if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
+                found.append(Circle(name, (0.0, 0.0), least))
+            if surface.radius:
+                pitch = fit_arcs(surface.base, COARSE)
+                found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
     return found

@@ -35,7 +35,7 @@ def intent_of_file(
         raise recipe.error("manufacture", "missing", None, "give manufacture: a program is judged by its cutter")
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "missing", None, "give part.thickness: a program is judged by its depth")
-    if design.contour is None:
+    if not design.contours:
         raise recipe.error("cam", "a check of the exact contour fails, so nothing can be milled")
     from camgeo.machining.milling import milling_intent
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.fit.cache import Outlines
+from camgeo.fit.cache import Fits
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
 from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_arcs, path_of, reach_check, unmilled
@@ -65,9 +65,10 @@ def _told_apart(job: Job, asked: Manufacture) -> list[float]:
 
 def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
     """The cutter's path as arcs, which share the part's precautions against a formula that rounds."""
+    unsure = max(fit.unsure for fit in job.fits)
 
     def fitted(curve: Curve, within: float) -> ArcSpline:
-        outline = Outlines(curve, job.clock, job.outlines.unsure).within("arcs", within)
+        outline = Fits(curve, job.clock, unsure).within("arcs", within)
         if not isinstance(outline, ArcSpline):
             raise TypeError("a path is made of arcs")
         return outline
@@ -80,7 +81,7 @@ def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSplin
     thickness = job.recipe.part.thickness
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
-    side = job.recipe.cam.side
+    side = job.design.only_surface.surface.side
 
     def loop(path: ArcSpline) -> Loop:
         begun = begun_at(path, asked.start)

@@ -13,7 +13,7 @@ from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.bound import FormError
-from camgeo.fit.cache import Outlines, formula_rounding
+from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.assembly.assembly import Assembly
-    from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import Bound, Outline
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.part.body import Body
     from kin.judge.check import Check
 
 STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance
@@ -47,23 +47,23 @@ class Made(NamedTuple):
 class Job:
     """A cam that can be made: its recipe, its exact design, and the fits that its files share.
 
-    `assemblies` holds the mechanism's bodies once a file has asked for them, `variants` the job for each part that is
-    made different from the nominal one.
+    `fits` are those of each surface's contour. `assemblies` holds the mechanism's bodies once a file has asked for
+    them, `variants` the job for each part that is made different from the nominal one.
     """
 
     recipe: Recipe
     design: Design
-    outlines: Outlines
+    fits: tuple[Fits, ...]
     assemblies: list[Assembly] = field(default_factory=list, repr=False)
     variants: dict[Compensation, Job] = field(default_factory=dict, repr=False)
 
     @staticmethod
     def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
-        """Begin the files of a design that has a contour; raises ValueError for one that has none."""
-        if design.contour is None:
+        """Begin the files of a design that has its contours; raises ValueError for one that has none."""
+        if not design.contours:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
-        rounding = formula_rounding(design.exact.rounding, design.contour)
-        return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
+        clock, unsure = clock or Clock(), design.exact.rounding
+        return Job(recipe, design, tuple(Fits(one, clock, formula_rounding(unsure, one)) for _, one in design.contours))
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
         """The job for the part as one file shows it, and the checks that forbid to make it."""
@@ -78,10 +78,11 @@ class Job:
                     made = compensated(self.recipe, self.design, by, self.field(request))
             except CurveError as error:
                 raise self.recipe.error(self.field(request), str(error)) from error
-            if made.design.contour is None:
+            if not made.design.contours:
                 return self, made.checks
-            unsure = by.scale * self.outlines.unsure
-            self.variants[by] = Job(made.recipe, made.design, Outlines(made.design.contour, self.clock, unsure))
+            pairs = zip(self.fits, made.design.contours, strict=True)
+            fits = tuple(Fits(contour, self.clock, by.scale * fit.unsure) for fit, (_, contour) in pairs)
+            self.variants[by] = Job(made.recipe, made.design, fits)
         job, told = self.variants[by], self.recipe.told_for(request)
         if request.units is not None:  # a file's title tells lengths as its numbers do
             job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
@@ -90,12 +91,15 @@ class Job:
     @property
     def clock(self) -> Clock:
         """What times the stages."""
-        return self.outlines.clock
+        return self.fits[0].clock
 
     @property
-    def contour(self) -> Curve:
-        """The exact contour."""
-        return self.outlines.contour
+    def body(self) -> Body:
+        """What the disc has besides its surfaces, mirrored as the recipe has it: a round bore is its own image."""
+        (disc,) = self.design.discs
+        if disc.body is None:
+            raise ValueError(f"{self.recipe.name}: there is no part to be made")
+        return disc.body.mirrored() if self.recipe.rotation == "ccw" and not self.recipe.part.plain else disc.body
 
     def field(self, request: FileRequest) -> str:
         """Path of a request in the recipe; that of the list for one that does not stand there."""
@@ -109,21 +113,27 @@ class Job:
         """Path of the field that a file's tolerance is asked for by."""
         return self.field(request) if request.tolerance is not None else "export.tolerance"
 
-    def outline(self, form: str, tolerance: float) -> Outline:
-        """The contour in a form, within a tolerance, mirrored as the recipe has it."""
-        outline = self.outlines.within(form, tolerance)
-        return outline.mirrored() if self.recipe.rotation == "ccw" else outline
+    def outlines(self, form: str, tolerance: float) -> tuple[Outline, ...]:
+        """The contour of each surface in a form, within a tolerance, mirrored as the recipe has it."""
+        return tuple(self._outline(fit, form, tolerance) for fit in self.fits)
 
-    def outline_written(self, form: str, tolerance: float, off: Callable[[Outline], float]) -> Outline:
-        """The contour in a form that is within a tolerance as it is written, which moves it by up to `off`, mm.
+    def outlines_written(self, form: str, tolerance: float, off: Callable[[Outline], float]) -> tuple[Outline, ...]:
+        """The same of forms that are within a tolerance as they are written, which moves each by up to `off`, mm.
 
         Raises ToleranceError as the fit does.
         """
-        outline = self.outline(form, tolerance)
-        moved = off(outline)
-        if outline.bound.worst + moved <= tolerance or not 4.0 * moved < tolerance:
-            return outline
-        return self.outline(form, tolerance - 2.0 * moved)
+        written = []
+        for fit in self.fits:
+            outline = self._outline(fit, form, tolerance)
+            moved = off(outline)
+            if outline.bound.worst + moved > tolerance and 4.0 * moved < tolerance:
+                outline = self._outline(fit, form, tolerance - 2.0 * moved)
+            written.append(outline)
+        return tuple(written)
+
+    def _outline(self, fit: Fits, form: str, tolerance: float) -> Outline:
+        outline = fit.within(form, tolerance)
+        return outline.mirrored() if self.recipe.rotation == "ccw" else outline
 
     @contextmanager
     def refusals(self, request: FileRequest) -> Iterator[None]:
@@ -137,7 +147,7 @@ class Job:
             where = f"{self.field(request)}.{request.kind}.as"
             raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
         except RegionError as error:
-            where = "part" if self.design.body else "cam" if recipe.part.bore is None else "part.bore"
+            where = "part" if not recipe.part.plain else "cam" if recipe.part.bore is None else "part.bore"
             raise recipe.error(where, f"within the tolerance, {error}") from error
         except CurveError as error:
             raise recipe.error("cam", str(error)) from error

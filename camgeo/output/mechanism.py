@@ -68,7 +68,7 @@ def _told(recipe: Recipe) -> Iterator[None]:
 def _assembled(job: Job, request: FileRequest) -> Assembly:
     """Build the bodies round the contour as arcs within the file's tolerance."""
     with job.refusals(request), job.clock.stage("bodies"):
-        contour = job.outlines.within("arcs", job.tolerance(request))
+        contour = job.fits[0].within("arcs", job.tolerance(request))
         if not isinstance(contour, ArcSpline):
             raise TypeError("bodies stand round a contour of arcs")
         with _told(job.recipe):

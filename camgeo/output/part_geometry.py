@@ -5,26 +5,33 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.files.dxf import Circle, Cutout
+from camgeo.files.layer_outline import LayerOutline
+from camgeo.fit.pieces import Polygon
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from camgeo.files.mesh import Mesh, MeshFacts
     from camgeo.files.precision import Precision
     from camgeo.files.solid import Solid
-    from camgeo.fit.pieces import Polygon
+    from camgeo.fit.pieces import Outline
+    from camgeo.synthesis.design import Design
     from camgeo.synthesis.part.body import Body
 
 
-def cutouts(body: Body) -> list[Cutout]:
-    """What a drawing cuts or engraves besides the contour, each on its layer; the outline of a ring first."""
-    outer = [] if body.outer is None else [Cutout("CUT", Circle("outline", (0.0, 0.0), 0.5 * body.outer))]
-    return outer + [
-        Cutout(
-            opening.layer,
-            opening.outline if opening.circle is None else Circle(opening.name, *opening.circle),
-        )
-        for opening in body.openings
-    ]
+def contours_of(design: Design, fitted: Iterable[Outline]) -> list[LayerOutline]:
+    """The contours of a design's surfaces as they are fitted, each on its layer."""
+    return [LayerOutline(made.surface.layer, one) for made, one in zip(design.surfaces, fitted, strict=True)]
+
+
+def rim_of(body: Body) -> list[LayerOutline]:
+    """The round outline about the contours of a ring; none of a disc."""
+    return [LayerOutline(rim.layer, rim.outline, rim.circle) for rim in (body.rim,) if rim is not None]
+
+
+def openings_of(body: Body) -> list[LayerOutline]:
+    """What is cut or engraved besides the contours."""
+    return [LayerOutline(opening.layer, opening.outline, opening.circle) for opening in body.openings]
 
 
 def remarks(body: Body, mm: float) -> list[str]:
@@ -45,8 +52,10 @@ def remarks(body: Body, mm: float) -> list[str]:
     return found
 
 
-def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
-    """Mesh of a body round a polygon: a prism, or prisms joined by manifold3d.
+def part_mesh(
+    outlines: Sequence[LayerOutline], body: Body, *, tolerance: float, precision: Precision
+) -> tuple[Mesh, MeshFacts]:
+    """Mesh of a body in its outlines, outermost first: a prism, or prisms joined by manifold3d.
 
     Raises as `extruded` and `joined` do.
     """
@@ -55,17 +64,12 @@ def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Prec
     if body.prism:
         from camgeo.files.prism import extruded
 
-        outlines = [opening.outline for opening in body.openings]
-        return extruded(
-            polygon,
-            holes=outlines,
-            thickness=body.thickness,
-            outer=body.outer,
-            tolerance=tolerance,
-            precision=precision,
-        )
+        return extruded(outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
     from camgeo.files.solid import joined
 
+    polygon = outlines[0].outline
+    if not isinstance(polygon, Polygon):
+        raise TypeError("a solid is made of a polygon")
     return joined(polygon, solid_of(body), tolerance=tolerance, precision=precision)
 
 
@@ -86,4 +90,4 @@ def solid_of(body: Body) -> Solid:
         slope = math.sqrt(1.0 - min(body.screw.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0
         drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
     hub = None if body.hub is None else body.hub.diameter
-    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill, body.outer)
+    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)

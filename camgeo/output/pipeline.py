@@ -149,7 +149,7 @@ def _produced(
     checks = list(design.checks)
     files: list[FileResult] = []
     pages = [request for request in requests if request.kind == "html"]  # they tell of all the others
-    if design.contour is not None:
+    if design.contours:
         from camgeo.output.dispatch import foresee, make
         from camgeo.output.job import Job
 
@@ -236,5 +236,5 @@ def _findings(
         dynamics=None if train is None else train.section,
         remarks=remarks,
         joints=design.exact.joints,
-        contour=None if design.contour is None else measures(design.contour),
+        contours={surface.name: measures(contour) for surface, contour in design.contours},
     )

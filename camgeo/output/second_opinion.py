@@ -102,7 +102,7 @@ def second_opinion_on(
 
     A file that kin refuses to read is left out: what would cost without bound is refused there.
     """
-    if design.contour is None:
+    if not design.contours:
         return Opinion().less(*((f"second opinion[{file.path.name}]", UNMADE) for file in files))
     job = Job.of(recipe, design, clock)
     unread = {check.file for check in checks if check.name == READABLE.name and not check.ok}
@@ -160,7 +160,8 @@ def _of_contour(job: Job, file: FileResult) -> list[Check]:
     if failures:
         raise _Skip("there is no exact contour to compare with")
     try:
-        exact = job.outlines.within("polyline", SHARE * tolerance)
+        (fit,) = job.fits
+        exact = fit.within("polyline", SHARE * tolerance)
         if not isinstance(exact, Polygon):
             raise TypeError("the exact contour is compared as a polygon")
         drawn = polygon_of(file.contour, SHARE * tolerance)

@@ -41,7 +41,7 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
             found.append((kind, "the recipe's export.files does not list it"))
         elif kind not in wanted:
             found.append((kind, "left out by --only"))
-    if design.contour is None:
+    if not design.contours:
         found.append(("files", "a check of the exact contour fails"))
     elif "gcode" in wanted and recipe.manufacture is not None:
         from camgeo.machining.milling import unmilled
@@ -53,16 +53,19 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
 def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
     """Harmonics that exact splines go without."""
     exact = [request for request in requests if request.as_ == "exact" and request.compensation is None]
-    if not exact or design.contour is None:
+    if not exact:
         return []
     from camgeo.fit.trigonometric import polynomial_of
 
-    p = polynomial_of(design.contour)
-    if not p.dropped:
-        return []
-    what = f"harmonic{'s' if len(p.dropped) > 1 else ''} {', '.join(map(str, p.dropped))} of p"
-    why = f"{'they move' if len(p.dropped) > 1 else 'it moves'} the contour by less than rounding, {p.rest:.2g} mm"
-    return [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
+    found = []
+    for _, contour in design.contours:
+        p = polynomial_of(contour)
+        if not p.dropped:
+            continue
+        what = f"harmonic{'s' if len(p.dropped) > 1 else ''} {', '.join(map(str, p.dropped))} of p"
+        why = f"{'they move' if len(p.dropped) > 1 else 'it moves'} the contour by less than rounding, {p.rest:.2g} mm"
+        found += [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
+    return found
 
 
 def scene_of(recipe: Recipe, design: Design) -> Scene:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.fit.nodes import ToleranceError
-from camgeo.fit.pieces import Polygon
+from camgeo.output.part_geometry import contours_of, openings_of, part_mesh, rim_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,14 +47,14 @@ def aim(job: Job, request: FileRequest) -> float:
     """
     import numpy as np
 
-    body = job.design.body
-    size = float(np.abs(job.contour.sample(job.contour.cells.low).point).max())
+    contours = (contour for _, contour in job.design.contours)
+    size = max(float(np.abs(contour.sample(contour.cells.low).point).max()) for contour in contours)
     # between two samples the contour reaches a little farther
     try:
         fine = precision_of(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
     except ToleranceError as error:
         raise job.refused(request, error) from error
-    return fine * (body.fineness if body else 1.0)
+    return fine * job.body.fineness
 
 
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
@@ -62,21 +62,12 @@ def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
 
     Raises RecipeErrors and SurroundingsError as `make` does.
     """
-    recipe, body, tolerance, precision = job.recipe, job.design.body, job.tolerance(request), precision_of(job, request)
+    recipe, tolerance, precision = job.recipe, job.tolerance(request), precision_of(job, request)
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "a solid needs a thickness")
     fine = aim(job, request)
     with job.refusals(request):
-        polygon = job.outline("polyline", fine)
-        if not isinstance(polygon, Polygon):
-            raise TypeError("a solid is made of a polygon")
+        contours = contours_of(job.design, job.outlines("polyline", fine))
+        outlines = [*rim_of(job.body), *contours, *openings_of(job.body)]
         with job.clock.stage(f"mesh {request.kind}"):
-            if body is not None:
-                from camgeo.output.part_geometry import part_mesh
-
-                drawn = body.mirrored() if recipe.rotation == "ccw" else body
-                return part_mesh(polygon, drawn, tolerance=tolerance, precision=precision)
-            from camgeo.files.prism import extruded
-
-            bore, thickness = recipe.part.bore, recipe.part.thickness
-            return extruded(polygon, bore=bore, thickness=thickness, tolerance=tolerance, precision=precision)
+            return part_mesh(outlines, job.body, tolerance=tolerance, precision=precision)

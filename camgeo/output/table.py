@@ -54,7 +54,8 @@ def _polar(job: Job, request: FileRequest) -> Columns:
     from camgeo.synthesis.contact_table import polar_table
 
     try:
-        return polar_table(job.recipe.told_for(request), job.contour)
+        (fit,) = job.fits
+        return polar_table(job.recipe.told_for(request), fit.contour)
     except StarError as error:
         where, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
         raise job.recipe.error(where, str(error), "'polar'", remedy) from error

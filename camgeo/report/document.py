@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY
@@ -17,7 +17,7 @@ from camgeo.report.listed import listed
 from camgeo.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from camgeo.curve.measures import Measures
     from camgeo.measures.file_result import FileResult
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
+    from kin.judge.verdict import SurfaceVerdict
     from kin.law.joints import Joint
 
 BELOW = "below rounding"
@@ -46,7 +47,7 @@ class Findings:
     dynamics: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
-    contour: Measures | None = None
+    contours: Mapping[str, Measures] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:
@@ -67,7 +68,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "follower": found.follower,
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
-        "contour": None if found.contour is None else _measures(recipe, found.contour.perimeter, found.contour.area),
+        "contour": _contours(recipe, found.contours),
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
         "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
@@ -100,6 +101,8 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
         entry["formerly"] = EVERY[check.name].formerly
     if check.file is not None:
         entry["file"] = check.file
+    if check.surface:
+        entry["surface"] = check.surface
     if check.detail:
         entry["detail"] = check.detail
     return entry
@@ -152,11 +155,25 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_error": None if file.bound is None else file.bound.worst / mm,
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
-        "measured_error": None if file.measured_error is None else file.measured_error / mm,
-        "motion": None if file.motion is None else _motion(recipe, file.motion),
-        **_measures(recipe, file.perimeter, file.area),
     }
-    return entry
+    if len(file.surfaces) < 2:
+        return entry | _surface(recipe, file.surface)
+    return entry | {"surfaces": [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]}
+
+
+def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
+    """What the judge measured of a surface of a file."""
+    return {
+        "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
+        "motion": None if surface.motion is None else _motion(recipe, surface.motion),
+        **_measures(recipe, surface.perimeter, surface.area),
+    }
+
+
+def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any] | None:
+    """Perimeter and area of the exact contour, of several by the names of their surfaces."""
+    told = {name: _measures(recipe, one.perimeter, one.area) for name, one in measures.items()}
+    return told.get("", told) or None
 
 
 def _measures(recipe: Recipe, perimeter: float | None, area: float | None) -> dict[str, float | None]:

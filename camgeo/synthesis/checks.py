@@ -14,12 +14,13 @@ from kin.judge.check import Check
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from camgeo.cams.family import ExactCam, Proof, Surface
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import SurfaceDesign
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
@@ -111,19 +112,24 @@ def jam_angle(exact: ExactCam) -> tuple[float, float]:
     return math.degrees(math.atan(steepest)), degrees(most.at)
 
 
-def guide_checks(recipe: Recipe, exact: ExactCam, contour: Curve | None) -> list[Check]:
+def guide_checks(recipe: Recipe, exact: ExactCam, surfaces: Iterable[SurfaceDesign]) -> list[Check]:
     """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
     found, train, made = [], recipe.dynamics, recipe.manufacture
     if train is not None and train.guide is not None:
         value, at = jam_angle(exact)
         limit = math.degrees(train.guide.jam)
         found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
-    if made is not None and made.wheel is not None and contour is not None:
-        radius, place = hollow_radius(exact.surfaces[0].side, contour)
+    if made is None or made.wheel is None:
+        return found
+    wheel = 0.5 * made.wheel
+    for surface in surfaces:
+        if surface.contour is None:
+            continue
+        radius, place = hollow_radius(surface.surface.side, surface.contour)
         at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)
-        wheel = 0.5 * made.wheel
-        told = "the contour has no hollow" if math.isinf(radius) else ""
-        found.append(Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told))
+        told, name = "the contour has no hollow" if math.isinf(radius) else "", surface.surface.name
+        check = Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told, surface=name)
+        found.append(check)
     return found
 
 

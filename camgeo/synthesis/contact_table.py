@@ -31,23 +31,26 @@ def contact_table(
     touched. At a break the radius is the one that follows, at the end of the turn the one that precedes.
     """
     names, rows = motion
-    contour = design.contour
-    if contour is None:
+    if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be touched")
     columns = dict(zip(names, rows.T, strict=True))
     shaft = np.linspace(0.0, TURN, len(rows))
     relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
     side = np.where(np.arange(len(rows)) < len(rows) - 1, 1, -1)
-    pressure = design.surface.pressure
     unit, sense = "in" if recipe.units == "inch" else "mm", -1.0 if recipe.rotation == "ccw" else 1.0
-    for name, t in design.motion.parameters(shaft, relative).items():
+    touching = [
+        (f"{surface.prefix}{label}", t, surface, contour)
+        for label, t in design.motion.parameters(shaft, relative).items()
+        for surface, contour in design.contours
+    ]
+    for name, t, surface, contour in touching:
         at = contour.sample(t, side)
         with np.errstate(divide="ignore"):
-            radius = recipe.cam.side * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)
+            radius = surface.side * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)
         x, y = np.where(np.abs(at.point) < NOTHING * contour.size, 0.0, at.point).T / recipe.mm
         own = {
             f"{name}radius_of_curvature_{unit}": radius / recipe.mm,
-            f"{name}pressure_angle_deg": np.degrees(pressure(t)),
+            f"{name}pressure_angle_deg": np.degrees(surface.pressure(t)),
             f"{name}x_{unit}": x,
             f"{name}y_{unit}": sense * y,
         }

@@ -7,18 +7,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
+from camgeo.checks.declared import BENT, CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from camgeo.cams.family import ExactCam, Follower, Surface
     from camgeo.cams.position import Position
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven
     from camgeo.synthesis.part.body import Body
+    from camgeo.synthesis.part.shapes import Opening
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -37,24 +39,79 @@ TOO_MANY = "at least {} stretches of the contour run backwards; give the motion 
 
 
 @dataclass(frozen=True)
-class Design:
-    """The exact cam of a recipe, the contour to be made of it, and the checks that need no file.
+class SurfaceDesign:
+    """A surface of a cam, the contour to be made of it, and its checks of curvature and undercut.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one; `body` the part where it has more than a round bore.
     """
 
-    exact: ExactCam
+    surface: Surface
     contour: Curve | None
     checks: tuple[Check, ...]
-    trimmed: bool
-    driven: Driven | None = None
+
+    @property
+    def trimmed(self) -> bool:
+        """Whether undercut is cut off the contour: corners that it has by design lose no motion."""
+        return self.contour is not None and self.contour is not self.surface.curve
+
+    @property
+    def bent(self) -> Check:
+        """The check of curvature."""
+        return next(check for check in self.checks if check.name in BENT)
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A body on the shaft: its surfaces, and what the part has besides them; None where it is not made."""
+
+    surfaces: tuple[SurfaceDesign, ...]
     body: Body | None = None
 
     @property
-    def surface(self) -> Surface:
-        """The exact curve."""
-        return self.exact.surfaces[0]
+    def contours(self) -> tuple[tuple[Surface, Curve], ...]:
+        """Each surface with its contour; empty where one of them has none: a disc is made whole or not at all."""
+        found = tuple((made.surface, made.contour) for made in self.surfaces if made.contour is not None)
+        return found if len(found) == len(self.surfaces) else ()
+
+
+@dataclass(frozen=True)
+class Design:
+    """The exact cam of a recipe, the discs to be made of it, and all checks that need no file.
+
+    `driven` is the linkage, None without one.
+    """
+
+    exact: ExactCam
+    discs: tuple[Disc, ...]
+    checks: tuple[Check, ...]
+    driven: Driven | None = None
+
+    @property
+    def surfaces(self) -> tuple[SurfaceDesign, ...]:
+        """The surfaces of all discs."""
+        return tuple(surface for disc in self.discs for surface in disc.surfaces)
+
+    @property
+    def contours(self) -> tuple[tuple[Surface, Curve], ...]:
+        """Each surface with its contour; empty where a check forbids the cam: it is made whole or not at all."""
+        discs = [disc.contours for disc in self.discs]
+        return tuple(chain.from_iterable(discs)) if all(discs) else ()
+
+    @property
+    def openings(self) -> tuple[Opening, ...]:
+        """What is cut into the discs besides their surfaces."""
+        return tuple(opening for disc in self.discs if disc.body is not None for opening in disc.body.openings)
+
+    @property
+    def only_surface(self) -> SurfaceDesign:
+        """The surface of a cam that has one; raises ValueError for a cam of several."""
+        (surface,) = self.surfaces
+        return surface
+
+    @property
+    def trimmed(self) -> bool:
+        """Whether motion is lost with undercut that is cut off."""
+        return any(surface.trimmed for surface in self.surfaces)
 
     @property
     def motion(self) -> Position:
@@ -76,12 +133,12 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("motion"):
             exact = recipe.cam.exact(framed=recipe.linkage is not None)
         with clock.stage("profile"):
-            surface = exact.surfaces[0]
+            surfaces = exact.surfaces
     except IntentError as error:
         raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("undercut"):
-            checks, contour = sound(recipe, exact)
+            sounded = tuple(sound(recipe, exact, surface) for surface in surfaces)
     except IntentError as error:  # of a guide or a face that cannot follow the motion
         raise recipe.error(f"cam.{error.field}", error.message) from error
     except CurveError as error:
@@ -89,26 +146,29 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     with clock.stage("figures"):
         from camgeo.synthesis.checks import guide_checks, motion_checks
 
-        more = motion_checks(exact)
-        more += guide_checks(recipe, exact, contour)
+        checks = [check for surface in sounded for check in surface.checks]
+        checks += motion_checks(exact) + guide_checks(recipe, exact, sounded)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage
 
         with clock.stage("linkage"):
             driven = linkage.driven(recipe, _plate(exact), exact.follower.breadth)
-        more += driven.checks
-    body = None
-    if contour is not None:
-        try:
-            with clock.stage("part"):
-                body, found = _part(recipe, contour, exact)
-        except CurveError as error:
-            raise recipe.error("part.chamfer", str(error)) from error
-        more += found
-        if not all(check.ok for check in found):
-            contour = body = None  # without its least walls there is no part to draw
-    return Design(exact, contour, (*checks, *more), is_trimmed(contour, surface), driven, body)
+        checks += driven.checks
+    try:
+        with clock.stage("part"):
+            bodied = [_with_body(recipe, disc, exact) for disc in discs_of(sounded)]
+    except CurveError as error:
+        raise recipe.error("part.chamfer", str(error)) from error
+    discs = tuple(disc for disc, _ in bodied)
+    checks += [check for _, walls in bodied for check in walls]
+    return Design(exact, discs, tuple(checks), driven)
+
+
+def discs_of(surfaces: Sequence[SurfaceDesign]) -> tuple[Disc, ...]:
+    """The discs that surfaces are on, in their order, as yet without their bodies."""
+    ranks = sorted({made.surface.disc for made in surfaces})
+    return tuple(Disc(tuple(made for made in surfaces if made.surface.disc == rank)) for rank in ranks)
 
 
 def _plate(exact: ExactCam) -> Lift:
@@ -117,12 +177,17 @@ def _plate(exact: ExactCam) -> Lift:
     return exact.plate
 
 
-def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
-    """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
+def sound(recipe: Recipe, exact: ExactCam, surface: Surface) -> SurfaceDesign:
+    """A surface with its checks of curvature and undercut, and its contour: None where undercut refuses it."""
+    checks, contour = _checked(recipe, surface, exact.motion.shaft_deg)
+    return SurfaceDesign(surface, contour, tuple(replace(check, surface=surface.name) for check in checks))
+
+
+def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], float]) -> tuple[list[Check], Curve | None]:
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
-    surface, trim = exact.surfaces[0], recipe.cam.undercut == "trim"
+    trim = recipe.cam.undercut == "trim"
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius
@@ -130,7 +195,6 @@ def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
         raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
     least = _bent_most(surface)
     radius = least.radius + roller
-    shaft_deg = exact.motion.shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
     bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
@@ -195,11 +259,6 @@ def _can_be_trimmed(curve: Curve) -> bool:
     return True
 
 
-def is_trimmed(contour: Curve | None, surface: Surface) -> bool:
-    """Whether undercut was cut off a contour: corners that it has by design lose no motion."""
-    return contour is not None and contour is not surface.curve
-
-
 def _sharp(surface: Surface, shaft_deg: Callable[[float], float]) -> Check:
     """The check of curvature of a contour whose corners are asked for: reported, and held against nothing."""
     runs = surface.curve.runs
@@ -252,33 +311,21 @@ def _trimmed(curve: Curve) -> Curve:
     return trimmed(curve)
 
 
-def _part(recipe: Recipe, contour: Curve, exact: ExactCam) -> tuple[Body | None, list[Check]]:
-    """The body of a part that has more than a bore, and the checks of the walls."""
-    part = recipe.part
-    if part.plain:
-        if part.bore is None:
-            return None, []
-        from camgeo.synthesis.part.walls import least_wall
-
-        wall, at = least_wall(contour, part.bore)
-        ok = wall > 0.0 if part.wall is None else wall >= part.wall
-        told = "" if ok else "bore and contour" if wall > -0.5 * part.bore else "the shaft lies outside the contour"
-        return None, [
-            Check(
-                WALL.name,
-                ok,
-                wall,
-                part.wall or 0.0,
-                "mm",
-                exact.motion.shaft_deg(at),
-                "at_least",
-                detail=told,
-            )
-        ]
+def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[Check]]:
+    """The disc with its body, and the checks of its walls; without its least walls there is no part to draw."""
+    if not disc.contours:
+        return disc, []
     from camgeo.synthesis.part.body import body_of
-    from camgeo.synthesis.part.checks import part_checks
+    from camgeo.synthesis.part.checks import bore_check, part_checks
     from camgeo.synthesis.part.walls import Looks
 
-    looks = Looks.of(contour)
-    body = body_of(part, looks)
-    return body, part_checks(body, looks, part.wall, exact.motion.shaft_deg)
+    part, shaft_deg = recipe.part, exact.motion.shaft_deg
+    looks = [Looks.of(contour, surface.side, surface.name) for surface, contour in disc.contours]
+    body = body_of(part, looks[0])
+    if not part.plain:
+        checks = part_checks(body, looks, part.wall, shaft_deg)
+    else:
+        checks = [] if part.bore is None else [bore_check(part.bore, looks, part.wall, shaft_deg)]
+    if all(check.ok for check in checks):
+        return replace(disc, body=body), checks
+    return Disc(tuple(replace(made, contour=None) for made in disc.surfaces)), checks

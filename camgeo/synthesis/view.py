@@ -30,6 +30,7 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.cams.family import Surface
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
@@ -70,11 +71,15 @@ class View(Generic[G_co, T_co]):
 
     def pressure(self, shaft: Array) -> Array:
         """Pressure angle, rad (n,), above 0 where the cam drives a rise."""
-        return self.design.surface.pressure(shaft)
+        return self.surface(self.contacts[0]).pressure(shaft)
+
+    def surface(self, contact: Contact[G_co, T_co]) -> Surface:
+        """The surface that a contact touches."""
+        return next(surface for surface in self.design.exact.surfaces if surface.name == contact.surface)
 
     def place(self, shaft: Array) -> Array:
         """Where a flat face is touched, mm along it (n,), from the axis of its stem or the pivot of its arm."""
-        place = self.design.surface.place
+        place = self.surface(self.contacts[0]).place
         if place is None:
             raise TypeError("no flat face is touched")
         return place(shaft)
@@ -82,8 +87,9 @@ class View(Generic[G_co, T_co]):
     def touched(self, shaft: Array) -> list[Array]:
         """Where each contact touches in the frame of the ground, mm, as complex numbers (n,)."""
         found = []
-        for t in self.design.motion.parameters(shaft, shaft).values():
-            point = self.design.surface.curve.sample(np.mod(t, TURN)).point
+        parameters = self.design.motion.parameters(shaft, shaft).values()
+        for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one
+            point = self.surface(contact).curve.sample(np.mod(t, TURN)).point
             found.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
         return found
 

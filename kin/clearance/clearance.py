@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Mask
 
-__all__ = ["Allowed", "Clearance", "Mover", "Slab", "clearances"]
+__all__ = ["Clearance", "Mover", "Slab", "clearances"]
 
 CELLS = 64  # intervals of a turn to begin with
 FIRST = 4  # of them are looked at before the rest
@@ -45,6 +45,7 @@ AT_ONCE = 256  # intervals that are worked on together
 FINEST = 4  # times that pieces are halved along with the intervals
 FEW = 16  # pairs in play for each interval, below which halves of their pieces cost less than they tell
 MOST = 60_000  # intervals that a pair of bodies may take
+SHARE = 1e-3  # of the clearance, to which it is found
 TOUCHING = 1e-9  # mm, by which heights may overlap by rounding
 
 
@@ -88,19 +89,6 @@ class Mover:
 
 
 @dataclass(frozen=True)
-class Allowed:
-    """Two bodies meant to come closer than others: the least gap meant, 0 for contact, less a tolerance; mm.
-
-    A gap of -inf exempts the pair: it is not looked at.
-    """
-
-    a: str
-    b: str
-    gap: float = 0.0
-    tolerance: float = 0.0
-
-
-@dataclass(frozen=True)
 class Clearance:
     """Least clearance of two bodies over one turn.
 
@@ -110,7 +98,6 @@ class Clearance:
     place         where, in the fixed axes, mm: midway between the nearest points, or the deepest point
     proved        no angle has less than this
     slack         how far the bodies may be from where their motions say, mm, both together; 0 unless sampled
-    required      the least gap asked for; `tolerance` the deviation allowed from it
     evaluations   number of angles looked at
     """
 
@@ -121,52 +108,41 @@ class Clearance:
     place: tuple[float, float]
     proved: float
     slack: float
-    required: float
-    tolerance: float
     evaluations: int
 
     @property
     def holds(self) -> bool:
-        """Whether the gap asked for is proved, sampling and tolerance considered."""
-        return self.proved - self.slack >= self.required - self.tolerance
+        """Whether it is proved that they do not overlap, sampling considered."""
+        return self.proved - self.slack >= 0.0
 
     @property
     def collides(self) -> bool:
-        """Whether an angle was found at which the gap is too small for certain."""
-        return self.least + self.slack < self.required - self.tolerance
+        """Whether an angle was found at which they overlap for certain."""
+        return self.least + self.slack < 0.0
 
 
 def clearances(
-    movers: Sequence[Mover],
-    allowed: Iterable[Allowed] = (),
-    *,
-    gap: float = 0.0,
-    axial: float = 0.0,
-    accuracy: float = 1e-3,
-    share: float = 1e-3,
+    movers: Sequence[Mover], exempt: Iterable[frozenset[str]] = (), *, axial: float = 0.0, accuracy: float = 1e-3
 ) -> list[Clearance]:
     """Clearance of every pair of bodies that has slabs at common heights, in the order of the movers.
 
-    `gap` is asked of all pairs that are not `allowed` another; of those allowed a tolerance no more is proved than that
-    they keep to it. Slabs less than `axial` apart in height count as at one
-    height; those that only touch do not, at 0. `least` and `proved` differ by no more than the greatest of `accuracy`
-    mm, a quarter of the pair's tolerance, `share` of what is over or short of the gap asked for, and 5 % of a depth;
-    more only where that takes more than 60,000 angles. Raises ValueError for two movers of one name and for a pair
-    allowed that is none.
+    Pairs of names that are `exempt` are not looked at. Slabs less than `axial` apart in height count as at one height;
+    those that only touch do not, at 0. `least` and `proved` differ by no more than the greatest of `accuracy` mm, SHARE
+    of the clearance, and 5 % of a depth; more only where that takes more than 60,000 angles. Raises ValueError for two
+    movers of one name and for a pair exempt that is none.
     """
     names = [mover.name for mover in movers]
     if len(set(names)) < len(names):
         raise ValueError("two movers have one name")
-    asked = {frozenset((one.a, one.b)): one for one in allowed}
-    for pair in asked:
+    left_out = set(exempt)
+    for pair in left_out:
         if len(pair) != 2 or not pair <= set(names):
             raise ValueError(f"unknown pair of bodies: {' and '.join(sorted(pair))}")
     found = []
     for one, other in combinations(movers, 2):
-        wanted = asked.get(frozenset((one.name, other.name)), Allowed(one.name, other.name, gap))
-        if wanted.gap == -math.inf:
+        if {one.name, other.name} in left_out:
             continue
-        search = _Search(one, other, wanted, max(accuracy, 0.25 * wanted.tolerance), share)
+        search = _Search(one, other, accuracy)
         for first, second in product(one.slabs, other.slabs):
             if max(first.low, second.low) - min(first.high, second.high) < axial - TOUCHING:
                 search.run((first.region, second.region))
@@ -209,9 +185,8 @@ class _Cells(NamedTuple):
 class _Search:
     """The least of D of two bodies: what has been found and proved so far, over one pair of slabs after another."""
 
-    def __init__(self, one: Mover, other: Mover, wanted: Allowed, accuracy: float, share: float) -> None:
-        self.one, self.other, self.wanted = one, other, wanted
-        self.accuracy, self.share = accuracy, share
+    def __init__(self, one: Mover, other: Mover, accuracy: float) -> None:
+        self.one, self.other, self.accuracy = one, other, accuracy
         self.slack = one.slack + other.slack
         self.least, self.at, self.place = math.inf, 0.0, (math.nan, math.nan)
         self.proved = math.inf
@@ -222,8 +197,7 @@ class _Search:
         """How far below the least found the bound may stay."""
         if math.isinf(self.least):
             return 0.0
-        over = self.share * abs(self.least - self.wanted.gap)
-        return max(self.accuracy, over, -2.5 * DEPTH_SHARE * self.least)
+        return max(self.accuracy, SHARE * abs(self.least), -2.5 * DEPTH_SHARE * self.least)
 
     def run(self, regions: tuple[Region, Region]) -> None:
         """Search the turn for one pair of slabs."""
@@ -256,10 +230,7 @@ class _Search:
 
     def _open(self, lower: Array) -> Mask:
         """Which intervals may still hold a lesser D, by their bounds (m,); those of the others are kept."""
-        enough = self.least - self.margin
-        if self.wanted.tolerance > 0.0:
-            enough = min(enough, self.wanted.gap - self.wanted.tolerance + self.slack)
-        open_: Mask = lower < enough
+        open_: Mask = lower < self.least - self.margin
         self.proved = min(self.proved, float(lower[~open_].min(initial=math.inf)))
         return open_
 
@@ -318,8 +289,6 @@ class _Search:
             place=self.place,
             proved=min(self.proved, self.least),
             slack=self.slack,
-            required=self.wanted.gap,
-            tolerance=self.wanted.tolerance,
             evaluations=self.evaluations,
         )
 

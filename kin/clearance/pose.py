@@ -16,16 +16,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.elementary import BallJet, Jet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from kin.numeric.arrays import Array, Indices
 
-    Coordinate = Jet | BallJet | float
-
-__all__ = ["Course", "Formula", "Motion", "Sampled", "Still", "Turning", "alike"]
+__all__ = ["Course", "Motion", "Sampled", "Still", "Turning", "alike"]
 
 FEWEST = 8  # samples of a turn, below which an interpolation says nothing
 CLOSED = 1e-6  # mm and rad, by which the last sample may miss the first, whole turns apart
@@ -84,39 +79,6 @@ class Turning:
         pose = np.stack([np.full_like(phi, self.x), np.full_like(phi, self.y), self.angle + self.rate * phi], axis=1)
         rate = np.broadcast_to(np.array([0.0, 0.0, self.rate]), pose.shape)
         return Course(pose, rate, np.zeros_like(pose))
-
-
-@dataclass(frozen=True, eq=False)
-class Formula:
-    """A motion by formulas: x, y and angle of the shaft angle, written with the functions of `kin.numeric.elementary`.
-
-    `function` is called with a `Jet` and with a `BallJet` of the shaft angle; what it returns may be plain numbers
-    where nothing moves. Its rates are enclosed by ball arithmetic.
-    """
-
-    function: Callable[[Jet | BallJet], tuple[Coordinate, Coordinate, Coordinate]]
-
-    slack = (0.0, 0.0)
-
-    def over(self, phi: Array, half: Array) -> Course:
-        """Give the course over intervals; ValueError where the rates cannot be bounded."""
-        point, stretch = Jet.variable(phi, 0), BallJet.variable(phi - half, phi + half, 1)
-        columns = [c if isinstance(c, Jet) else point.constant(_number(c)) for c in self.function(point)]
-        bounds = [
-            (c if isinstance(c, BallJet) else stretch.constant(_number(c))).bounds() for c in self.function(stretch)
-        ]
-        low, high = (np.stack([b[side][1] for b in bounds], axis=1) for side in (0, 1))
-        if not (np.isfinite(low).all() and np.isfinite(high).all()):
-            raise ValueError(
-                "the rates of a motion cannot be bounded over an interval: its formula may have a pole there"
-            )
-        return Course(np.stack([c.c[0] for c in columns], axis=1), 0.5 * (low + high), 0.5 * (high - low))
-
-
-def _number(value: Coordinate) -> float:
-    if isinstance(value, (Jet, BallJet)):
-        raise TypeError("a coordinate of a motion is of another kind than its argument")
-    return float(value)
 
 
 @dataclass(frozen=True, eq=False)

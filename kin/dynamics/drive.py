@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from kin.numeric.errors import KinError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.follower.drive import Excitation
     from kin.numeric.arrays import Array, Indices
 
 
@@ -33,24 +34,6 @@ _GAIN = 0.1  # a halving that leaves more of the last coefficients than this has
 _MOST_HALVINGS = 18
 _MOST_STRETCHES = 200_000
 _CLOSE = 1e-9  # rad: breaks that are closer are one
-
-
-class Motion(Protocol):
-    """A position over the shaft angle, of period one turn, smooth between `breaks` (radians, any order)."""
-
-    @property
-    def breaks(self) -> Array:
-        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi)."""
-        ...
-
-    @property
-    def corners(self) -> Array:
-        """Those of the breaks at which the velocity may jump; at all others its two limits are one."""
-        ...
-
-    def rows(self, phi: Array) -> Array:
-        """Position and two derivatives by the shaft angle, (3, n), at angles phi (n,) that are no breaks."""
-        ...
 
 
 class DriveError(KinError, ValueError):
@@ -118,7 +101,9 @@ class Drive:
         return Drive(self.knots, *rows)
 
 
-def drives(motions: Sequence[Motion], also: Sequence[float] | Array = (), tolerance: float = TOLERANCE) -> list[Drive]:
+def drives(
+    motions: Sequence[Excitation], also: Sequence[float] | Array = (), tolerance: float = TOLERANCE
+) -> list[Drive]:
     """Fit motions on common knots: all their breaks, the angles `also`, and what the tolerance needs in between.
 
     Stretches are halved until the last coefficients of every acceleration are below AIM times the greatest in its
@@ -165,14 +150,14 @@ def drives(motions: Sequence[Motion], also: Sequence[float] | Array = (), tolera
     ]
 
 
-def _jumps(knots: Array, velocity: Array, motion: Motion) -> Array:
-    """Leap of the velocity at the start of each stretch (m,): 0 but for the motion's corners."""
-    corners = np.sort(np.mod(motion.corners, TURN))
-    if not len(corners):
+def _jumps(knots: Array, velocity: Array, motion: Excitation) -> Array:
+    """Leap of the velocity at the start of each stretch (m,): 0 but at breaks of a motion that is not smooth."""
+    breaks = np.sort(np.mod(motion.breaks, TURN))
+    if motion.smooth or not len(breaks):
         return np.zeros(len(velocity))
     at = knots[:-1]
-    after = np.searchsorted(corners, at) % len(corners)
-    apart = np.stack([corners[after] - at, at - corners[after - 1]])
+    after = np.searchsorted(breaks, at) % len(breaks)
+    apart = np.stack([breaks[after] - at, at - breaks[after - 1]])
     apart = np.abs(apart - TURN * np.round(apart / TURN)).min(axis=0)
     leap: Array = velocity @ AT_START - np.roll(velocity.sum(axis=1), 1)
     return np.where(apart <= _CLOSE, leap, 0.0)

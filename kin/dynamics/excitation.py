@@ -8,17 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.dynamics.drive import Motion
     from kin.follower.base import Follower
+    from kin.follower.drive import Excitation
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array
 
@@ -26,28 +24,24 @@ if TYPE_CHECKING:
 class Faces(NamedTuple):
     """What holds a follower: `lower` pushes it up; `upper` keeps it below, or is None where a spring does."""
 
-    lower: Motion
-    upper: Motion | None
+    lower: Excitation
+    upper: Excitation | None
 
 
 @dataclass(frozen=True, eq=False)
 class Intended:
-    """The intended motion of a follower, which has no corners."""
+    """The intended motion of a follower, which is smooth."""
 
     follower: Follower
+    smooth: ClassVar[bool] = True
 
     @property
     def breaks(self) -> Array:
         """Jumps of the acceleration or of its derivatives."""
         return self.follower.motion.breaks
 
-    @property
-    def corners(self) -> Array:
-        """None."""
-        return np.empty(0)
-
     def rows(self, phi: Array) -> Array:
-        """See `kin.dynamics.drive.Motion`."""
+        """See `kin.follower.drive.Excitation`."""
         return self.follower.si * self.follower.motion.derivatives(phi, 2)
 
 
@@ -56,6 +50,7 @@ class OfMechanism:
     """The intended output of a mechanism over its shaft angle."""
 
     mechanism: Mechanism
+    smooth: ClassVar[bool] = True
 
     @property
     def _unit(self) -> float:
@@ -67,13 +62,8 @@ class OfMechanism:
         shaft: Array = self.mechanism.at(self.mechanism.breaks, 0).shaft[0]
         return shaft
 
-    @property
-    def corners(self) -> Array:
-        """None."""
-        return np.empty(0)
-
     def rows(self, phi: Array) -> Array:
-        """See `kin.dynamics.drive.Motion`."""
+        """See `kin.follower.drive.Excitation`."""
         at = self.mechanism.at(self.mechanism.relative(phi), 2)
         rows: Array = self._unit * at.over_shaft(at.output)
         return rows
@@ -84,7 +74,7 @@ def intended_faces(follower: Follower, play: float | None) -> Faces:
 
     Play is in metres or radians. With a spring a double follower rests on its first face or roller.
     """
-    motion: Motion = Intended(follower)
+    motion: Excitation = Intended(follower)
     if play is None:
         first = follower.contacts[0].sense
         return Faces(motion if first > 0 else Shifted(motion, -1.0), None)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kin.contour.contour import Contour
-    from kin.follower.drive import Drive
+    from kin.follower.drive import Excitation
     from kin.follower.envelope import Envelope
     from kin.follower.motion_error import Judged, Play
     from kin.follower.tracking import Law
@@ -136,11 +136,7 @@ class Follower(ABC):
         return math.inf
 
     @abstractmethod
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, mm or radians, on the contour as it lies: (n,), or (2, n) with each of two contacts resting."""
-
-    @abstractmethod
-    def drives(self, contour: Contour) -> Sequence[Drive]:
+    def drives(self, contour: Contour) -> Sequence[Excitation]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
 
     def resting(self, contour: Contour) -> list[Shifted]:

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
-from kin.follower.drive import OfArmFace
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
@@ -131,6 +130,29 @@ class ArmFace:
         return swing
 
 
+@dataclass(frozen=True, eq=False)
+class OfArmFace:
+    """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
+
+    face: ArmFace
+    bearing: Bearing
+    datum: float
+    smooth: ClassVar[bool] = False
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Where the contact passes from piece to piece."""
+        return np.mod(self.face.starts(self.bearing), TURN)
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        rows = self.face.touch(self.bearing, phi)
+        rows[0] += self.face.side * self.datum - phi
+        rows[1] -= 1.0
+        away: Array = self.face.side * rows
+        return away
+
+
 class _OnArm(Moved):
     """Flat faces on arms about one pivot.
 
@@ -168,12 +190,6 @@ class _OnArm(Moved):
         for face in self.faces:
             bearing = face.bearing(contour)
         return bearing
-
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, radians: (n,), or (2, n) with either face resting. ContactError if that reaches the pivot."""
-        bearing = self.bearing(contour)
-        position = np.stack([self._rows(bearing, i, phi)[0] for i in range(len(self.faces))])
-        return position if len(position) > 1 else position[0]
 
     def drives(self, contour: Contour) -> list[OfArmFace]:
         """Swing of each face away from the cam, as it rests on the contour. ContactError if that reaches the pivot."""

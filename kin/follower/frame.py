@@ -321,15 +321,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
 def _plays(centred: Resting) -> tuple[Play, Play]:
     """Play across and along the frame: one figure of the contour, a quarter turn on."""
     bearing, breadth = centred.bearing, centred.mechanism.breadth
-    nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
-    near, near_low, near_high = bearing.between(nodes)
-    far, far_low, far_high = bearing.between(nodes, np.pi)
-
-    def width(theta: Array, of: Indices) -> Array:
-        return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
-
-    resolution = RESOLUTION * breadth
-    found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, width, resolution=resolution)
+    found = bearing.breadth_extremes(RESOLUTION * breadth)
 
     def play(turned: float) -> Play:
         least, most = (degrees(centred.shaft_at(at - turned)) for at in (found.greatest_at, found.least_at))

@@ -12,7 +12,7 @@ from kin.contour.arcs import cross, dot, right
 from kin.follower.motion_error import ContactError
 from kin.follower.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
 from kin.numeric.angles import TURN
-from kin.numeric.jet import Jet
+from kin.numeric.jet import Jet, derivatives_by
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -114,10 +114,7 @@ class Swing:
         """Swing and two derivatives at shaft angles phi (n,), (3, n); at a break those of either side."""
         tau, side = self._parameter.at(phi)
         shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
-        p = [psi.c[0]]
-        for order in (2, 1, 0):
-            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1])
-            p.append(psi.c[0])
+        p = [row.c[0] for row in derivatives_by(psi, shaft)]
         h = np.mod(phi - shaft.c[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of third order
         rows = np.stack([p[0] + h * (p[1] + 0.5 * h * p[2]), p[1] + h * (p[2] + 0.5 * h * p[3]), p[2] + h * p[3]])
         far = np.abs(h) > NEAR

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.numeric.jet import BallJet
+from kin.numeric.jet import BallJet, derivatives_by
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -89,11 +89,7 @@ def steepness_of_transmission(transmission: Transmission) -> Steepness:
     """Bounds of psi over the shaft angle, which rises with the parameter of the law."""
     edges, at_knot = _cells(transmission.psi.knots)
     shaft, psi = transmission.jets(BallJet.variable(edges[:-1], edges[1:], 3))
-    rate, most = shaft.derivative(), []
-    for _ in range(3):
-        psi = psi.derivative()
-        psi = psi / BallJet.of(rate.rows[: psi.order + 1])
-        most.append(psi.rows[0].magnitude)
+    most = [row.rows[0].magnitude for row in derivatives_by(psi, shaft)[1:]]
     phi = transmission.at(edges, 0)[0][0]
     phi[-1] = phi[0] + 2.0 * transmission.delta
     jumps = np.abs(transmission.psi_of_shaft(phi[:-1], 2) - transmission.psi_of_shaft(phi[:-1], 2, -1))

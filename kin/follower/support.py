@@ -17,11 +17,13 @@ from kin.contour.contour import ARC, BEZIER, LINE
 from kin.numeric.angles import TURN
 from kin.numeric.bernstein import values
 from kin.numeric.distinct import distinct
+from kin.numeric.extrema import extremes
 
 if TYPE_CHECKING:
     from kin.contour.bezier import Beziers
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Indices
+    from kin.numeric.extrema import Extremes
 
 ROUNDED = 1e-12  # rad: normals this close to 2 pi may be those of edges in one line with one at 0
 NEAR_CENTRE = 20.0  # of the extent; a point found from a centre farther away would lose too much to rounding
@@ -65,6 +67,17 @@ class Bearing:
         stretch = self.find(0.5 * (low + high))
         u = unit(nodes + turned)
         return stretch, self._rows(low, stretch, u[:-1]), self._rows(high, stretch, u[1:])
+
+    def breadth_extremes(self, resolution: float) -> Extremes:
+        """Extremes of the breadth q(theta) + q(theta + pi), over theta from 0 to pi, mm, to a resolution."""
+        nodes = self.nodes(0.0, np.pi, np.mod(self.breaks - np.pi, TURN))
+        near, near_low, near_high = self.between(nodes)
+        far, far_low, far_high = self.between(nodes, np.pi)
+
+        def breadth(theta: Array, of: Indices) -> Array:
+            return self.derivatives(theta, near[of]) + self.derivatives(theta + np.pi, far[of])
+
+        return extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, breadth, resolution=resolution)
 
     def _contact(self, theta: Array, stretch: Indices, u: Array) -> tuple[Array, Array]:
         x = self.point[stretch]

@@ -97,11 +97,6 @@ class Held:
         """Position (n,), mm or radians."""
         return self.guide.position(self.r)
 
-    def errors(self, law: Law) -> Array:
-        """Errors of position (n,)."""
-        errors: Array = self.position - self.meant(law.rows(self.phi))[0]
-        return errors
-
     def meant(self, rows: Array) -> Array:
         """Intended position and its derivatives (m, n) from the law's."""
         meant = self.sense * rows

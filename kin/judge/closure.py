@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.contour import Contour
-    from kin.follower.drive import Drive
+    from kin.follower.drive import Excitation
     from kin.follower.follower import Follower
     from kin.judge.intent import ClosureIntent, Limits, SurfaceIntent
     from kin.numeric.arrays import Array, Indices
@@ -98,7 +98,7 @@ def _judged(
     return ClosureVerdict(closure.pushes, closure.stops, between, play), checks
 
 
-def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Drive:
+def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Excitation:
     """Position of the follower, metres or radians, as it rests on a surface."""
     (rest,) = follower.resting(contour)
     contact = surface.contact
@@ -107,7 +107,7 @@ def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Driv
     return Shifted(rest, float(contact.sense), -contact.sense * follower.si * contact.zero, contact.turned)
 
 
-def _play(pushed: Drive, stopped: Drive, gauge: Follower, size: float) -> Play:
+def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:
     """How far one drive is beyond the other over the turn, mm or degrees: least and greatest."""
     ends = np.concatenate([pushed.breaks, stopped.breaks, np.arange(LEAST) * TURN / LEAST])
     ends = distinct(np.mod(ends, TURN))

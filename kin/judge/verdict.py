@@ -34,6 +34,16 @@ class SurfaceVerdict:
     pieces: int | None = None
     linkage: LinkageVerdict | None = None
 
+    @property
+    def perimeter(self) -> float | None:
+        """Length of the contour, mm."""
+        return None if self.contour is None else self.contour.length
+
+    @property
+    def area(self) -> float | None:
+        """Area that the contour encloses, mm^2."""
+        return None if self.contour is None else abs(self.contour.area)
+
 
 UNREAD = SurfaceVerdict()
 
@@ -76,12 +86,12 @@ class OfSurfaces:
     @property
     def perimeter(self) -> float | None:
         """Length of the contour, mm."""
-        return None if self.contour is None else self.contour.length
+        return self.surface.perimeter
 
     @property
     def area(self) -> float | None:
         """Area that the contour encloses, mm^2."""
-        return None if self.contour is None else abs(self.contour.area)
+        return self.surface.area
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,9 @@ from kin.law.segment import Constant, Series, Stretch
 from kin.law.sources.motion import Motion, joined
 from kin.numeric.angles import TURN
 from kin.numeric.elementary import Ball, BallJet, DomainError, Jet, asin, cos, sin
+from kin.numeric.jet import derivatives_by
 from kin.numeric.newton import zeros
-from kin.numeric.taylor import compose, compose_balls
+from kin.numeric.taylor import compose, compose_balls, factorials
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -165,13 +166,8 @@ class _Lifted:
     def _ball_rows(self, lower: Array, upper: Array, order: int) -> Ball:
         at = BallJet.variable(self._shaft_beyond(lower, -1.0), self._shaft_beyond(upper, 1.0), order)
         moved = self.function(at)
-        found, rate = self._lift(moved), (at - moved).derivative() if order else None
-        rows, factorial = [found.rows[0]], 1.0
-        for k in range(1, order + 1):
-            assert rate is not None
-            found = found.derivative() / BallJet.of(rate.rows[: order + 1 - k])
-            factorial *= k
-            rows.append(found.rows[0] * (1.0 / factorial))
+        rows = [row.rows[0] for row in derivatives_by(self._lift(moved), at - moved)]
+        rows[1:] = [row * (1.0 / math.factorial(k)) for k, row in enumerate(rows[1:], 1)]
         return Ball(np.stack([row.mid for row in rows]), np.stack([row.rad for row in rows]))
 
     def _shaft(self, theta: Array) -> Array:
@@ -207,14 +203,8 @@ class _Lifted:
 
 def _by(f: Jet, parameter: Jet) -> Array:
     """Taylor coefficients (order + 1, n) of f by another parameter, both given as jets over one."""
-    rows, rate, factorial = [f.c[0]], parameter, 1.0
-    if f.order:
-        rate = parameter.derivative()
-    for k in range(1, parameter.order + 1):
-        f = f.derivative() / Jet(rate.c[: parameter.order + 1 - k])
-        factorial *= k
-        rows.append(f.c[0] / factorial)
-    return np.stack(rows)
+    rows: Array = np.stack([row.c[0] for row in derivatives_by(f, parameter)]) / factorials(f.order)
+    return rows
 
 
 def span_of(text: str, scale: float) -> float:

@@ -48,8 +48,7 @@ class FromDelta:
         start = -interval.asin(value.rows[0] / self.square)
         if not t.order:
             return BallJet(start.mid[None], start.rad[None])
-        near, far = BallJet.of(near.rows[:-1]), BallJet.of(far.rows[:-1])
-        return (-value.derivative() * near**-0.5 * far**-0.5).integral(start)
+        return (-value.derivative() * near.lower() ** -0.5 * far.lower() ** -0.5).integral(start)
 
     def factors(self, t: Series, value: Series) -> tuple[Series, Series]:
         """Give l^2 - D and l^2 + D; `value` is D."""

@@ -25,6 +25,7 @@ from kin.law.piecewise import Piecewise, Places, Side
 from kin.law.routes import DeltaDistance, FromDelta, FromExpression, FromLeaf
 from kin.law.segment import Affine, Constant, Series
 from kin.numeric.elementary import Ball, BallJet, Jet, cos
+from kin.numeric.jet import derivatives_by
 from kin.numeric.newton import zeros
 
 if TYPE_CHECKING:
@@ -192,12 +193,7 @@ class Transmission:
     def _by_shaft(self, tau: Array, order: int, side: int) -> Array:
         """Give psi and its derivatives by phi at parameters tau (n,)."""
         shaft, psi = self.jets(Jet.variable(tau, order), side)
-        out = np.empty((order + 1, len(tau)))
-        out[0] = psi.c[0]
-        for k in range(1, order + 1):
-            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
-            out[k] = psi.c[0]
-        return out
+        return np.stack([row.c[0] for row in derivatives_by(psi, shaft)])
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:

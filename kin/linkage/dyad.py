@@ -51,8 +51,29 @@ class Reached(NamedTuple):
     joint: Place
 
 
+class _Pivoted:
+    """A dyad whose output link turns about the ground pivot G."""
+
+    ground: Point
+
+    def output_link(self, reached: Reached) -> Link:
+        """Return the output link, its origin G."""
+        return rocker(self.ground, reached.output)
+
+    def middle(self, x: Array, y: Array) -> float:
+        """Middle of the range of GP's directions, rad; a path once round G has none that is continuous."""
+        directions = np.unwrap(np.arctan2(y - self.ground[1], x - self.ground[0]))
+        return float(directions.min() + directions.max()) / 2
+
+    def turned(self, x: Array, y: Array) -> float:
+        """Angle by which GP turns round a closed path, rad."""
+        x, y = x - self.ground[0], y - self.ground[1]
+        steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
+        return float(np.sum(steps - 2 * np.pi * np.round(steps / (2 * np.pi))))
+
+
 @dataclass(frozen=True)
-class RRR:
+class RRR(_Pivoted):
     """Bars PQ and QG of the lengths `links`, mm; the output is the angle of GQ.
 
     Open has Q on the left of the line from G to P, crossed on the right. The output link's origin is G, x towards Q.
@@ -86,10 +107,6 @@ class RRR:
         joint = arm.x * along - arm.y * across + self.ground[0], arm.y * along + arm.x * across + self.ground[1]
         return Reached(arm.bearing(about) + gqp.beside * side, joint)
 
-    def output_link(self, reached: Reached) -> Link:
-        """Return the output link, QG."""
-        return rocker(self.ground, reached.output)
-
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
         """P, Q and the pivot G."""
         pins = {"P": point, "Q": reached.joint}
@@ -97,14 +114,6 @@ class RRR:
             **{name: Joint("pin", Link(place, None)) for name, place in pins.items()},
             "G": pivot(self.ground, reached.output),
         }
-
-    def middle(self, x: Array, y: Array) -> float:
-        """Middle of the range of GP's directions, rad."""
-        return _middle(x, y, self.ground)
-
-    def turned(self, x: Array, y: Array) -> float:
-        """Angle by which GP turns, rad."""
-        return _turned(x - self.ground[0], y - self.ground[1])
 
 
 @dataclass(frozen=True)
@@ -166,7 +175,7 @@ class RRP:
 
 
 @dataclass(frozen=True)
-class RPR:
+class RPR(_Pivoted):
     """A block at P in a slotted rocker about G; the output is the direction of the slot, away from G.
 
     The slot's line passes G at the distance `offset`, mm, which is positive where P lies on the left of the line
@@ -197,21 +206,9 @@ class RPR:
         slide = sqrt(with_value(arm.q, square))
         return Reached(arm.bearing(about) - bearing(slide, slide.constant(self.offset), arm.q), (x, y))
 
-    def output_link(self, reached: Reached) -> Link:
-        """Return the slotted rocker."""
-        return rocker(self.ground, reached.output)
-
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
         """P in the slot, and the pivot G."""
         return {"P": Joint("slot", Link(point, reached.output)), "G": pivot(self.ground, reached.output)}
-
-    def middle(self, x: Array, y: Array) -> float:
-        """Middle of the range of GP's directions, rad."""
-        return _middle(x, y, self.ground)
-
-    def turned(self, x: Array, y: Array) -> float:
-        """Angle by which GP turns, rad."""
-        return _turned(x - self.ground[0], y - self.ground[1])
 
 
 Dyad = RRR | RRP | RPR
@@ -237,15 +234,3 @@ def _arm(x: Jet, y: Jet, ground: Point) -> Vector:
 def _square(x_terms: tuple[float | Array, float], y_terms: tuple[float | Array, float]) -> Array:
     square: Array = np.atleast_1d(sum(x_terms) ** 2 + sum(y_terms) ** 2)
     return square
-
-
-def _middle(x: Array, y: Array, ground: Point) -> float:
-    """Middle of the range of directions; a path once round the ground pivot has none that is continuous."""
-    directions = np.unwrap(np.arctan2(y - ground[1], x - ground[0]))
-    return float(directions.min() + directions.max()) / 2
-
-
-def _turned(x: Array, y: Array) -> float:
-    """Angle by which a vector (x, y), (n,) each, turns round a closed path, rad."""
-    steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
-    return float(np.sum(steps - 2 * np.pi * np.round(steps / (2 * np.pi))))

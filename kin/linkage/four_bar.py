@@ -38,7 +38,6 @@ from kin.linkage.loop import (
     demand_mobile,
     excess,
     longer,
-    lower,
     side_of,
     total,
     triangle_margin,
@@ -197,7 +196,7 @@ class InvertedSliderCrank:
         near, far = with_value(s, near_value), with_value(-s, far_value)
         slide = sqrt(near * far) * side
         value = 2 * side * np.arctan2(np.sqrt(near_value), np.sqrt(far_value))
-        output = (s.derivative() / lower(slide)).integral(value) if s.order else Jet(value[None])
+        output = (s.derivative() / slide.lower()).integral(value) if s.order else Jet(value[None])
         joint = near * (r4 / r1) + (r1 - r4), slide * (r4 / r1)
         return Positions(math.pi / 2 - output, output, joint, slide)
 

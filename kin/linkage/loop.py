@@ -152,7 +152,7 @@ class Triangle:
         value = 2 * np.arctan2(np.sqrt(self.near.c[0]), np.sqrt(self.far.c[0]))
         if not self.q.order:
             return Jet(value[None])
-        return (self.q.derivative() / lower(self.root)).integral(value)
+        return (self.q.derivative() / self.root.lower()).integral(value)
 
     @cached_property
     def along(self) -> Jet:
@@ -165,8 +165,8 @@ class Triangle:
         value = np.arctan2(self.root.c[0], self.along.c[0])
         if not self.q.order:
             return Jet(value[None])
-        arm = lower(-self.near + 2 * self.b * (self.a - self.b))
-        return (arm * self.between.derivative() / (2.0 * lower(self.q))).integral(value)
+        arm = (-self.near + 2 * self.b * (self.a - self.b)).lower()
+        return (arm * self.between.derivative() / (2.0 * self.q.lower())).integral(value)
 
 
 def triangle_margin(a: float, b: float, q: Array, near: Array, far: Array) -> Array:
@@ -178,11 +178,6 @@ def triangle_margin(a: float, b: float, q: Array, near: Array, far: Array) -> Ar
     return margin
 
 
-def lower(jet: Jet) -> Jet:
-    """Return the jet to one order less."""
-    return Jet(jet.c[:-1])
-
-
 def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:
     """Polar angle of the vector (x, y) of squared length q, within pi of `about`."""
     value = np.arctan2(y.c[0], x.c[0])
@@ -190,7 +185,7 @@ def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:
         value = value - 2 * np.pi * np.round((value - about) / (2 * np.pi))
     if not x.order:
         return Jet(value[None])
-    return ((lower(x) * y.derivative() - lower(y) * x.derivative()) / lower(q)).integral(value)
+    return ((x.lower() * y.derivative() - y.lower() * x.derivative()) / q.lower()).integral(value)
 
 
 def longer(q: Array, square: Array, offset: float) -> Array:

@@ -23,6 +23,7 @@ from kin.linkage.mobility import Mobility, mobility
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
+from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Dwell, dwells
 from kin.numeric.monotone import between, cells, pieces
 from kin.numeric.newton import zeros
@@ -113,14 +114,7 @@ class Motion:
     def over_shaft(self, row: Array) -> Array:
         """Derivatives by the shaft angle, of what has the derivatives `row` (order + 1, n) by theta."""
         scale = factorials(len(row) - 1)
-        f, rate = Jet(row / scale), Jet(self.shaft[: len(row)] / scale)
-        found = [f.c[0]]
-        if len(row) > 1:
-            rate = rate.derivative()
-        while f.order > 0:
-            f = f.derivative() / Jet(rate.c[: f.order])
-            found.append(f.c[0])
-        return np.stack(found)
+        return np.stack([f.c[0] for f in derivatives_by(Jet(row / scale), Jet(self.shaft[: len(row)] / scale))])
 
 
 @dataclass(frozen=True, eq=False)

@@ -173,13 +173,13 @@ def atan2(y: Number, x: Number) -> Number:
         value = np.arctan2(y.c[0], x.c[0])
         if not y.order:
             return Jet(value[None])
-        a, b = Jet(y.c[:-1]), Jet(x.c[:-1])
+        a, b = y.lower(), x.lower()
         return ((b * y.derivative() - a * x.derivative()) / (a * a + b * b)).integral(value)
     if isinstance(y, BallJet) and isinstance(x, BallJet):
         angle = interval.atan2(y.rows[0], x.rows[0])
         if not y.order:
             return BallJet.of(Ball(angle.mid[None], angle.rad[None]))
-        p, q = BallJet.of(y.rows[:-1]), BallJet.of(x.rows[:-1])
+        p, q = y.lower(), x.lower()
         found = ((q * y.derivative() - p * x.derivative()) / (p**2 + q**2)).integral(angle)
         clear = x.rows[0].positive | y.rows[0].positive | y.rows[0].negative
         return _where(clear, found, _known_to(0, found, angle))

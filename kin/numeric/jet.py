@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import numpy as np
 
@@ -95,6 +95,10 @@ class Jet:
     def derivative(self) -> Jet:
         """Return the derivative, one order less."""
         return Jet(self.c[1:] * np.arange(1.0, self.order + 1)[:, None])
+
+    def lower(self) -> Jet:
+        """Return the jet to one order less."""
+        return Jet(self.c[:-1])
 
     def integral(self, start: float | Array) -> Jet:
         """Return the primitive that takes the value start (n,), one order more."""
@@ -212,6 +216,10 @@ class BallJet:
         """Return the derivative, one order less."""
         return BallJet.of(self.rows[1:] * Ball.exact(np.arange(1.0, self.order + 1)[:, None]))
 
+    def lower(self) -> BallJet:
+        """Return the jet to one order less."""
+        return BallJet.of(self.rows[:-1])
+
     def integral(self, start: Ball) -> BallJet:
         """Return the primitive that takes the value start (n,), one order more."""
         rows = self.rows / np.arange(1.0, self.order + 2)[:, None]
@@ -259,3 +267,18 @@ class BallJet:
 
     def __rpow__(self, base: Ball | float) -> BallJet:
         return self.constant(base) ** self
+
+
+Series = TypeVar("Series", Jet, BallJet)
+
+
+def derivatives_by(f: Series, parameter: Series) -> list[Series]:
+    """F and its derivatives by another function of the same variable: series of f's order, one less, and so on to 0."""
+    found = [f]
+    if f.order:
+        rate = parameter.derivative()
+    while f.order:
+        f = f.derivative() / rate
+        rate = rate.lower()
+        found.append(f)
+    return found

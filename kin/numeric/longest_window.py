@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -127,28 +128,10 @@ class _Windows(NamedTuple):
     upper: Flags
 
     def take(self, which: Flags | Indices) -> _Windows:
-        return _Windows(
-            self.a[which],
-            self.b[which],
-            self.first[which],
-            self.last[which],
-            self.rises[which],
-            self.leaves_up[which],
-            self.anchor[which],
-            self.upper[which],
-        )
+        return _Windows(*map(itemgetter(which), self))
 
     def joined(self, other: _Windows) -> _Windows:
-        return _Windows(
-            np.concatenate([self.a, other.a]),
-            np.concatenate([self.b, other.b]),
-            np.concatenate([self.first, other.first]),
-            np.concatenate([self.last, other.last]),
-            np.concatenate([self.rises, other.rises]),
-            np.concatenate([self.leaves_up, other.leaves_up]),
-            np.concatenate([self.anchor, other.anchor]),
-            np.concatenate([self.upper, other.upper]),
-        )
+        return _Windows(*(np.concatenate(columns) for columns in zip(self, other, strict=True)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -378,7 +378,7 @@ def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: 
     clearance, off = 0.2, 0.01
     sizes = sizes_of(MechanismAsked(clearance=clearance), 26.0, 10.0, None)
     shaft = shaft_of(recipe.part, sizes)
-    body = designed(recipe).body
+    body = designed(recipe).discs[0].body
     assert body is not None
     opening = body.openings[0]
     assert turns_in(shaft.drive, opening.outline, 0.5 * clearance) is not held
@@ -524,10 +524,10 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
         text = text.replace("ground: 80", "ground: 150").replace("rocker: 105", "rocker: 150")
     recipe = load_text(text, "set.yaml")
     design = designed(recipe)
-    assert design.contour is not None
+    assert design.only_surface.contour is not None
     assert design.driven is None or design.driven.turns, "the mechanism must turn"
     with pytest.raises(BodyError, match=part) as caught:
-        assembly_of(recipe, design, fit_arcs(design.contour, 0.05))
+        assembly_of(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
     assert caught.value.field == field
 
 

@@ -66,7 +66,7 @@ HEART = (
 
 def test_a_knife_edge_goes_into_hollows(tmp_path):
     made = recipe(HEART, "{kind: knife-edge}", tmp_path)
-    assert designed(made).surface.curve.cells.rows[3].min() < 0.0  # somewhere the tangent turns back
+    assert designed(made).only_surface.surface.curve.cells.rows[3].min() < 0.0  # somewhere the tangent turns back
     assert pipeline.check(made).ok
 
 

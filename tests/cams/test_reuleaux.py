@@ -186,7 +186,7 @@ def test_corners_are_no_exact_spline(tmp_path):
 
 
 def test_the_cutter_swings_about_the_corners_either_way():
-    contour = designed(recipe_of(FIVE)).contour
+    contour = designed(recipe_of(FIVE)).only_surface.contour
     path = cutter_path(contour, 3.0)
     assert path.curve.closed
     assert path.lost == ()
@@ -288,7 +288,7 @@ def test_a_rounding_in_place_of_a_corner_is_seen():
     """By 0.002 mm: it takes 0.0003 mm off a corner of 120 degrees."""
     recipe = recipe_of(TRIANGLE)
     intent = intended(recipe, designed(recipe))
-    other = designed(recipe_of(TRIANGLE.replace("50}", "50, rounding: 0.002}"))).contour
+    other = designed(recipe_of(TRIANGLE.replace("50}", "50, rounding: 0.002}"))).only_surface.contour
     made = fit_arcs(other, 1e-9)
     found = findings(Contour.from_bulges(made.points, made.bulges), intent, PHI, permitted(recipe, 1e-4))
     assert not next(check for check in found.checks if check.name == "motion").ok

@@ -188,7 +188,7 @@ def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     for name in ("pressure-angle", "velocity-ratio"):
         assert values[name] == checks[name]
     assert values["backlash"] == pytest.approx(checks["form-closure"], rel=1e-9)
-    profile = designed(loaded(ROLLER)).surface
+    profile = designed(loaded(ROLLER)).only_surface.surface
     at = profile.curve.sample(np.linspace(0, profile.curve.shape.period, 40_001)[:-1])
     radii = at.speed / at.turn
     assert values["hollow-radius"] == pytest.approx(-radii[radii < 0].max(), rel=1e-4)

@@ -8,6 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "docs")]  # where pytest has the one, and the scripts the other
 
+import aygahoglu_rows  # noqa: E402
 import shu_wu_rows  # noqa: E402
 import wunderlich_rows  # noqa: E402
 from support.page_tables import HEAD, PAPER_HEAD, PaperRow, write  # noqa: E402
@@ -18,6 +19,7 @@ TABLES = {
     ("constant-breadth.md", "extremes of the motion"): shu_wu_rows.motion_extremes,
     ("constant-breadth.md", "extremes of the radius of curvature"): shu_wu_rows.radius_extremes,
     ("double-roller.md", "wunderlich"): wunderlich_rows.figures,
+    ("validation.md", "paper AS"): aygahoglu_rows.paper,
     ("validation.md", "paper SW"): shu_wu_rows.paper,
     ("validation.md", "paper W"): wunderlich_rows.paper,
 }

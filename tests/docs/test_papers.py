@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 from importlib import import_module
 
+import numpy as np
 import paper_pages
 import pytest
 from support.page_tables import PaperRow, Row, cells, off
@@ -18,7 +19,11 @@ import camgeo
 DOCS = ROOT / "docs"
 FIGURES = DOCS / "figures"
 # what draws, and the page that shows it
-SCRIPTS = {"make_constant_breadth": "constant-breadth.md", "make_double_roller": "double-roller.md"}
+SCRIPTS = {
+    "make_constant_breadth": "constant-breadth.md",
+    "make_double_roller": "double-roller.md",
+    "make_yoke_pictures": "linkages.md",
+}
 WORDS = {"double-roller.md": 1}  # tables without figures
 NINE = [str(k) for k in range(1, 10)]
 
@@ -36,6 +41,10 @@ def measured(page: str, mark: str) -> list[Row]:
 
 # numbers of each paper's equations, and of its figures
 EQUATIONS = {
+    "paper AS": (
+        [str(k) for k in range(1, 35)],
+        ["1", "2a", "2b", "2c", "2d", *(str(k) for k in range(3, 16))],
+    ),
     "paper SW": ([str(k) for k in range(1, 33)], ["1", "2a", "2b", "2c", "2d", "3", "4"]),
     "paper W": (numbered("2", 2) + numbered("4", 10) + numbered("5", 11) + numbered("6", 5) + numbered("7", 2), NINE),
 }
@@ -84,6 +93,20 @@ def test_what_excludes_a_ratio_or_a_swing_is_said() -> None:
     for ratio, wave, word in (("5/2", 100, "odd"), ("4/3", 3601, "l^2")):
         with pytest.raises(camgeo.CamgeoError, match=re.escape(word)):
             camgeo.design(camgeo.load(cam.format(ratio, wave)))
+
+
+def test_a_swing_over_the_shaft_needs_a_frame_that_alone_places_the_output() -> None:
+    """Of the inverted slider-crank and the oscillating yoke: the others tie S to S1."""
+    cam = (
+        "cam: {{kind: constant-breadth, base_radius: 40, swing: [{{rise: 20, over: 140, law: modified-sine}}, "
+        "{{dwell: 60}}]}}\nlinkage: {}\n"
+    )
+    design = camgeo.design(camgeo.load(cam.format("{kind: inverted-slider-crank, ground: 80, rocker: 0}")))
+    assert design.unit == "rad"
+    assert np.ptp(design.motion(np.linspace(0.0, 6.28, 100))) == pytest.approx(np.radians(20.0), abs=1e-3)
+    for linkage in ("{kind: four-bar, ground: 80, coupler: 70, rocker: 105}", "{kind: slider-crank, coupler: 90}"):
+        with pytest.raises(camgeo.RecipeErrors, match="inverted-slider-crank"):
+            camgeo.load(cam.format(linkage))
 
 
 def drawn(text: str) -> list[tuple[str, str, list[float]]]:

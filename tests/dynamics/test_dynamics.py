@@ -214,7 +214,8 @@ def test_nothing_depends_on_the_stiffness_but_what_should():
 class Cusp:
     """|sin|^1.5, whose acceleration has no bound at a place that is not declared."""
 
-    breaks = corners = np.empty(0)
+    breaks = np.empty(0)
+    smooth = True
 
     def rows(self, phi):
         w = np.sin(phi - 1.0)

@@ -13,9 +13,10 @@ from kin.dynamics.drive import drives
 from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
-from kin.follower.drive import OfFace, OfRoller
+from kin.follower.flat import OfFace
 from kin.follower.follower import DoubleRoller
 from kin.follower.guide import Arm, Line
+from kin.follower.roller import OfRoller
 from kin.follower.support import bearing_of
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -122,7 +123,7 @@ def test_opposite_rollers_hold_a_frame_from_both_sides():
     assert upper is not None
     consistent(lower, step=1e-5)
     consistent(upper, step=1e-5)
-    near, below = follower.contact(contour, PHI)
+    near, below = followers.resting(follower, contour, PHI)
     assert lower.rows(PHI)[0] == pytest.approx(1e-3 * near, abs=1e-15)
     assert upper.rows(PHI)[0] == pytest.approx(1e-3 * below + 2e-5, abs=1e-15)
     exact = intended_faces(follower, 2e-5)

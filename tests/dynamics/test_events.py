@@ -29,7 +29,8 @@ TURN = 2.0 * math.pi
 class Still:
     """A face that does not move."""
 
-    breaks = corners = np.empty(0)
+    breaks = np.empty(0)
+    smooth = True
 
     def __init__(self, position=0.0):
         self.position = position

@@ -153,7 +153,7 @@ def refused(cam, **kw):
 def off_profile(asked, oracle, angles=ANGLES):
     """Greatest error of points and radii of curvature as a share of the size, and of normals: against 50 digits."""
     with in_time():
-        curve = designed(asked).surface.curve
+        curve = designed(asked).only_surface.surface.curve
         at = curve.sample(angles)
     frames = [oracle.frame(t) for t in angles]
     size = curve.size

@@ -332,7 +332,7 @@ def test_a_small_roller_meets_every_corner(radius):
     tau = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
     contour = Contour.from_vertices(RollerEnvelope(pitch, radius).points(tau))
     phi, psi = law.at(tau, 0)
-    found = followers.double_roller(law, radius).contact(contour, phi[0])
+    found = followers.resting(followers.double_roller(law, radius), contour, phi[0])
     assert np.abs(found - psi[0]).max() < 1e-3
     assert np.abs(found[0] - psi[0]).max() < 1e-9 + 1e-2 * radius
 

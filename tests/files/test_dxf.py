@@ -11,10 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import ezdxf
+from support.outlines import bored
 from support.places import TESTS
 from support.splines import closed_spline, periodic_spline
 
 from camgeo.files.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
 
 NONE = Bound(0.0, 0.0)
@@ -54,7 +56,7 @@ def points_of(entity):
 @pytest.mark.parametrize("outline", [POLYGON, ARCS], ids=["polygon", "arcs"])
 def test_one_closed_polyline_with_every_digit(tmp_path, version, outline):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, outline, bore=10.0, reference=REFERENCE, version=version)
+    write_dxf(path, bored(outline, 10.0), reference=REFERENCE, version=version)
     drawing = read(path)
     assert drawing.acad_release == version
     (cut,) = on(drawing, "CUT")
@@ -69,7 +71,7 @@ def test_one_closed_polyline_with_every_digit(tmp_path, version, outline):
 @pytest.mark.parametrize("spline", [closed_spline(), periodic_spline(11, 5)], ids=["clamped", "periodic"])
 def test_spline_by_control_points_and_knots(tmp_path, version, spline):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, spline, version=version)
+    write_dxf(path, bored(spline), version=version)
     drawing = read(path)
     (cut,) = on(drawing, "CUT")
     assert cut.dxftype() == "SPLINE"
@@ -87,9 +89,9 @@ def test_spline_by_control_points_and_knots(tmp_path, version, spline):
 def test_r12_has_no_splines(tmp_path):
     path = tmp_path / "cam.dxf"
     with pytest.raises(ValueError, match="DXF R12 has no splines"):
-        write_dxf(path, closed_spline(), version="R12")
+        write_dxf(path, bored(closed_spline()), version="R12")
     with pytest.raises(ValueError, match="DXF R12 has no splines"):
-        write_dxf(path, ARCS, reference=[Trace("pitch curve", closed_spline())], version="R12")
+        write_dxf(path, bored(ARCS), reference=[Trace("pitch curve", closed_spline())], version="R12")
     assert not path.exists()
 
 
@@ -98,7 +100,7 @@ def test_r12_has_no_splines(tmp_path):
 def test_units_are_stated(tmp_path, version, mm, stated):
     path = tmp_path / "cam.dxf"
     unit, insunits, measurement = stated
-    write_dxf(path, ARCS, bore=12.7, mm=mm, version=version)
+    write_dxf(path, bored(ARCS, 12.7), mm=mm, version=version)
     assert path.read_bytes().startswith(f"999\ncamgeo units: {unit}\n".encode())
     drawing = read(path)
     if version != "R12":
@@ -112,7 +114,7 @@ def test_units_are_stated(tmp_path, version, mm, stated):
 @pytest.mark.parametrize("version", VERSIONS)
 def test_layers_hold_what_they_are_named_for(tmp_path, version):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, ARCS, bore=10.0, reference=REFERENCE, version=version)
+    write_dxf(path, bored(ARCS, 10.0), reference=REFERENCE, version=version)
     drawing = read(path)
     (bore,) = on(drawing, "BORE")
     assert (bore.dxftype(), bore.dxf.radius, bore.dxf.center.xyz) == ("CIRCLE", 5.0, (0.0, 0.0, 0.0))
@@ -129,7 +131,7 @@ def test_layers_hold_what_they_are_named_for(tmp_path, version):
 def test_reference_that_coincides_is_drawn_once_under_all_its_names(tmp_path):
     path = tmp_path / "cam.dxf"
     circles = [Circle(name, (0.0, 0.0), radius) for name, radius in (("prime circle", 9), ("pivots", 9), ("base", 8))]
-    write_dxf(path, ARCS, reference=[*circles, Point("shaft", (0.0, 0.0)), Point("centre", (0.0, 0.0))])
+    write_dxf(path, bored(ARCS), reference=[*circles, Point("shaft", (0.0, 0.0)), Point("centre", (0.0, 0.0))])
     names = [[tag.value for tag in e.get_xdata(APPLICATION)] for e in on(read(path), "REFERENCE")]
     assert names == [["prime circle", "pivots"], ["base"], ["shaft", "centre"]]
 
@@ -146,13 +148,13 @@ def extents(drawing):
 @pytest.mark.parametrize("mm", [1.0, 25.4])
 def test_extents_are_those_of_the_curve(tmp_path, outline, mm):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, outline, mm=mm)
+    write_dxf(path, bored(outline), mm=mm)
     assert extents(read(path)) == tuple(value / mm for value in outline.box())
 
 
 def test_extents_hold_the_reference_too(tmp_path):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, ARCS, reference=[*REFERENCE, Point("follower pivot", (60.0, -1.0))])
+    write_dxf(path, bored(ARCS), reference=[*REFERENCE, Point("follower pivot", (60.0, -1.0))])
     x_min, y_min, _, y_max = REFERENCE[2].outline.box()
     assert extents(read(path)) == (min(x_min, -30.0), min(y_min, -30.0), 60.0, max(y_max, 30.0))
 
@@ -160,7 +162,7 @@ def test_extents_hold_the_reference_too(tmp_path):
 def test_extents_with_a_corner_in_the_origin(tmp_path):
     # ezdxf takes a null vector for "not known"
     path = tmp_path / "cam.dxf"
-    write_dxf(path, Polygon(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]), NONE))
+    write_dxf(path, bored(Polygon(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]), NONE)))
     assert extents(read(path)) == (0.0, 0.0, 4.0, 3.0)
 
 
@@ -169,14 +171,15 @@ import sys
 from pathlib import Path
 sys.path[:0] = sys.argv[2:]
 from test_dxf import ARCS, MODERN, POLYGON, REFERENCE, VERSIONS
+from support.outlines import bored
 from support.splines import closed_spline
 from camgeo.files.dxf import write_dxf
 for version in VERSIONS:
-    write_dxf(Path(sys.argv[1], f"arcs-{version}.dxf"), ARCS, bore=10.0, reference=REFERENCE, version=version,
+    write_dxf(Path(sys.argv[1], f"arcs-{version}.dxf"), bored(ARCS, 10.0), reference=REFERENCE, version=version,
               name="cam", about="W Figure 9")
-    write_dxf(Path(sys.argv[1], f"polygon-{version}.dxf"), POLYGON, mm=25.4, version=version)
+    write_dxf(Path(sys.argv[1], f"polygon-{version}.dxf"), bored(POLYGON), mm=25.4, version=version)
 for version in MODERN:
-    write_dxf(Path(sys.argv[1], f"spline-{version}.dxf"), closed_spline(), version=version)
+    write_dxf(Path(sys.argv[1], f"spline-{version}.dxf"), bored(closed_spline()), version=version)
 """
 
 
@@ -198,7 +201,7 @@ def test_same_bytes_in_any_process_and_time_zone(tmp_path):
 
 def test_comments_are_single_lines_of_any_text(tmp_path):
     path = tmp_path / "cam.dxf"
-    write_dxf(path, ARCS, version="R12", name="cam", about="two\n  0\nEOF\r\nlines \ud800 \u2603 " + "x" * 300)
+    write_dxf(path, bored(ARCS), version="R12", name="cam", about="two\n  0\nEOF\r\nlines \ud800 \u2603 " + "x" * 300)
     lines = path.read_text("cp1252").split("\n")
     assert lines[:6] == ["999", "camgeo units: mm", "999", "cam", "999", lines[5]]
     assert lines[5].startswith("two 0 EOF lines \\U+2603 xxx")
@@ -211,8 +214,8 @@ def test_comments_are_single_lines_of_any_text(tmp_path):
     [
         ({"version": "R14"}, "DXF version must be one of R12, R2000, R2010, R2013, not 'R14'"),
         ({"mm": 10.0}, "a drawing unit must be 1.0 or 25.4 mm, not 10.0"),
-        ({"bore": 0.0}, "bore: radius must be > 0, not 0.0"),
-        ({"bore": float("nan")}, "bore: radius must be > 0, not nan"),
+        ({"more": [LayerOutline("BORE", ARCS, ((0.0, 0.0), 0.0))]}, "BORE: radius must be > 0, not 0.0"),
+        ({"more": [LayerOutline("BORE", ARCS, ((0.0, 0.0), float("nan")))]}, "BORE: radius must be > 0, not nan"),
         ({"reference": [Circle("prime circle", (0.0, 0.0), 0.0)]}, "prime circle: radius must be > 0, not 0.0"),
         (
             {"outline": Polygon(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), NONE)},
@@ -227,13 +230,13 @@ def test_comments_are_single_lines_of_any_text(tmp_path):
 def test_refuses(tmp_path, change, message):
     path = tmp_path / "cam.dxf"
     with pytest.raises(ValueError) as caught:
-        write_dxf(path, change.pop("outline", ARCS), **change)
+        write_dxf(path, [*bored(change.pop("outline", ARCS)), *change.pop("more", [])], **change)
     assert str(caught.value) == message
     assert not path.exists()
 
 
 def test_r12_is_written_without_a_word(tmp_path, caplog, capfd):
-    write_dxf(tmp_path / "cam.dxf", ARCS, version="R12")
+    write_dxf(tmp_path / "cam.dxf", bored(ARCS), version="R12")
     assert not caplog.records
     assert capfd.readouterr() == ("", "")
 
@@ -246,6 +249,6 @@ def test_r12_is_written_without_a_word(tmp_path, caplog, capfd):
 def test_any_double_comes_back(tmp_path_factory, rows, version):
     table = np.array(rows)
     path = tmp_path_factory.mktemp("dxf") / "cam.dxf"
-    write_dxf(path, ArcSpline(table[:, :2].copy(), table[:, 2].copy(), NONE), version=version)
+    write_dxf(path, bored(ArcSpline(table[:, :2].copy(), table[:, 2].copy(), NONE)), version=version)
     (cut,) = on(ezdxf.readfile(path), "CUT")
     assert np.array_equal(points_of(cut), table)

@@ -52,7 +52,7 @@ def test_drawing_has_each_feature_on_its_layer_as_cad_likes_it(tmp_path):
     assert [round(b, 12) != 0 for *_, b in bore.get_points()] == [True, False, False, False]
     assert {e.dxftype() for e in drawn["HOLES"]} == {"CIRCLE"}
     holes = sorted((e.dxf.center.x, e.dxf.center.y, e.dxf.radius) for e in drawn["HOLES"])
-    meant = sorted((*one.circle[0], one.circle[1]) for one in design.body.openings if one.circle)
+    meant = sorted((*one.circle[0], one.circle[1]) for one in design.discs[0].body.openings if one.circle)
     assert np.allclose(holes, meant, rtol=0, atol=1e-12)
     assert len(holes) == 6
     (mark,) = drawn["ENGRAVE"]
@@ -273,7 +273,7 @@ def test_solid_by_trimesh_manifold3d_and_closed_forms(tmp_path, side):
     assert mesh.is_watertight
     assert mesh.is_winding_consistent
     assert mesh.euler_number == 2 - 2 * 5  # bore, three bolts, and the screw's hole
-    assert mesh.bounds[:, 2] == pytest.approx([design.body.bottom, design.body.top])
+    assert mesh.bounds[:, 2] == pytest.approx([design.discs[0].body.bottom, design.discs[0].body.top])
     assert mesh.volume == pytest.approx(expected_volume(side), abs=checks["volume"].limit)
     again = manifold3d.Manifold(manifold3d.Mesh64(np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.uint64)))
     assert again.status() == manifold3d.Error.NoError
@@ -368,7 +368,7 @@ def part_texts(draw):
 def test_a_part_passes_every_check_or_is_refused_by_name(tmp_path, part, rotation):
     recipe = recipe_of(part, more=f"rotation: {rotation}\n")
     design, checks = found(recipe)
-    if design.contour is None:
+    if design.only_surface.contour is None:
         failed = [check for check in checks.values() if not check.ok]
         assert {check.name for check in failed} <= {"wall", "chamfer", "lightening"}
         for check in failed:

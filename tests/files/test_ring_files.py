@@ -9,7 +9,8 @@ from support.parts import files_of, found, recipe_of
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.files.dxf import Circle, Cutout, write_dxf
+from camgeo.files.dxf import write_dxf
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.compensation import compensated
@@ -17,6 +18,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.machining import Compensation
 from camgeo.synthesis.intent import intended
+from camgeo.synthesis.part.shapes import disc
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 
@@ -99,8 +101,9 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     recipe = ring(files="{dxf: {kerf: 0.4}}")
     design, _ = found(recipe)
     made = compensated(recipe, design, Compensation(kerf=0.4), "export.files[0]")
-    assert made.design.surface.base.size == pytest.approx(design.surface.base.size)
-    point, inner = (one.sample(np.linspace(0.0, 6.0, 9)).point for one in (design.contour, made.design.contour))
+    assert made.design.only_surface.surface.base.size == pytest.approx(design.only_surface.surface.base.size)
+    contours = design.only_surface.contour, made.design.only_surface.contour
+    point, inner = (one.sample(np.linspace(0.0, 6.0, 9)).point for one in contours)
     assert np.hypot(*(point - inner).T) == pytest.approx(np.full(9, 0.2))
     path, checks = files_of(recipe, tmp_path)[1]["dxf"]
     outline = max(one.dxf.radius for one in ezdxf.readfile(path).modelspace().query('CIRCLE[layer=="CUT"]'))
@@ -144,9 +147,10 @@ def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")
     design, _ = found(recipe)
     distance, degrees, outer = FAULTS[fault]
-    outline = turned(fit_arcs(Curve.whole(Parallel(design.surface.base.shape, distance)), 2e-5), degrees)
+    outline = turned(fit_arcs(Curve.whole(Parallel(design.only_surface.surface.base.shape, distance)), 2e-5), degrees)
     path = tmp_path / "ring.dxf"
-    write_dxf(path, outline, cutouts=[Cutout("CUT", Circle("outline", (0.0, 0.0), 0.5 * outer))])
+    rim = disc("outline", "CUT", (0.0, 0.0), 0.5 * outer)
+    write_dxf(path, [LayerOutline("CUT", outline), LayerOutline("CUT", rim.outline, rim.circle)])
     verdict = verify(path, intended(recipe, design), 180, Limits(1e-4))
     failed = {check.name for check in verdict.checks if not check.ok}
     assert failed == {

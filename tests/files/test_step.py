@@ -18,13 +18,14 @@ from camgeo.cli.main import main
 from camgeo.files.brep import need_kernel
 from camgeo.files.curves import FLATTEST, misfit
 from camgeo.files.errors import MissingExtraError
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.solid import Solid
 from camgeo.files.step import write_step
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.output import pipeline
 from camgeo.output.job import Job
-from camgeo.output.step import _solid
+from camgeo.output.part_geometry import contours_of, rim_of, solid_of
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -50,7 +51,8 @@ def written(recipe, folder):
     """A file that is not judged."""
     job = Job.of(recipe, designed(recipe))
     path = folder / "part.step"
-    write_step(path, job.outline("arcs", 0.001), _solid(job), tolerance=0.001, name="part")
+    contours = contours_of(job.design, job.outlines("arcs", 0.001))
+    write_step(path, [*rim_of(job.body), *contours], solid_of(job.body), tolerance=0.001, name="part")
     return path
 
 
@@ -128,7 +130,7 @@ def test_every_feature_is_exact_and_is_found(tmp_path):
     _, volume = by_the_kernel(path)
     assert volume == pytest.approx(solid.volume, rel=1e-7)
     found = kinds_in(path)
-    holes = sum(opening.circle is not None for opening in design.body.openings)
+    holes = sum(opening.circle is not None for opening in design.discs[0].body.openings)
     assert holes == 6
     # the contour, its holes, the hub, the bore and the ends of the mark, the set screw
     assert found["CYLINDRICAL_SURFACE"] == solid.pieces + holes + 1 + 1 + 2 + 1
@@ -317,7 +319,12 @@ def test_a_tolerance_below_rounding_is_refused(tmp_path):
     square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
     outline = ArcSpline(square, np.full(4, 1e-7), Bound(1e-12, 1e-12))
     with pytest.raises(ToleranceError, match=r"more than 1e-10 mm: circles of nearly straight arcs"):
-        write_step(tmp_path / "x.step", outline, Solid(5.0, 0.0, 5.0, None, None, [], None), tolerance=1e-10)
+        write_step(
+            tmp_path / "x.step",
+            [LayerOutline("CUT", outline)],
+            Solid(5.0, 0.0, 5.0, None, None, [], None),
+            tolerance=1e-10,
+        )
 
 
 @pytest.mark.slow
@@ -382,7 +389,7 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
     with pytest.raises(MissingExtraError):
         write_step(
             tmp_path / "x.step",
-            ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0)),
+            [LayerOutline("CUT", ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0)))],
             Solid(5.0, 0.0, 5.0, None, None, [], None),
             tolerance=1e-3,
         )

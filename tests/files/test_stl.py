@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import manifold3d, trimesh
+from support.outlines import bored
 
 from camgeo.files import stl
 from camgeo.files.precision import SINGLE
@@ -23,8 +24,8 @@ fit_tolerance, single_precision_bound = SINGLE.fit_tolerance, SINGLE.bound
 RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def write_stl(path, polygon, *, about="", **shape):
-    mesh, facts = extruded(polygon, **shape, precision=SINGLE)
+def write_stl(path, polygon, *, bore=None, about="", **shape):
+    mesh, facts = extruded(bored(polygon, bore), **shape, precision=SINGLE)
     stl.write_stl(path, mesh, about=about)
     return facts
 
@@ -330,11 +331,15 @@ class TestTolerance:
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
-@pytest.mark.parametrize("field", ["bore", "thickness"])
-def test_lengths_must_be_positive(tmp_path, field, value):
-    lengths = {"thickness": 8.0, field: value}
-    with pytest.raises(ValueError, match=f"{field} must be > 0, not {value}"):
-        write_stl(tmp_path / "cam.stl", Polygon(SQUARE, NONE), tolerance=0.01, **lengths)
+def test_the_thickness_must_be_positive(tmp_path, value):
+    with pytest.raises(ValueError, match=f"thickness must be > 0, not {value}"):
+        write_stl(tmp_path / "cam.stl", Polygon(SQUARE, NONE), tolerance=0.01, thickness=value)
+
+
+@pytest.mark.parametrize("value", [0.0, math.nan, math.inf])
+def test_a_bore_has_an_extent(tmp_path, value):
+    with pytest.raises(ValueError, match="arcs: "):
+        write_stl(tmp_path / "cam.stl", Polygon(SQUARE, NONE), tolerance=0.01, thickness=8.0, bore=value)
 
 
 def test_header_and_bytes(tmp_path):

@@ -10,9 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.outlines import bored
 from support.parts import CAM, failures
 
 from camgeo.cli.main import main
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.svg import write_svg
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
 from camgeo.output.dispatch import make
@@ -125,7 +127,7 @@ def test_drawing_is_at_true_size_and_says_so(engraved):
     assert (drawing.units_mm, drawing.version, len(drawing.holes), len(drawing.engraved)) == (1.0, "SVG", 4, 1)
     assert not drawing.turned
     assert drawing.contour.area == pytest.approx(math.pi * (25**2 - 4 * 8 / 2), rel=1e-3)
-    assert design.body is not None
+    assert design.discs[0].body is not None
 
 
 def test_inches_are_inches_and_the_same_bytes_come_each_time(tmp_path):
@@ -143,7 +145,7 @@ def test_inches_are_inches_and_the_same_bytes_come_each_time(tmp_path):
 
 def test_title_and_description_are_escaped(tmp_path):
     square = Polygon(np.array([[1.0, 1], [-1, 1], [-1, -1], [1, -1]]), EXACT)
-    write_svg(tmp_path / "a.svg", square, name="<cam> & co", about="1 < 2\n\x07")
+    write_svg(tmp_path / "a.svg", bored(square), name="<cam> & co", about="1 < 2\n\x07")
     text = (tmp_path / "a.svg").read_text()
     assert "<title>&lt;cam&gt; &amp; co</title>" in text
     assert "<desc>camgeo units: mm; 1 &lt; 2</desc>" in text
@@ -154,12 +156,12 @@ def test_what_svg_does_not_have_is_refused(tmp_path):
     path = tmp_path / "a.svg"
     square = Polygon(np.array([[1.0, 1], [-1, 1], [-1, -1], [1, -1]]), EXACT)
     with pytest.raises(ValueError, match=r"1\.0 or 25\.4"):
-        write_svg(path, square, mm=10.0)
-    with pytest.raises(ValueError, match="bore: radius"):
-        write_svg(path, square, bore=0.0)
+        write_svg(path, bored(square), mm=10.0)
+    with pytest.raises(ValueError, match="BORE: radius"):
+        write_svg(path, [*bored(square), LayerOutline("BORE", square, ((0.0, 0.0), 0.0))])
     line = BSpline(1, np.array([[1.0, 1], [-1, 1], [-1, -1], [1, 1]]), np.array([0.0, 0, 1, 2, 3, 3]), 3, EXACT)
     with pytest.raises(ValueError, match="cubic"):
-        write_svg(path, line)
+        write_svg(path, bored(line))
     assert not path.exists()
 
 
@@ -173,7 +175,7 @@ def test_arcs_come_back_within_rounding(tmp_path, *, one, other, angle, far, mir
     chord = np.array([[math.cos(angle), math.sin(angle)], [-math.cos(angle), -math.sin(angle)]])
     outline = ArcSpline(chord + far, np.array([one, other]), EXACT)
     outline = outline.mirrored() if mirrored else outline
-    write_svg(tmp_path / "a.svg", outline)
+    write_svg(tmp_path / "a.svg", bored(outline))
     back = read_svg(tmp_path / "a.svg").contour
     meant = Contour.from_bulges(outline.points, outline.bulges)
     size = max(np.abs(outline.box()).max(), 1.0)

@@ -321,7 +321,7 @@ def test_a_high_power_of_a_sum_is_not_multiplied_out(monkeypatch: pytest.MonkeyP
 
 def test_a_trimmed_contour_has_corners_and_is_refused() -> None:
     source = b"cam: {kind: support, p: 16 - 2.2*cos(3*t), undercut: trim}"
-    contour = designed(read(source, Path("cam.yaml"))).contour
+    contour = designed(read(source, Path("cam.yaml"))).only_surface.contour
     assert contour is not None
     assert not contour.closed
     with pytest.raises(FormError, match="corners"):

@@ -109,7 +109,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
-    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
     assert contour is not None
     totals = spans_wanted(contour, stretches(contour)).totals
     ratios = []
@@ -132,7 +132,7 @@ def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: fl
     """A double roller in whose contour many places have no nearest cubic, and these move about as nodes are shared."""
     delta = "{cos: {1: 130}, sin: {1: 60, 3: -14}}"
     body = f"cam: {{kind: double-roller, ratio: 5/3, arm: 55, roller_radius: 7, delta: {delta}}}\n"
-    contour = designed(load_text(body, "a.yaml")).contour
+    contour = designed(load_text(body, "a.yaml")).only_surface.contour
     assert contour is not None
     found = fit_spline(contour, tolerance)
     assert found.bound.worst <= tolerance
@@ -141,7 +141,7 @@ def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: fl
 
 def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
     for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
-        contour = designed(load(RECIPES / f"{name}.yaml")).contour
+        contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
         assert contour is not None
         totals = spans_wanted(contour, stretches(contour)).totals
         for exponent in (-4, -6):
@@ -170,7 +170,7 @@ def test_within_a_nanometre() -> None:
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["as-figure-2a", "w-law", "reuleaux"])
 def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
-    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
     assert contour is not None
     found = fit_spline(contour, 1e-5)
     pieces, steps = found.beziers(), np.diff(np.unique(found.knots))
@@ -189,7 +189,7 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
 def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(
     name: str, times: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
     assert contour is not None
     floor = module.FLOOR * 64 * float(np.finfo(np.float64).eps) * contour.size
     found_anew = []

@@ -70,8 +70,8 @@ def held(name: str) -> tuple[Any, ...]:
     """Contacts, law, side and the contour of a recipe's cam."""
     recipe = read(RECIPES[name].encode(), Path("c.yaml"))
     design = designed(recipe)
-    assert design.contour is not None
-    arcs = fit_arcs(design.contour, 1e-6)
+    assert design.only_surface.contour is not None
+    arcs = fit_arcs(design.only_surface.contour, 1e-6)
     return (
         design.follower.contacts,
         design.exact.judged_law,

@@ -97,7 +97,7 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
     guide, start, end = GUIDES[name]
     points = ragged(seed, mean=60.0)
     for radius in (0.0, 4.0, 25.0):
-        found = followers.roller(guide, radius, STILL, side=-1).contact(Contour.from_vertices(points), PHI)
+        found = followers.resting(followers.roller(guide, radius, STILL, side=-1), Contour.from_vertices(points), PHI)
         expected = first_stop(roller_free(points, guide, radius, inside=True), start, end)
         assert found == pytest.approx(expected, abs=1e-6 if radius else 1e-9)
 
@@ -108,11 +108,11 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
 def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
     guide, start, end = GUIDES[name]
     points = ragged(seed)
-    found = followers.roller(guide, 0.0, STILL).contact(Contour.from_vertices(points), PHI)
+    found = followers.resting(followers.roller(guide, 0.0, STILL), Contour.from_vertices(points), PHI)
     expected = first_stop(roller_free(points, guide, 0.0, inside=False), end, start)
     assert found == pytest.approx(expected, abs=1e-9)
     if isinstance(guide, Line):
-        shoe = followers.roller(guide, 600.0, STILL).contact(Contour.from_vertices(points), PHI)
+        shoe = followers.resting(followers.roller(guide, 600.0, STILL), Contour.from_vertices(points), PHI)
         share = np.arange(400)[:, None, None] / 400
         edges = (points + share * (np.roll(points, -1, axis=0) - points)).reshape(-1, 2)
         along, across = edges @ unit(PHI).T, edges @ unit(PHI + 0.5 * np.pi).T - guide.offset
@@ -123,7 +123,7 @@ def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
 @pytest.mark.parametrize("tilt", [-0.4, 0.15])
 def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
     points = ragged(seed)
-    found = followers.flat_face(law(seed, 40.0, 3.0), tilt).contact(Contour.from_vertices(points), PHI)
+    found = followers.resting(followers.flat_face(law(seed, 40.0, 3.0), tilt), Contour.from_vertices(points), PHI)
     normal, travel = unit(PHI + tilt), unit(PHI)
     # the face's line through each corner meets the line of travel at
     reached = (points @ normal.T) / (travel * normal).sum(axis=1)
@@ -136,7 +136,7 @@ def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
 def test_swinging_face_contact_by_bisection(side, offset, seed):
     points = ragged(seed, rough=0.08)
     face = followers.swinging_face(100.0, offset, law(seed, 0.5, 0.05).law, side)
-    found = face.contact(Contour.from_vertices(points), PHI)
+    found = followers.resting(face, Contour.from_vertices(points), PHI)
 
     pivot = 100.0 * unit(PHI)
 
@@ -171,13 +171,13 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     made = Contour.from_vertices(points) if seed % 2 else Contour.from_bulges(*arcs_through(points))
     judged = follower.judge(made, PHI).motion
     scale = 180.0 / np.pi if follower.unit == "deg" else 1.0
-    seen = scale * peak(lambda phi: follower.contact(made, phi) - follower.intended(phi), 20_000)
+    seen = scale * peak(lambda phi: followers.resting(follower, made, phi) - follower.intended(phi), 20_000)
     assert judged.extremes == "true"
     assert seen <= judged.bound * (1.0 + 1e-9)
     assert seen >= judged.max * (1.0 - 1e-5)
     assert judged.remainder <= 2e-6 * judged.max
     at = np.array([np.radians(judged.at_deg)])
-    there = scale * np.abs(follower.contact(made, at) - follower.intended(at))[0]
+    there = scale * np.abs(followers.resting(follower, made, at) - follower.intended(at))[0]
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
@@ -223,7 +223,7 @@ def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
 def test_a_face_whose_contact_reaches_the_pivot_is_told():
     face = followers.swinging_face(100.0, 10.0, law(1, 0.5, 0.05).law)
     with pytest.raises(ContactError, match="reaches the pivot"):
-        face.contact(Contour.from_vertices(ragged(2, mean=95.0)), PHI)
+        followers.resting(face, Contour.from_vertices(ragged(2, mean=95.0)), PHI)
     steep = followers.swinging_face(40.0, 2.0, lift_from_fourier(1.4, {1: 0.2}, {}).law)
     with pytest.raises(ContactError, match="intended contact reaches the pivot"):
         steep.motion_limit(1e-3)
@@ -241,7 +241,7 @@ def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
     far = PHI[np.abs(np.subtract.outer(PHI, np.concatenate([drive.breaks, drive.breaks - TURN]))).min(axis=1) > 2e-4]
     rows = drive.rows(far)
     si = METRE if follower.unit == "mm" else 1.0
-    assert one.position(rows[0] / si) == pytest.approx(follower.contact(made, far), abs=1e-11)
+    assert one.position(rows[0] / si) == pytest.approx(followers.resting(follower, made, far), abs=1e-11)
     step = 1e-4
     for k in range(2):
         slope = (drive.rows(far + step)[k] - drive.rows(far - step)[k]) / (2.0 * step)

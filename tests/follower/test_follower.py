@@ -56,7 +56,7 @@ def test_eccentric_circle_lifts_a_flat_face_by_a_cosine():
     """A circle of R = 20 about (5, 0), of two arcs: q = R + 5 cos theta exactly."""
     contour = Contour.from_bulges(np.array([[25.0, 0.0], [-15.0, 0.0]]), np.ones(2))
     face = followers.flat_face(lift_from_fourier(20.0, {1: 5.0}, {}))
-    assert face.contact(contour, PHI) == pytest.approx(20.0 + 5.0 * np.cos(PHI), abs=1e-13)
+    assert followers.resting(face, contour, PHI) == pytest.approx(20.0 + 5.0 * np.cos(PHI), abs=1e-13)
     motion = face.judge(contour, PHI).motion
     assert motion.max < 1e-13
     assert motion.unit == "mm"
@@ -155,7 +155,7 @@ def test_rounded_reuleaux_of_six_arcs_fills_its_yoke():
     assert judged.motion.max < 1e-13
     assert judged.play.least == pytest.approx(0.0, abs=1e-13)
     assert judged.play.most == pytest.approx(0.0, abs=1e-13)
-    by_first, by_second = yoke.contact(contour, PHI)
+    by_first, by_second = followers.resting(yoke, contour, PHI)
     assert by_first == pytest.approx(yoke.intended(PHI), abs=1e-13)
     assert by_second == pytest.approx(yoke.intended(PHI), abs=1e-13)
 
@@ -237,7 +237,7 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
     points = pair.envelope.points(np.arange(count) * 2 * np.pi / count + 0.01)
     contour = polygon(points)
     by_hand = swings_by_hand(points, PAIRS[name], PHI)
-    assert pair.contact(contour, PHI) == pytest.approx(by_hand, abs=1e-13)
+    assert followers.resting(pair, contour, PHI) == pytest.approx(by_hand, abs=1e-13)
     judged = pair.judge(contour, PHI)
     fine = DENSE[:: max(1, count // 4)]
     error = np.degrees(swings_by_hand(points, PAIRS[name], fine) - pair.intended(fine))
@@ -303,7 +303,7 @@ def test_roller_on_an_eccentric_circle(arm, pivot):
     roller = followers.roller(Arm(arm, pivot), 8.0, flat)
     away = pivot - 4.0 * np.exp(-1j * PHI)  # from the circle's centre to the pivot, the pivot's direction made real
     expected = np.arccos((np.abs(away) ** 2 + arm**2 - 38.0**2) / (2 * np.abs(away) * arm)) + np.angle(away)
-    assert roller.contact(contour, PHI) == pytest.approx(expected, abs=1e-12)
+    assert followers.resting(roller, contour, PHI) == pytest.approx(expected, abs=1e-12)
     motion = roller.judge(contour, PHI).motion
     assert motion.max >= np.degrees(np.abs(expected - 1.0)).max() - 1e-9
     assert motion.rms == pytest.approx(np.degrees(np.sqrt(np.mean((expected - 1.0) ** 2))), abs=1e-10)
@@ -371,7 +371,7 @@ def test_swing_and_both_contacts_on_a_circle():
     assert max(abs(judged.play.least), abs(judged.play.most)) < 1e-12
     larger = Contour.from_bulges((pitch - 7.9) * np.array([[1.0, 0], [-1, 0]]), np.ones(2))
     psi = 2 * np.arccos((pitch + 0.1) / 120.0) - np.pi / 3
-    by_a, by_b = follower.contact(larger, PHI)
+    by_a, by_b = followers.resting(follower, larger, PHI)
     assert by_a == pytest.approx(psi, abs=1e-13)
     assert by_b == pytest.approx(-psi, abs=1e-13)
     judged = follower.judge(larger, PHI)

@@ -103,7 +103,7 @@ def test_single_rollers_on_polygons_against_bisected_distances(name, count):
         return positions(contour, roller, phi, meant, reach) - meant
 
     some = PHI[::7] + 0.003
-    assert roller.contact(contour, some) - roller.intended(some) == pytest.approx(error(some), abs=1e-9)
+    assert followers.resting(roller, contour, some) - roller.intended(some) == pytest.approx(error(some), abs=1e-9)
     assert motion.unit == ("mm" if isinstance(guide, Line) else "deg")
     proved(motion, peak(error, 3000), 1.0 if motion.unit == "mm" else 180 / np.pi)
 
@@ -128,7 +128,7 @@ def test_what_a_guide_tells_of_its_derivatives(name):
 
 
 def dense(follower, contour, count):
-    return peak(lambda phi: follower.contact(contour, phi) - follower.intended(phi), count)
+    return peak(lambda phi: followers.resting(follower, contour, phi) - follower.intended(phi), count)
 
 
 NAMES = ["cycloidal", "polynomial-345", "polynomial-4567", "modified-sine", "harmonic"]
@@ -268,7 +268,7 @@ def test_opposite_rollers_on_polygons_against_bisected_distances(count):
 
     some = PHI[::7] + 0.003
     near, far = each(some)
-    assert yoke.contact(contour, some) == pytest.approx(np.stack([near, 80.0 - far]), abs=1e-9)
+    assert followers.resting(yoke, contour, some) == pytest.approx(np.stack([near, 80.0 - far]), abs=1e-9)
     judged = yoke.judge(contour, PHI)
     proved(judged.motion, peak(lambda phi: each(phi)[0] - yoke.intended(phi), 2000), 1.0)
     play = judged.play

@@ -19,6 +19,7 @@ from support.disc_followers import (
 )
 from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN, displaced
 from support.intent import part_of
+from support.outlines import bored
 from support.stepfiles import washer
 
 from camgeo.curve.curve import Curve
@@ -73,7 +74,7 @@ def test_a_sound_file_passes(tmp_path, name):
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
     asked = intent(follower)
-    drawn_spline(path, fit_spline(Curve.whole(CURVES[name]), 1e-5), bore=asked.outline)
+    drawn_spline(path, bored(fit_spline(Curve.whole(CURVES[name]), 1e-5), asked.outline))
     verdict = verify(path, asked, 180, LIMITS)
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert verdict.measured_error <= 1e-5 + 1e-8  # the judge's own arcs for a spline count

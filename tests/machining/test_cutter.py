@@ -38,7 +38,7 @@ TRIMMED = "cam: {kind: support, p: 25 + 4*cos(3*t), undercut: trim}\n"
 def design_of(body):
     recipe = read(body.encode(), Path("c.yaml"))
     design = designed(recipe)
-    assert design.contour is not None
+    assert design.only_surface.contour is not None
     return recipe, design
 
 
@@ -49,7 +49,7 @@ def points_of(arcs, per_piece=12):
 @pytest.mark.parametrize("body", [DWELLS, SHU_WU, REULEAUX, ROLLER])
 def test_a_shape_run_backwards_is_the_same_shape(body):
     _, design = design_of(body)
-    shape = design.contour.shape
+    shape = design.only_surface.contour.shape
     back = Backwards(shape)
     breaks = back.breaks if len(back.breaks) else np.zeros(1)
     assert len(back.steady) == len(back.radii) == len(breaks)
@@ -87,14 +87,14 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
 )
 def test_the_path_keeps_its_distance_all_round(body, radius):
     _, design = design_of(body)
-    path = cutter_path(design.contour, radius)
+    path = cutter_path(design.only_surface.contour, radius)
     assert path.lost == ()
     arcs = path.within(0.001)
     feet = design.exact.gauge.envelope.feet(points_of(arcs))
     if body != TRIMMED:  # a trimmed cam's envelope is that of the motion, whose face would touch beside the corner
         assert np.abs(feet.excess - radius).max() <= arcs.bound.worst
         assert np.abs(feet.excess - radius).max() > 1e-4 or body == REULEAUX
-    exact = shapely.Polygon(design.contour.sample(_all(design.contour)).point)
+    exact = shapely.Polygon(design.only_surface.contour.sample(_all(design.only_surface.contour)).point)
     apart = shapely.distance(exact.exterior, shapely.points(points_of(arcs)))
     assert apart == pytest.approx(radius, abs=1.1e-3)
 
@@ -107,13 +107,13 @@ def _all(contour):
 @pytest.mark.parametrize("radius", few([5.2, 9.0, 40.0], 3))
 def test_what_a_cutter_leaves_in_a_hollow(radius):
     _, design = design_of(DEEP)
-    path = cutter_path(design.contour, radius)
-    exact = shapely.Polygon(design.contour.sample(_all(design.contour)).point)
+    path = cutter_path(design.only_surface.contour, radius)
+    exact = shapely.Polygon(design.only_surface.contour.sample(_all(design.only_surface.contour)).point)
     closing = exact.buffer(radius, quad_segs=1000).buffer(-radius, quad_segs=1000)
     left = shapely.distance(closing.exterior, shapely.points(np.array(exact.exterior.coords))).max()
     assert max(cut.depth for cut in path.lost) == pytest.approx(left, abs=2e-4)
     assert len(path.lost) == 4
-    hollow, at = least_hollow(design.contour)
+    hollow, at = least_hollow(design.only_surface.contour)
     assert all(cut.free_at == pytest.approx(hollow, rel=1e-9) for cut in path.lost)
     assert any(cut.start <= at + k * 2 * np.pi <= cut.end for cut in path.lost for k in (-1, 0, 1))
     arcs = path.within(0.01)
@@ -146,18 +146,18 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
 @pytest.mark.slow
 def test_a_hollow_is_reached_by_a_cutter_just_small_enough():
     _, design = design_of(DEEP)
-    hollow, _ = least_hollow(design.contour)
+    hollow, _ = least_hollow(design.only_surface.contour)
     assert hollow == pytest.approx(5.09385, abs=1e-5)
-    assert cutter_path(design.contour, hollow - 1e-6).lost == ()
-    assert len(cutter_path(design.contour, hollow + 1e-3).lost) == 4
+    assert cutter_path(design.only_surface.contour, hollow - 1e-6).lost == ()
+    assert len(cutter_path(design.only_surface.contour, hollow + 1e-3).lost) == 4
 
 
 def test_no_hollow_and_none_trimmed():
     _, design = design_of(SHU_WU)
-    assert least_hollow(design.contour)[0] == np.inf
+    assert least_hollow(design.only_surface.contour)[0] == np.inf
     _, design = design_of(DEEP)
-    low = design.contour.runs[0].low
-    part = Curve(design.contour.shape, (Run(low, low + 6.0, (), closed=False),))
+    low = design.only_surface.contour.runs[0].low
+    part = Curve(design.only_surface.contour.shape, (Run(low, low + 6.0, (), closed=False),))
     assert cutter_path(part, 4.0).corners
     with pytest.raises(UndercutError, match="no wider than its roller, 8 mm"):
         cutter_path(part, 4.1)

@@ -71,7 +71,7 @@ def made(folder, **asked):
 )
 def test_what_is_left_of_a_sheet(tmp_path, cam, more, top):
     recipe, _, path = made(tmp_path, cam=cam, more=f", holes: true{more}", top=top)
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     t = np.concatenate([np.linspace(run.low, run.high, 4001)[:-1] for run in contour.runs])
     sign = -1.0 if top else 1.0
     bore = shapely.Point(0.0, 0.0).buffer(5.0, quad_segs=500)

@@ -59,7 +59,7 @@ def made(folder, *args, **asked):
 
 
 def exact_opening(recipe, sign=1.0, count=8001):
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     t = np.concatenate([np.linspace(run.low, run.high, count)[:-1] for run in contour.runs])
     return shapely.Polygon(contour.sample(t).point * [1.0, sign])
 
@@ -128,7 +128,7 @@ def test_holes_larger_than_the_opening(tmp_path):
 
 def unreached(recipe, count=10_000):
     """How deep metal is left, by all places of the cutter's centre that are far enough from all the contour."""
-    radius, contour = recipe.manufacture.radius, designed(recipe).contour
+    radius, contour = recipe.manufacture.radius, designed(recipe).only_surface.contour
     frame = contour.sample(2 * math.pi * np.arange(count) / count)
     centre = frame.point - radius * frame.normal
     free = spatial.cKDTree(frame.point).query(centre)[0] > radius - 1e-7
@@ -209,7 +209,7 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
 
 def program(path, recipe, *, inward, turned=0.0, side=-1, lead=3.0):
     """One pass along the parallel of the contour `inward` of it, with ways in and out from one side."""
-    pitch = designed(recipe).surface.base.shape
+    pitch = designed(recipe).only_surface.surface.base.shape
     along = fit_arcs(Curve.whole(Parallel(pitch, inward - 9.0)), 2e-5)
     c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
     along = replace(along, points=along.points @ np.array([[c, s], [-s, c]]))

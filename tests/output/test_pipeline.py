@@ -280,7 +280,7 @@ def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str
     outcome = pipeline.export(replace(recipe, export=drawing), tmp_path)
     assert outcome.folder is not None
     shapes = ezdxf.readfile(outcome.folder / f"{recipe.name}.dxf").query('CIRCLE[layer=="REFERENCE"]')
-    base = designed(recipe).surface.base
+    base = designed(recipe).only_surface.surface.base
     points = base.sample(np.linspace(base.cells.low.min(), base.cells.high.max(), 100_001)).point
     assert shapes[0].dxf.radius * recipe.mm == pytest.approx(np.hypot(*points.T).min(), abs=1e-6)
 

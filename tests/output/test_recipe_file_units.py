@@ -336,12 +336,12 @@ def test_what_is_refused(files: str, said: str) -> None:
 def test_a_fit_leaves_room_for_what_writing_moves() -> None:
     recipe = recipe_of("dxf")
     job = Job.of(recipe, designed(recipe))
-    plain = job.outline("arcs", TOLERANCE)
+    (plain,) = job.outlines("arcs", TOLERANCE)
     moved = TOLERANCE - 0.5 * plain.bound.worst
-    assert job.outline_written("arcs", TOLERANCE, lambda _: 0.0) is plain
-    found = job.outline_written("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
+    assert job.outlines_written("arcs", TOLERANCE, lambda _: 0.0)[0] is plain
+    (found,) = job.outlines_written("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
     assert found.bound.worst + 0.1 * TOLERANCE <= TOLERANCE
-    assert job.outline_written("arcs", TOLERANCE, lambda _: moved) is plain  # no finer fit would help
+    assert job.outlines_written("arcs", TOLERANCE, lambda _: moved)[0] is plain  # no finer fit would help
     assert 0.0 < converted(plain) < 1e-12
 
 

@@ -202,7 +202,7 @@ def test_any_follower_against_samples(kind: str, radius: int, offset: float, ris
         assert found[name].value == pytest.approx(wanted, abs=1e-4)
     assert found["roller-speed"].value == pytest.approx(np.abs(spin).max(), rel=1e-4)
     if "pivot-clearance" in found:
-        contour = designed(recipe).contour
+        contour = designed(recipe).only_surface.contour
         assume(contour is not None)
         assert contour is not None
         point = contour.sample(np.linspace(contour.runs[0].low, contour.runs[0].high, 4001)).point
@@ -228,7 +228,7 @@ def test_a_disc_that_passes_over_the_pivot_is_remarked() -> None:
 
 def test_a_ring_s_metal_is_bent_the_other_way() -> None:
     found = figures(disc("kind: roller, radius: 9;"), "radius-of-curvature", "hollow-radius", "pitch-radius")
-    curve = designed(load_text(disc("kind: roller, radius: 9;"), "cam.yaml")).surface.curve
+    curve = designed(load_text(disc("kind: roller, radius: 9;"), "cam.yaml")).only_surface.surface.curve
     at = curve.sample(np.linspace(0.0, 2.0 * math.pi, 100_001))
     assert found["radius-of-curvature"].value == pytest.approx(-(at.speed / at.turn)[at.turn < 0].max(), rel=1e-6)
     assert found["hollow-radius"].value == pytest.approx((at.speed / at.turn)[at.turn > 0].min(), rel=1e-6)

@@ -26,8 +26,8 @@ FIT = 0.002  # mm
 def build(text: str) -> tuple[Recipe, Design, Assembly]:
     recipe = load_text(text, "set.yaml")
     design = designed(recipe)
-    assert design.contour is not None
-    return recipe, design, assembly_of(recipe, design, fit_arcs(design.contour, FIT))
+    assert design.only_surface.contour is not None
+    return recipe, design, assembly_of(recipe, design, fit_arcs(design.only_surface.contour, FIT))
 
 
 def polygon(outline: ArcSpline, holes: tuple[ArcSpline, ...] = ()) -> Polygon:

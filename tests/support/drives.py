@@ -10,7 +10,8 @@ TURN = 2.0 * math.pi
 class Harmonic:
     """cos(order phi)."""
 
-    breaks = corners = np.empty(0)
+    breaks = np.empty(0)
+    smooth = True
 
     def __init__(self, order, size=1.0):
         self.order, self.size = order, size
@@ -23,7 +24,8 @@ class Harmonic:
 class Saw:
     """Up with slope 1 over half a turn, and down again: corners at 0 and pi."""
 
-    breaks = corners = np.array([0.0, np.pi])
+    breaks = np.array([0.0, np.pi])
+    smooth = False
 
     def rows(self, phi):
         up = phi < np.pi

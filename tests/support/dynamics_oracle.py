@@ -69,7 +69,7 @@ class Cycloid:
 
         self.beta, self.stroke = float(beta), float(stroke)
         self.breaks = np.array([0.0, self.beta, np.pi, np.pi + self.beta])
-        self.corners = np.empty(0)
+        self.smooth = True
 
     def rows(self, phi):
         import numpy as np

@@ -13,10 +13,19 @@ from kin.law.contacts import TRAILING, Contact, Flat, Oscillating, Roller, Trans
 if TYPE_CHECKING:
     from typing import Any
 
+    from kin.contour.contour import Contour
     from kin.law.contacts import Side
     from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+
+def resting(follower: Any, contour: Contour, phi: Array) -> Any:
+    """Position, mm or radians, on a contour: (n,), or (2, n) with each of two contacts resting."""
+    each = zip(follower.contacts, follower.drives(contour), strict=True)
+    found = np.stack([one.position(drive.rows(phi)[0] / follower.si) for one, drive in each])
+    return found if len(found) > 1 else found[0]
 
 
 def flat_face(lift: Lift, tilt: float = 0.0) -> Any:

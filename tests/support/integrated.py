@@ -20,7 +20,7 @@ from kin.dynamics.train import DynamicsError, Train
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.dynamics.drive import Motion
+    from kin.follower.drive import Excitation
 
 Array = NDArray[np.float64]
 Method = Literal["Radau", "BDF", "LSODA", "RK45", "DOP853"]
@@ -41,7 +41,7 @@ class Integrated:
 
 def integrated(
     train: Train,
-    faces: tuple[Motion, Motion | None],
+    faces: tuple[Excitation, Excitation | None],
     rpm: float,
     places: Array,
     start: tuple[float, float],
@@ -96,7 +96,7 @@ class _Law:
     """
 
     def __init__(
-        self, train: Train, faces: tuple[Motion, Motion | None], rpm: float, most: int | None, bonded: bool
+        self, train: Train, faces: tuple[Excitation, Excitation | None], rpm: float, most: int | None, bonded: bool
     ) -> None:
         self.running = train.at(rpm)
         self.k, self.c = train.stiffness / self.running.inertia, train.damping / (train.mass * self.running.speed)
@@ -110,7 +110,7 @@ class _Law:
         """Derivatives of the slope by the state where the contact pulls as well."""
         return np.array([[0.0, 1.0], [-self.k - self.running.forcing.kappa, -self.c]])
 
-    def rows(self, motion: Motion, phi: float) -> Array:
+    def rows(self, motion: Excitation, phi: float) -> Array:
         """A face's displacement and two derivatives (3,), on this stretch's side of its ends."""
         low, high = self.stretch
         room = _INSIDE * (high - low)
@@ -140,7 +140,7 @@ class _Law:
         return np.array([v, self.push(phi, z, v, s) - forcing.kappa * (z + s[0]) - s[2] - forcing.constant])
 
 
-def _knots(faces: Sequence[Motion | None], end: float) -> Array:
+def _knots(faces: Sequence[Excitation | None], end: float) -> Array:
     """0, `end`, and all breaks between them."""
     breaks = np.concatenate([np.mod(face.breaks, TURN) for face in faces if face is not None] + [[0.0]])
     turns = TURN * np.arange(math.ceil(end / TURN) + 1)
@@ -150,11 +150,11 @@ def _knots(faces: Sequence[Motion | None], end: float) -> Array:
     return apart
 
 
-def _leap(motion: Motion, phi: float) -> float:
+def _leap(motion: Excitation, phi: float) -> float:
     """Jump of the velocity at a corner of the motion, from values close to either side, corrected to first order."""
-    corners = np.mod(motion.corners, TURN)
-    apart = corners - math.fmod(phi, TURN)
-    if not len(corners) or np.abs(apart - TURN * np.round(apart / TURN)).min() > 1e-9:
+    breaks = np.mod(motion.breaks, TURN)
+    apart = breaks - math.fmod(phi, TURN)
+    if motion.smooth or not len(breaks) or np.abs(apart - TURN * np.round(apart / TURN)).min() > 1e-9:
         return 0.0
     step = 1e-7
     after, before = (motion.rows(np.array([np.mod(phi + side * step, TURN)]))[:, 0] for side in (1.0, -1.0))

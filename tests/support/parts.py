@@ -31,7 +31,7 @@ def found(recipe):
 def files_of(recipe, folder, *, sound=True):
     """The design, and the path and the verdict's checks by name of each file, by kind."""
     design = designed(recipe)
-    assert design.contour is not None, [check for check in design.checks if not check.ok]
+    assert design.only_surface.contour is not None, [check for check in design.checks if not check.ok]
     made = {}
     for request in recipe.export.files:
         path = folder / request.filename(recipe.name, recipe.export.files)

@@ -10,4 +10,4 @@ if TYPE_CHECKING:
 
 def sound(solid: Solid) -> bool:
     """Whether the mesh is closed and its triangles all face the same side."""
-    return solid.closed and solid.edges.misdirected == 0
+    return solid.edges[:2] == (0, 0) and solid.edges.misdirected == 0

@@ -84,7 +84,7 @@ def test_an_exact_spline_has_one_rung(study: tuple[dict, Path], tmp_path: Path) 
 def test_least_arcs_against_the_closed_form_of_a_three_lobed_cam() -> None:
     # kappa = 1/rho, ds = rho dt, rho = 25 - 16 cos 3t: the integral of (|rho'|/124.7 e)^(1/3) dt over a turn
     recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}", Path("cam.yaml"))
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     assert contour is not None
     steps = 200_000
     sine = [abs(math.sin(3.0 * 2.0 * math.pi * (k + 0.5) / steps)) for k in range(steps)]
@@ -95,7 +95,7 @@ def test_least_arcs_against_the_closed_form_of_a_three_lobed_cam() -> None:
 
 def test_a_dwell_counts_as_one_arc_at_least() -> None:
     recipe = load(RECIPES / "reuleaux.yaml")
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     assert contour is not None
     assert least_pieces("arcs", contour, 1e-3) == 6.0
     assert least_pieces("exact", contour, 1e-3) is None
@@ -131,7 +131,7 @@ def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
 
 def test_margins_of_a_roller_to_the_shaft_and_to_a_stretched_arm() -> None:
     recipe = load(RECIPES / "w-figure-9.yaml")
-    base = designed(recipe).surface.base
+    base = designed(recipe).only_surface.surface.base
     distance = np.hypot(*base.sample(np.linspace(0.0, 2.0 * math.pi, 20_001)).point.T)
     found = named("w-figure-9")
     assert found["shaft"].value == pytest.approx(distance.min(), rel=1e-5)

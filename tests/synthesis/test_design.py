@@ -30,7 +30,7 @@ def sharp(text: str, **values: float) -> Design:
 
 
 def free(design: Design, words: str) -> float:
-    assert design.contour is None
+    assert design.only_surface.contour is None
     (detail,) = (check.detail for check in design.checks if check.name == "undercut-local")
     found = re.search(words + r" (\S+) would have no undercut", detail)
     assert found, detail
@@ -42,7 +42,7 @@ def free(design: Design, words: str) -> float:
 def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
     larger = free(sharp(BREADTH, size=5.0, of=rise), "a base radius larger by more than")
     assert all(check.ok for check in sharp(BREADTH, size=(5.0 + larger) * (1.0 + BEYOND), of=rise).checks)
-    assert sharp(BREADTH, size=(5.0 + larger) * (1.0 - 1e-5), of=rise).contour is None
+    assert sharp(BREADTH, size=(5.0 + larger) * (1.0 - 1e-5), of=rise).only_surface.contour is None
 
 
 @pytest.mark.slow
@@ -51,7 +51,7 @@ def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
 def test_the_roller_radius_that_is_told_is_free_of_undercut(square: float) -> None:
     below = free(sharp(ROLLER, size=40.0, of=square), "a roller radius below")
     assert all(check.ok for check in sharp(ROLLER, size=below * (1.0 - BEYOND), of=square).checks)
-    assert sharp(ROLLER, size=below * (1.0 + 1e-5), of=square).contour is None
+    assert sharp(ROLLER, size=below * (1.0 + 1e-5), of=square).only_surface.contour is None
 
 
 @pytest.mark.parametrize(("units", "lower", "half"), [("mm", "25.4", "27.94"), ("inch", "1", "1.1")])

@@ -30,20 +30,20 @@ def circle(pivot, radius=25.0):
 
 @pytest.mark.parametrize("pivot", [(3.0, 4.0), (-12.0, 5.0), (0.0, -24.0)])
 def test_circle_off_its_shaft(pivot):
-    wall, at = least_wall(circle(pivot), 8.0)
+    wall, at = least_wall(Looks.of(circle(pivot)), 8.0)
     assert wall == pytest.approx(25.0 - math.hypot(*pivot) - 4.0, abs=1e-12)
     # nearest where the outward normal points from the centre to the shaft
     assert math.cos(at - math.atan2(pivot[1], pivot[0])) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_shaft_outside_the_contour():
-    wall, _ = least_wall(circle((30.0, 40.0)), 8.0)
+    wall, _ = least_wall(Looks.of(circle((30.0, 40.0))), 8.0)
     assert wall == pytest.approx(-(50.0 - 25.0) - 4.0, abs=1e-12)
 
 
 def test_reuleaux_about_its_middle():
     # a flank is an arc of radius w - r about the middle of the opposite corner, (w - 2 r)/sqrt 3 from the shaft
-    wall, _ = least_wall(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 5.0))), 10.0)
+    wall, _ = least_wall(Looks.of(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 5.0)))), 10.0)
     assert wall == pytest.approx(45.0 - 40.0 / math.sqrt(3.0) - 5.0, abs=1e-9)
 
 
@@ -187,10 +187,10 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
 def test_walls_that_are_left_out_are_neither_the_least_nor_thin(name: str, limit: float) -> None:
     recipe = load(RECIPES / f"{name}.yaml")
     design = designed(recipe)
-    assert design.contour is not None
-    assert design.body is not None
-    looks = Looks.of(design.contour)
-    possible = list(walls(design.body, looks))
+    assert design.only_surface.contour is not None
+    assert design.discs[0].body is not None
+    looks = Looks.of(design.only_surface.contour, design.only_surface.surface.side)
+    possible = list(walls(design.discs[0].body, [looks]))
     every = [(bound, pair()) for bound, pair in possible]
     assert all(bound <= pair.gap.wall + ROUNDING for bound, pair in every)
     whole = sorted((pair for _, pair in every), key=lambda pair: pair.gap.wall)

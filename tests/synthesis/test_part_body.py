@@ -14,7 +14,7 @@ from camgeo.synthesis.part.walls import Looks
 
 
 def opening(design, name):
-    return next(one for one in design.body.openings if one.name == name)
+    return next(one for one in design.discs[0].body.openings if one.name == name)
 
 
 # --- what is placed -------------------------------------------------------------------------------------------------
@@ -25,7 +25,7 @@ def test_a_ring_of_holes_is_as_large_as_the_wall_lets_it():
     design, checks = found(recipe_of("{bore: 10, lightening: {ring: 4, wall: 2}}", cam=cam))
     # between bore and rim 20 mm are left, 16 of them for holes of radius 8 about 15 mm from the shaft; 4 of those
     # would stand 15 sqrt 2 apart, 5.2 mm between them
-    holes = [one.circle for one in design.body.openings if one.name != "bore"]
+    holes = [one.circle for one in design.discs[0].body.openings if one.name != "bore"]
     assert [radius for _, radius in holes] == [8.0] * 4
     assert holes[0][0] == pytest.approx((15.0, 0.0))
     assert checks["lightening"].value == 4
@@ -35,7 +35,7 @@ def test_a_ring_of_holes_is_as_large_as_the_wall_lets_it():
 def test_a_crowded_ring_is_limited_by_its_neighbours():
     cam = "cam: {kind: support, p: 25 + 0*t}\n"
     design, checks = found(recipe_of("{bore: 10, lightening: {ring: 12, wall: 2, least: 1}, wall: 2}", cam=cam))
-    (x, y), radius = design.body.openings[1].circle
+    (x, y), radius = design.discs[0].body.openings[1].circle
     # R sin 15 deg - 1 = r = 23 - R
     ring = 24.0 / (1.0 + math.sin(math.pi / 12))
     assert math.hypot(x, y) == pytest.approx(ring, abs=0.06)
@@ -46,12 +46,12 @@ def test_a_crowded_ring_is_limited_by_its_neighbours():
 @pytest.mark.slow
 def test_the_largest_holes_shrink_from_one_to_the_next():
     design, checks = found(recipe_of("{bore: 12, lightening: {largest: 4, wall: 2}, wall: 2}"))
-    sizes = [one.circle[1] for one in design.body.openings if one.name.startswith("lightening")]
+    sizes = [one.circle[1] for one in design.discs[0].body.openings if one.name.startswith("lightening")]
     assert len(sizes) == 4
     assert sizes == sorted(sizes, reverse=True)
     assert checks["wall"].ok
     # the first is the largest circle beside the bore: no place on a fine grid has 0.1 mm more room
-    contour = design.contour.sample(np.linspace(0, 2 * math.pi, 4000, endpoint=False)).point
+    contour = design.only_surface.contour.sample(np.linspace(0, 2 * math.pi, 4000, endpoint=False)).point
     x, y = np.meshgrid(np.arange(-30, 30, 0.25), np.arange(-30, 30, 0.25))
     grid = np.column_stack([x.ravel(), y.ravel()])
     from shapely import Polygon, contains_xy
@@ -66,7 +66,7 @@ def test_no_room_for_a_hole_is_told():
     design, checks = found(recipe_of("{bore: 12, lightening: {largest: 3, wall: 8}}"))
     assert not checks["lightening"].ok
     assert checks["lightening"].detail.startswith("0 of 3 holes")
-    assert design.contour is None
+    assert design.only_surface.contour is None
 
 
 def test_the_mark_lies_on_the_ray_at_zero_as_far_out_as_the_wall_lets_it():
@@ -80,7 +80,7 @@ def test_the_mark_lies_on_the_ray_at_zero_as_far_out_as_the_wall_lets_it():
     )
     assert not checks["wall"].ok
     assert checks["wall"].detail.startswith("mark and contour: 1.4")
-    assert farther.contour is None
+    assert farther.only_surface.contour is None
 
 
 @pytest.mark.thin(8)
@@ -95,7 +95,7 @@ def test_a_mark_without_room_fails_with_what_would_have_some(part, tight):
 
     design, checks = marked(part)
     assert not checks["mark"].ok
-    assert design.contour is None
+    assert design.only_surface.contour is None
     size, wall = re.search(r"long; (?:(\{.*\}) has|a part\.wall of (.*) leaves some)$", checks["mark"].detail).groups()
 
     def mended(share):
@@ -142,7 +142,7 @@ def test_a_clash_is_named_with_its_place(part, told):
     assert not wall.ok
     assert wall.value <= 0.0
     assert told in wall.detail
-    assert design.contour is None
+    assert design.only_surface.contour is None
 
 
 def test_a_wall_that_is_asked_for_is_kept_or_refused_at_its_edge():
@@ -188,7 +188,7 @@ def test_a_chamfer_takes_from_the_walls_and_needs_a_blunt_contour():
     design, checks = found(recipe_of("{thickness: 8, bore: 12, chamfer: 1.25}", cam=sharp))
     assert (checks["chamfer"].value, checks["chamfer"].limit) == pytest.approx((1.0, 1.25))
     assert not checks["chamfer"].ok
-    assert design.contour is None
+    assert design.only_surface.contour is None
     trimmed = "cam: {kind: support, p: 25 + 3.3*cos(3*t), undercut: trim}\n"
     _, checks = found(recipe_of("{thickness: 8, bore: 12, chamfer: 0.5}", cam=trimmed))
     assert "a trimmed contour has corners" in checks["chamfer"].detail
@@ -199,7 +199,7 @@ def test_rotation_mirrors_the_part_and_leaves_its_walls():
     one, checks = found(recipe_of(part))
     other, mirrored = found(recipe_of(part, more="rotation: ccw\n"))
     assert checks["wall"] == mirrored["wall"]
-    for a, b in zip(one.body.mirrored().openings, other.body.mirrored().openings, strict=True):
+    for a, b in zip(one.discs[0].body.mirrored().openings, other.discs[0].body.mirrored().openings, strict=True):
         assert np.array_equal(a.outline.points, b.outline.points)
 
 
@@ -268,6 +268,7 @@ def test_what_cannot_be(part, told):
 
 def test_a_body_needs_no_thickness_for_a_drawing():
     design, _ = found(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}"))
-    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, Looks.of(design.contour))
+    looks = Looks.of(design.only_surface.contour)
+    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, looks)
     assert body.prism
     assert (body.bottom, body.top) == (0.0, 8.0)

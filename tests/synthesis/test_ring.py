@@ -73,7 +73,7 @@ def test_the_opening_is_wider_than_its_roller():
     design = designed(recipe)
     _, _, radius = pitch(recipe)
     widest = -radius[radius < 0].max()
-    assert hollow_radius(recipe.cam.side, design.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
+    assert hollow_radius(recipe.cam.side, design.only_surface.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
 
 
 def test_a_ring_without_hollows_has_no_limit():
@@ -112,7 +112,7 @@ def test_walls_of_a_ring(part, wall, pair):
     (check,) = (one for one in found.checks if one.name == "wall")
     assert check.value == pytest.approx(wall, abs=2e-9 if wall > 0 else 1e-6)
     assert check.detail.startswith(pair)
-    assert check.ok == (wall > 0) == (found.body is not None)
+    assert check.ok == (wall > 0) == (found.discs[0].body is not None)
 
 
 @pytest.mark.parametrize("part", ["{outer: 83}", "{outer: 90, wall: 4}"])
@@ -157,7 +157,7 @@ def cam(follower, motion, base=30):
 @pytest.mark.parametrize("follower", ["kind: knife-edge", "kind: knife-edge, arm: {length: 60, pivot: 70}"])
 def test_a_knife_edge_passes_a_hollow(follower):
     design = designed(cam(follower, MOTION.format(50, 150)))
-    assert (design.contour.sample(np.linspace(0, TURN, 500)).turn < 0).any()
+    assert (design.only_surface.contour.sample(np.linspace(0, TURN, 500)).turn < 0).any()
     assert all(check.ok for check in design.checks if check.name != "pressure-angle")
 
 

@@ -109,7 +109,9 @@ def test_d15_undercut():
     found = follower.judge(made, PHI).motion
     assert found.max == pytest.approx(0.517693640, abs=2e-8)
     assert min(abs(found.at_deg - 45.8265), abs(found.at_deg - 84.1735)) < 1e-2
-    lost = follower.contact(made, np.radians([45.8265, 84.1735])) - follower.intended(np.radians([45.8265, 84.1735]))
+    lost = followers.resting(follower, made, np.radians([45.8265, 84.1735])) - follower.intended(
+        np.radians([45.8265, 84.1735])
+    )
     assert lost == pytest.approx([-0.517693640] * 2, abs=2e-8)
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] < 1e-7
 
@@ -154,11 +156,11 @@ def circle(radius, x=0.0, y=0.0):
 def test_d18_eccentrics():
     eccentric = circle(30.0, 10.0)
     flat = followers.flat_face(lift_from_fourier(30.0, {1: 10.0}, {}))
-    assert flat.contact(eccentric, PHI) == pytest.approx(30.0 + 10.0 * np.cos(PHI), abs=1e-13)
+    assert followers.resting(flat, eccentric, PHI) == pytest.approx(30.0 + 10.0 * np.cos(PHI), abs=1e-13)
     assert flat.judge(eccentric, PHI).motion.max < 1e-12
     roller = followers.roller(guide.Line(), 12.0, STILL)
     expected = 10.0 * np.cos(PHI) + np.sqrt(42.0**2 - 100.0 * np.sin(PHI) ** 2)
-    assert roller.contact(eccentric, PHI) == pytest.approx(expected, abs=1e-12)
+    assert followers.resting(roller, eccentric, PHI) == pytest.approx(expected, abs=1e-12)
 
 
 def test_d18_tangent_cam_and_arc_flank():
@@ -171,11 +173,11 @@ def test_d18_tangent_cam_and_arc_flank():
     roller = followers.roller(guide.Line(), 10.0, STILL)
     off = np.radians(np.linspace(-5.0, 18.0, 24))  # of the flank's normal, as long as the flank is touched
     off = off[off >= 0.0]
-    assert roller.contact(tangent, wide - off) == pytest.approx(30.0 / np.cos(off), abs=1e-12)
+    assert followers.resting(roller, tangent, wide - off) == pytest.approx(30.0 / np.cos(off), abs=1e-12)
     # the flank an arc of 70 about a point 50 beyond the shaft: the face rises by (70 - r1)(1 - cos)
     x = 50.0
     arc = circle(70.0, -x)
-    flank = followers.flat_face(Lift(STILL)).contact(arc, off)
+    flank = followers.resting(followers.flat_face(Lift(STILL)), arc, off)
     assert flank == pytest.approx(base + (70.0 - base) * (1.0 - np.cos(off)), abs=1e-12)
 
 

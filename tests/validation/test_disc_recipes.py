@@ -64,12 +64,12 @@ def made(cam: str, more: str = "") -> tuple[Any, Design]:
 
 
 def pitch_of(design):
-    return design.surface.base.shape
+    return design.only_surface.surface.base.shape
 
 
 def contour_of(design):
-    assert design.contour is not None
-    return design.contour.shape
+    assert design.only_surface.contour is not None
+    return design.only_surface.contour.shape
 
 
 def proved(recipe: Recipe, design: Design) -> dict[str, Any]:
@@ -393,9 +393,9 @@ D15 = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60
 def test_d15_undercut():
     cam = f"base_radius: 8, follower: {{kind: roller, radius: 18}}, motion: {D15}"
     _, refused = made(cam)
-    assert refused.contour is None
+    assert refused.only_surface.contour is None
     recipe, design = made(f"{cam}, undercut: trim")
-    pitch, kept = pitch_of(design), design.contour
+    pitch, kept = pitch_of(design), design.only_surface.contour
     radius, where = least_radius(Curve.whole(pitch))
     assert radius == pytest.approx(14.113168077, abs=NINE)
     around = {math.degrees(where) % 360, (130 - math.degrees(where)) % 360}

@@ -48,7 +48,7 @@ def rows(workshop):
             source,
             "241.25",
             241.25,
-            least_vertices(made.design.surface.curve, E),
+            least_vertices(made.design.only_surface.surface.curve, E),
             0.005,
             ".7g",
         ),
@@ -66,7 +66,7 @@ def figure_1(workshop):
 @pytest.mark.slow
 def test_least_count_against_mpmath(figure_1):
     assert formula(E) == pytest.approx(241.25, abs=0.005)
-    assert least_vertices(figure_1.design.surface.curve, E) == pytest.approx(formula(E), rel=1e-6)
+    assert least_vertices(figure_1.design.only_surface.surface.curve, E) == pytest.approx(formula(E), rel=1e-6)
 
 
 def test_the_file_has_no_vertex_too_many(figure_1):

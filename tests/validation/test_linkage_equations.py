@@ -7,7 +7,7 @@ import linkage_page
 import numpy as np
 import pytest
 from linkage_page import Scene
-from linkage_reference import FIGURES, FINE, PI, Figure, apart, inverted, lift
+from support.linkage_reference import FIGURES, FINE, PI, Figure, apart, inverted, lift
 
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank
 from kin.linkage.mechanism import Mechanism

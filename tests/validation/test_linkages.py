@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from linkage_page import BANDS, DWELLING, Scene
-from linkage_reference import FIGURES, FINE, PI, apart, lift, longest
+from support.linkage_reference import FIGURES, FINE, PI, apart, lift, longest
 from support.page_tables import Row
 from support.square_frame import CENTRED, Bars, Bench
 

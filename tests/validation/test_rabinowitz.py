@@ -39,7 +39,10 @@ def distances(contour):
 
 def rows(workshop):
     made = workshop.shipped("rabinowitz", "spline")
-    e, radius = made.recipe.export.tolerance, made.design.surface.curve.sample(np.linspace(0, 2 * PI, 3601)).speed
+    e, radius = (
+        made.recipe.export.tolerance,
+        made.design.only_surface.surface.curve.sample(np.linspace(0, 2 * PI, 3601)).speed,
+    )
     source = "Rabinowitz 1997"
     q = made.contour.support(np.linspace(0, 2 * PI, 3601)).q
     breadth = q[:1800] + q[1800:3600]

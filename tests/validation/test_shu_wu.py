@@ -124,7 +124,7 @@ def test_equations_3_to_6_second_half_turn(section_5):
 
 
 def test_equation_32_radii_of_opposite_points_make_the_breadth(section_5):
-    curve = section_5.design.surface.curve
+    curve = section_5.design.only_surface.surface.curve
     t = np.linspace(0.001, PI - 0.001, 1001)
     rho = curve.sample(t).speed
     assert rho + curve.sample(t + PI).speed == pytest.approx(np.full(1001, BREADTH), abs=1e-10)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from support import followers
 from support.page_tables import Row
 
 from camgeo.recipe.loading import read
@@ -114,7 +115,7 @@ def turns(ratio, share):
 def oval(share):
     """Whether the pitch curve of Booth's lemniscate with m^2 = share l^2 is convex: its tangent turns one way."""
     cam = f"{{kind: double-roller, ratio: 2, arm: {ARM}, roller_radius: 1, delta: {{cos: {{1: {share * ARM**2!r}}}}}}}"
-    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).surface.base
+    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).only_surface.surface.base
     return base.sample(np.array([PI / 2])).turn[0] > 0 and base.sample(np.linspace(0, 2 * PI, 721)).turn.min() > 0
 
 
@@ -257,7 +258,7 @@ def rows(workshop):
         )
     nine = workshop.shipped("w-figure-9")
     swing = np.degrees(np.arcsin(625 / 3600))
-    contact = nine.design.exact.gauge.contact(nine.contour, t)
+    contact = followers.resting(nine.design.exact.gauge, nine.contour, t)
     found += [
         Row(
             "swing of w-figure-9, asin(m²/l²), deg (CSV)",
@@ -411,7 +412,7 @@ def test_equation_4_9_symmetry_of_a_law_by_contact_with_the_file(workshop):
     made = workshop.shipped("w-law")
     follower = made.design.exact.gauge
     phi = np.linspace(0, PI / 2, 181)
-    psi = follower.contact(made.contour, phi).mean(axis=0)
-    image = follower.contact(made.contour, phi - psi + PI / 2).mean(axis=0)
+    psi = followers.resting(follower, made.contour, phi).mean(axis=0)
+    image = followers.resting(follower, made.contour, phi - psi + PI / 2).mean(axis=0)
     assert image == pytest.approx(-psi, abs=2e-4)
     assert np.ptp(psi) > 0.1

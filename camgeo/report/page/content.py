@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.law.contacts import Arrangement, Guide
+    from kin.law.contacts import Arrangement, Guide, Touch
     from kin.numeric.arrays import Array
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
@@ -59,11 +59,13 @@ class Content:
 def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Content:
     """Gather what a page shows; `results` are those of the drawings and solids that were made."""
     files = [found for result in results if (found := outline.read(recipe, result)) is not None]
-    exact = outline.Exact.of(design, outline.Exact.looks(files))
+    per = outline.Exact.looks(files)
+    exacts = [outline.Exact.of(design, made, per) for made in design.surfaces]
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots.append(curves.curvature(recipe, design, exact))
-    errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
+    plots += [curves.curvature(recipe, design, *each) for each in zip(design.surfaces, exacts, strict=True)]
+    exact, *others = exacts
+    errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files if not others]
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
     point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]
@@ -76,12 +78,10 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
 
 def _on_face(design: Design) -> list[Shape]:
     """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
-    if design.body is None:
-        return []
-    found = []
-    if design.body.hub is not None:
-        found.append(Shape("hub", (disc(0.0, 0.0, 0.5 * design.body.hub.diameter),), "hub"))
-    for opening in design.body.openings:
+    bodies = [one.body for one in design.discs if one.body is not None]
+    hubs = [body.hub for body in bodies if body.hub is not None]
+    found = [Shape("hub", (disc(0.0, 0.0, 0.5 * hub.diameter),), "hub") for hub in hubs]
+    for opening in design.openings:
         if opening.name == "mark":
             ring = Ring(opening.outline.points, opening.outline.bulges)
             found.append(Shape("timing mark", (ring,), "zero of the motion"))
@@ -92,9 +92,10 @@ def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
     bore = recipe.part.bore
     holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
     rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
-    if design.contour is None:
-        return (*rim, outline.exact(design.surface.curve, whole=True), *holes)
-    return (*rim, outline.exact(design.contour), *holes)
+    contours = [outline.exact(contour) for _, contour in design.contours]
+    if not contours:
+        contours = [outline.exact(surface.curve, whole=True) for surface in design.exact.surfaces]
+    return (*rim, *contours, *holes)
 
 
 def _mechanism(
@@ -103,9 +104,10 @@ def _mechanism(
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
-    note = "" if design.contour is not None else "The cam is not made: a check of the exact contour fails."
-    if recipe.part.outer:
-        bore = 2.0 * float(np.hypot(*design.surface.curve.sample(np.zeros(1)).point[0]))
+    note = "" if design.contours else "The cam is not made: a check of the exact contour fails."
+    first = design.exact.surfaces[0]
+    if first.side < 0:
+        bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
@@ -151,7 +153,14 @@ def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
-    return touch, view.travel(SHAFT)[0], [guided.touched(view.design.surface, size, touch.within)], plots
+    return touch, view.travel(SHAFT)[0], _contacts(view, size, touch.within), plots
+
+
+def _contacts(view: View[Guide, Touch], size: float, within: float = 0.0) -> list[Body]:
+    """Return where each surface is touched."""
+    surfaces = view.design.exact.surfaces
+    names = [f"contact, {surface.name}" if surface.name else "contact" for surface in surfaces]
+    return [guided.touched(*each, size, within) for each in zip(surfaces, names, strict=True)]
 
 
 def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Drawing:
@@ -169,7 +178,7 @@ def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, l
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, place)]
     margin = guided.MARGIN * size
-    found = [guided.touched(view.design.surface, size)]
+    found = _contacts(view, size)
     return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
 
 
@@ -198,7 +207,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     bodies = guided.roller_frame(x, first.datum + second.datum, radius, hole, size)
     found, angles = [], {}
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        found.append(guided.touched(view.design.surface, size, radius, on=on, name=f"contact of {name}"))
+        found.append(guided.touched(view.surface(first), f"contact of {name}", size, radius, on=on))
         angles[name] = view.pressure(SHAFT + on)
     return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.checks.declared import BENT
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
     from camgeo.report.page.outline import Exact
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.numeric.arrays import Array
 
 ORDER = 3
@@ -144,26 +143,26 @@ def along(recipe: Recipe, place: Array) -> Plot:
     return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
+def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact) -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
     Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
-    found = next((check for check in design.checks if check.name in BENT), None)
-    unit, radius = length_unit(recipe), design.surface.side * design.surface.radius
-    margin = ""
-    if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:
+    found, surface = made.bent, made.surface
+    unit, radius = length_unit(recipe), surface.side * surface.radius
+    margin, name = "", f", {surface.name}" if surface.name else ""
+    if found.value is not None and math.isfinite(found.value) and radius >= 0.0:
         room = (found.value - radius) / recipe.mm
         margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
-        if design.contour is not None and is_sharp(design.contour):
+        if made.contour is not None and is_sharp(made.contour):
             margin = "radius 0 about sharp corners, as the recipe has them"
     if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
         series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
         return Plot(
-            "Curvature of the pitch curve",
+            f"Curvature of the pitch curve{name}",
             f"1/{unit}",
             series,
             over,
@@ -171,7 +170,8 @@ def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
             note=margin,
         )
     values = closed(exact.radius[:: exact.per]) / recipe.mm
-    return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
+    series = (Series("radius of curvature", values),)
+    return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""),), note=margin)
 
 
 def closed(values: Array) -> Array:

@@ -131,7 +131,7 @@ def on_arm(
     ]
 
 
-def touched(surface: Surface, size: float, within: float = 0.0, *, on: float = 0.0, name: str = "contact") -> Body:
+def touched(surface: Surface, name: str, size: float, within: float = 0.0, *, on: float = 0.0) -> Body:
     """Return the contact at each shaft angle, with the direction in which the cam pushes.
 
     The follower stands `on` rad ahead of the x axis; the arrow is longer by what it runs `within` it. A ring pushes

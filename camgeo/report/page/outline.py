@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array
 
@@ -91,17 +91,17 @@ class Exact:
     kept: NDArray[np.bool_]
 
     @staticmethod
-    def of(design: Design, per: int) -> Exact:
-        """Sample the contour of a design."""
+    def of(design: Design, made: SurfaceDesign, per: int) -> Exact:
+        """Sample the contour of one of a design's surfaces."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
-        curve = design.surface.curve
+        curve = made.surface.curve
         t = next(iter(design.motion.parameters(shaft, shaft).values()))
-        frame, base = curve.sample(t), design.surface.base.sample(t)
+        frame, base = curve.sample(t), made.surface.base.sample(t)
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = base.speed / base.turn
         kept = np.ones(len(t), dtype=np.bool_)
-        if design.trimmed and design.contour is not None:
-            inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in design.contour.runs]
+        if made.trimmed and made.contour is not None:
+            inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in made.contour.runs]
             kept = np.any(inside, axis=0)
         return Exact(per, frame.point, frame.normal, radius, base.curvature, kept)
 

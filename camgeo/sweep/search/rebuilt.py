@@ -71,7 +71,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
         if lift is not None and _outside(lift):
             fault[i] = OUTSIDE
             continue
-        if design.contour is None:
+        if not design.contours:
             fault[i] = UNDERCUT
             continue
         for name, measured in of_design(made, design, design.checks, names).items():

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import BENT, PRESSURE, REVERSAL, WALL
+from camgeo.checks.declared import PRESSURE, REVERSAL, WALL
 
 if TYPE_CHECKING:
-    from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
@@ -44,20 +43,22 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
         if check.name == WALL.name and check.value is not None:
             found.append(Margin(WALL.name, check.value, "mm", "the bore breaks through the contour"))
     found += _linkage(design)
-    if design.contour is not None:
-        found += _conditions(recipe, design, design.contour)
+    found += _conditions(recipe, design)
     return found
 
 
 def _undercut(design: Design) -> list[Margin]:
-    check = next(check for check in design.checks if check.name in BENT)
-    if check.value is None:
-        return []
-    roller = design.surface.side * design.surface.radius
-    what = "the roller undercuts" if roller else "the flat face loses contact"
-    found = [Margin("undercut", check.value - roller, "mm", f"{what} (least radius of curvature)")]
-    base = roller or design.surface.curve.size
-    return [*found, Margin("undercut-relative", (check.value - roller) / base, "", f"{what}, as a part of the size")]
+    found = []
+    for made in design.surfaces:
+        surface, value = made.surface, made.bent.value
+        if value is None:
+            continue
+        roller = surface.side * surface.radius
+        what = f"{surface.name} {'the roller undercuts' if roller else 'the flat face loses contact'}".strip()
+        found.append(Margin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
+        base = roller or surface.curve.size
+        found.append(Margin("undercut-relative", (value - roller) / base, "", f"{what}, as a part of the size"))
+    return found
 
 
 def _linkage(design: Design) -> list[Margin]:
@@ -83,11 +84,13 @@ def _linkage(design: Design) -> list[Margin]:
     return found
 
 
-def _conditions(recipe: Recipe, design: Design, contour: Curve) -> list[Margin]:
+def _conditions(recipe: Recipe, design: Design) -> list[Margin]:
+    if not design.contours:
+        return []
     follower = design.exact.gauge
     unit = "deg/mm" if follower.unit == "deg" else ""
     condition = follower.motion_limit(SMALL) / SMALL
-    size = contour.size
+    size = max(contour.size for _, contour in design.contours)
     precision = recipe.export.tolerance / (EPS * size)
     return [
         Margin("motion-condition", condition, unit, "error of the follower by that of the profile", True),

@@ -136,7 +136,6 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
     repeats = REPEATS if taken < QUICK else 2 if taken < SLOW else 1
     runs = [_once(recipe, design, request, path)[1] for _ in range(repeats)]
     medians = {name: statistics.median(run[name] for run in runs) for name in runs[0]}
-    contour = design.contour
     motion = first.motion
     output = None if first.linkage is None else first.linkage.error
     return Rung(
@@ -151,17 +150,24 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
         seconds=math.fsum(medians.values()),
         stages=medians,
         pieces=first.pieces,
-        least_pieces=None if contour is None else least_pieces(form, contour, tolerance),
+        least_pieces=_least_pieces(design, form, tolerance),
         bytes=path.stat().st_size,
         failed=failed,
     )
+
+
+def _least_pieces(design: Design, form: str, tolerance: float) -> float | None:
+    """Theory's count for all contours of a design; None for a form without one."""
+    counts = [least_pieces(form, contour, tolerance) for _, contour in design.contours]
+    known = [count for count in counts if count is not None]
+    return sum(known) if known else None
 
 
 def _once(
     recipe: Recipe, design: Design, request: FileRequest, path: Path
 ) -> tuple[FileResult, dict[str, float], tuple[str, ...]]:
     """Fit, write and judge once: the file, the seconds of each stage, the checks that do not hold."""
-    if design.contour is None:
+    if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
     job = Job.of(recipe, design)

@@ -55,6 +55,11 @@ class Body:
     unmarked: Unmarked | None = None
 
     @property
+    def rim(self) -> Opening | None:
+        """The round outline of a ring; None for a disc, whose contour it is."""
+        return None if self.outer is None else disc("outline", "CUT", (0.0, 0.0), 0.5 * self.outer)
+
+    @property
     def fineness(self) -> float:
         """Share of a tolerance within which a polygon must be fitted so that its chamfer's inner edge keeps it too.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,18 +16,19 @@ from camgeo.curve.measures import farthest
 from camgeo.curve.support import is_sharp
 from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
-from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, outside_gap
+from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
 from kin.judge.check import Check
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from camgeo.curve.curve import Curve
     from camgeo.synthesis.part.body import Body, Unmarked
 
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", "bolt hole": "part.bolts.hole", "dowel": "part.dowel.hole"}  # openings and their keys
+OPENING, OUTLINE = "opening", "outline"  # as edges: a surface, and the round outline about it
 ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
 
 
@@ -53,14 +55,26 @@ class Possible(NamedTuple):
 NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
 
 
-def part_checks(body: Body, looks: Looks, least: float | None, shaft_deg: Callable[[float], float]) -> list[Check]:
-    """Check the walls of a part, and that the lightening holes asked for found room.
+def bore_check(
+    bore: float, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
+) -> Check:
+    """Check the wall round a bore of this diameter in a part that has nothing else; arguments as of `part_checks`."""
+    wall, at = max(least_wall(looks, bore) for looks in surfaces)
+    ok = wall > 0.0 if least is None else wall >= least
+    told = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
+    return Check(WALL.name, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=told)
+
+
+def part_checks(
+    body: Body, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
+) -> list[Check]:
+    """Check the walls of a part round its surfaces, and that the lightening holes asked for found room.
 
     `least` is the wall asked for; without one it must be above 0. `shaft_deg` gives the shaft angle of a parameter.
     """
     checks = []
     limit = 0.0 if least is None else least
-    pairs = thinnest(walls(body, looks), limit)
+    pairs = thinnest(walls(body, surfaces), limit)
     if pairs:
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
         told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
@@ -71,7 +85,8 @@ def part_checks(body: Body, looks: Looks, least: float | None, shaft_deg: Callab
         told += more + _free_of_thin_walls(thin, body, limit)
         checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
-        checks.append(_chamfer_check(body, looks.contour, shaft_deg))
+        chamfers = ((looks.name, _chamfer_check(body, looks.contour, shaft_deg)) for looks in surfaces)
+        checks += [replace(check, surface=name) for name, check in chamfers]
     if body.unmarked is not None:
         checks.append(_mark_check(body.unmarked))
     if body.placed is not None:
@@ -110,7 +125,7 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     outer = 0.0
     for pair in thin:
         lack = 2.0 * (limit - pair.gap.wall)
-        if (pair.one, pair.other) == ("opening", "outline"):
+        if pair.other == OUTLINE and pair.one.endswith(OPENING):
             outer = max(outer, lack)
             continue
         if pair.gap.wall < 0.0 and any(one.circle is None and one.name in pair[:2] for one in body.openings):
@@ -161,31 +176,33 @@ def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
     return [pair for wall, _, pair in found if wall <= max(least, limit)]
 
 
-def walls(body: Body, looks: Looks) -> Iterator[Possible]:
+def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between all pairs of edges; those of openings far apart are left out."""
-    yield from _ring_walls(body, looks)
+    yield from _outline_walls(body, surfaces)
     for opening in body.openings:
-        yield _to_contour(body, looks, opening, ring=body.outer is not None)
+        yield _to_surface(opening, body, surfaces)
     for i, one in enumerate(body.openings):
         for two in body.openings[:i]:
             apart = math.dist(one.middle, two.middle)
             if apart <= 2.0 * (one.reach + two.reach):
                 yield Possible(apart - one.radius - two.radius, partial(_outside, two, one))
-    yield from _hub_walls(body, looks)
+    yield from _hub_walls(body, surfaces)
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
             yield _sure(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
 
 
-def _to_contour(body: Body, looks: Looks, opening: Opening, *, ring: bool) -> Possible:
-    """Wall between an opening or a hub and the contour, or its chamfer."""
-    edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
+def _to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possible:
+    """The wall between an opening or a hub and the surface in whose metal it lies, or its chamfer: the widest."""
+    edge, other = (0.0, "contour") if body.chamfer is None else (body.chamfer, "chamfer")
 
     def pair() -> Pair:
-        gap = contour_gap(looks, opening.chain, ring=ring)
-        return Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
+        gaps = [(contour_gap(looks, opening.chain), looks.name) for looks in surfaces]
+        gap, name = max(gaps, key=lambda row: row[0].wall)
+        return Pair(opening.name, f"{name} {other}".strip(), gap._replace(wall=gap.wall - edge))
 
-    return Possible(looks.wall_at_least(opening.middle, opening.radius, ring=ring) - edge, pair)
+    at_least = max(looks.wall_at_least(opening.middle, opening.radius) for looks in surfaces)
+    return Possible(at_least - edge, pair)
 
 
 def _outside(one: Opening, other: Opening) -> Pair:
@@ -197,25 +214,27 @@ def _sure(one: str, other: str, gap: Gap) -> Possible:
     return Possible(gap.wall, lambda: Pair(one, other, gap))
 
 
-def _ring_walls(body: Body, looks: Looks) -> Iterator[Possible]:
-    """Walls between the outline of a ring and its openings, the contour first of them."""
-    if body.outer is None:
+def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
+    """Walls between the round outline of a body and what it has in it, the surfaces first."""
+    if body.outer is None or body.rim is None:
         return
-    radius, far = 0.5 * body.outer, farthest(looks.contour)
-    x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
-    yield _sure("opening", "outline", Gap(radius - far.value - slack(far), (x, y), far.at))
-    outline = disc("outline", "HOLES", (0.0, 0.0), radius)
+    radius = 0.5 * body.outer
+    for looks in surfaces:
+        far = farthest(looks.contour)
+        x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
+        gap = Gap(radius - far.value - slack(far), (x, y), far.at)
+        yield _sure(f"{looks.name} {OPENING}".strip(), OUTLINE, gap)
     for opening in body.openings:
-        yield _sure(opening.name, outline.name, inside_gap(opening.chain, outline.chain))
+        yield _sure(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))
 
 
-def _hub_walls(body: Body, looks: Looks) -> Iterator[Possible]:
+def _hub_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between the hub and all else; a hole may pass beside the hub or through it."""
     hub = body.hub
     if hub is None:
         return
     round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
-    yield _to_contour(body, looks, round_hub, ring=False)
+    yield _to_surface(round_hub, body, surfaces)
     for opening in body.openings:
         within = opening.name == "bore" or (opening.depth is None and _is_within(opening, hub.diameter))
         gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)

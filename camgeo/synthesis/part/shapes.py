@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 QUARTER = 1e-14  # rad: an angle this near to a quarter turn is one, rounded
-Layer = Literal["BORE", "HOLES", "MARK", "ENGRAVE"]
+Layer = Literal["CUT", "BORE", "HOLES", "MARK", "ENGRAVE"]
 
 
 @dataclass(frozen=True, eq=False)

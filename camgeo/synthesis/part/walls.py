@@ -17,6 +17,7 @@ from kin.contour.nearest import feet, signed_distance
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame
     from kin.contour.arcs import Arcs
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
 LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
@@ -34,16 +35,21 @@ class Gap(NamedTuple):
 
 
 class Looks(NamedTuple):
-    """A contour, and the frames at the ends of the intervals (n,) between which its distance is looked at."""
+    """A contour, and the frames at the ends of the intervals (n,) between which its distance is looked at.
+
+    The metal lies on `side` of it; `name` is that of the surface.
+    """
 
     contour: Curve
     low: Array
     high: Array
     first: Frame
     last: Frame
+    side: Side = 1
+    name: str = ""
 
     @staticmethod
-    def of(contour: Curve) -> Looks:
+    def of(contour: Curve, side: Side = 1, name: str = "") -> Looks:
         """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN."""
         cells = contour.cells
         width = cells.high - cells.low
@@ -53,30 +59,30 @@ class Looks(NamedTuple):
         low = cells.low[owner] + width[owner] * (number / parts[owner])
         last = number + 1 == parts[owner]
         high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
-        return Looks(contour, low, high, *contour.span(low, high))
+        return Looks(contour, low, high, *contour.span(low, high), side, name)
 
-    def wall_at_least(self, middle: tuple[float, float], reach: float, *, ring: bool) -> float:
+    def wall_at_least(self, middle: tuple[float, float], reach: float) -> float:
         """Wall that what lies within a circle has at least, see `contour_gap`; -inf where that is not seen at once."""
         first, last = (np.hypot(*(at.point - middle).T) for at in (self.first, self.last))
         bounds = self.contour.cells.over(self.low, self.high)
         longest = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)) * (self.high - self.low)
         wall = float((np.minimum(first, last) - 0.5 * longest).min()) - reach
-        return wall if wall > 0.0 and winds(self.first.point - middle) is not ring else -np.inf
+        return wall if wall > 0.0 and winds(self.first.point - middle) is (self.side > 0) else -np.inf
 
 
-def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
+def least_wall(looks: Looks, bore: float) -> tuple[float, float]:
     """Least wall in mm between a bore of this diameter about the shaft and the contour, and where (parameter).
 
-    Negative where the bore breaks through, and where the shaft lies outside the contour.
+    Negative where the bore breaks through, and where the shaft does not lie in the metal on that side of the contour.
     """
-    distance, at = distance_inside(Looks.of(contour), (0.0, 0.0))
-    return distance - 0.5 * bore, at
+    distance, at = distance_inside(looks, (0.0, 0.0))
+    return looks.side * distance - 0.5 * bore, at
 
 
 def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, float]:
     """How far a point lies inside a contour, mm, negative outside, and the parameter of the nearest point."""
     origin = np.array(place)
-    contour, low, high, first, last = looks
+    contour, low, high, first, last, *_ = looks
     # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
     falls, rises = _outward(first, origin), _outward(last, origin)
     turning = (falls < 0.0) & (rises > 0.0)
@@ -95,9 +101,9 @@ def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, fl
     return side * float(distance[nearest_node]), float(nodes[nearest_node])
 
 
-def contour_gap(looks: Looks, chain: Arcs, *, ring: bool = False) -> Gap:
-    """Wall between a closed chain inside a contour, outside that of a ring, and that contour; negative elsewhere."""
-    contour, low, high, first, last = looks
+def contour_gap(looks: Looks, chain: Arcs) -> Gap:
+    """Wall between a closed chain in the metal on one side of a contour and that contour; negative elsewhere."""
+    contour, low, high, first, last, side, _ = looks
     falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
     turning = (falls < 0.0) & (rises > 0.0)
 
@@ -111,7 +117,7 @@ def contour_gap(looks: Looks, chain: Arcs, *, ring: bool = False) -> Gap:
     distance = signed_distance(chain, point)
     least = int(np.argmin(distance))
     wall = float(distance[least])
-    if wall > 0.0 and winds(first.point - chain.start[0]) is ring:
+    if wall > 0.0 and winds(first.point - chain.start[0]) is (side < 0):
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
 

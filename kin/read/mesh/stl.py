@@ -96,11 +96,6 @@ class Solid(Nest):
         return next(one for one in self.sections if one.height == z)
 
     @property
-    def closed(self) -> bool:
-        """Whether every edge belongs to exactly two triangles."""
-        return self.edges.open == 0 and self.edges.crowded == 0
-
-    @property
     def thickness(self) -> float:
         """Height of the part, mm."""
         return self.z_max - self.z_min
