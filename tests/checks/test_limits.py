@@ -237,7 +237,7 @@ def test_both_bounds_are_a_check_each() -> None:
     ("text", "name", "why"),
     [
         (FLAT, "dwell-error", "the motion has no dwell"),
-        (FLAT, "backlash", "a single translating flat face has no backlash, and of a trimmed contour it is not judged"),
+        (FLAT, "backlash", "a single flat face has no backlash, and of a trimmed contour it is not judged"),
     ],
 )
 def test_a_figure_that_cannot_be_had_fails(text: str, name: str, why: str) -> None:
