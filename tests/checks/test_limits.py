@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
+from support.sweepers import evaluate
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
@@ -27,7 +28,7 @@ from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
-from camgeo.sweep.search.figures import REASONS, asked_of, evaluate
+from camgeo.sweep.search.figures import REASONS, asked_of
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
