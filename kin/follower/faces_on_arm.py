@@ -10,7 +10,6 @@ support function and those of the intent.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -27,6 +26,7 @@ from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour

@@ -7,7 +7,6 @@ itself has its clearance besides. Both positions are smooth between breaks, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +19,7 @@ from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import extremes
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from kin.follower.motion_error import ALLOWANCE
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, limit_of, stroke_of, unlimited
 from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour

@@ -11,7 +11,6 @@ Points of a cell are inside it, so one-sided values at a break are never asked f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import comb
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,6 +20,7 @@ import numpy as np
 from kin.numeric.bernstein import halves, restrict, rising_root, values
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -14,6 +13,7 @@ from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

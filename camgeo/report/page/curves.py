@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,6 +11,7 @@ from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

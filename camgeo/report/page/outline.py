@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from camgeo.curve.ring import Ring
 from camgeo.report.page.scene import STEPS
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
