@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -161,13 +162,12 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> list[tuple[float, float
     for _ in range(ZOOMS):
         near = [np.linspace(low, high, ZOOM + 1) for low, high in ranges]
         rows = of(np.concatenate(near)).reshape(len(near), len(near), -1)
-        for i, (t, (low, high)) in enumerate(zip(near, ranges, strict=True)):
-            seen = rows[i, i]
-            worst = int(np.argmax(seen))
-            if seen[worst] > best[i][0]:
-                best[i] = float(seen[worst]), float(t[worst])
+        for i, (low, high) in enumerate(ranges):
+            worst = int(np.argmax(rows[i, i]))
+            at = float(near[i][worst])
+            best[i] = max(best[i], (float(rows[i, i, worst]), at), key=itemgetter(0))
             step = (high - low) / ZOOM
-            ranges[i] = max(low, t[worst] - step), min(high, t[worst] + step)
+            ranges[i] = max(low, at - step), min(high, at + step)
     return best
 
 
