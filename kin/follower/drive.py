@@ -19,7 +19,6 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
-    from kin.follower.faces_on_arm import ArmFace
     from kin.follower.guide import Guide
     from kin.follower.support import Bearing
     from kin.numeric.arrays import Array, Indices
@@ -92,29 +91,6 @@ class OfFace:
         theta = phi + self.turned
         rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
         return rows
-
-
-@dataclass(frozen=True, eq=False)
-class OfArmFace:
-    """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
-
-    face: ArmFace
-    bearing: Bearing
-    datum: float
-    smooth: ClassVar[bool] = False
-
-    @cached_property
-    def breaks(self) -> Array:
-        """Where the contact passes from piece to piece."""
-        return np.mod(self.face.starts(self.bearing), TURN)
-
-    def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
-        rows = self.face.touch(self.bearing, phi)
-        rows[0] += self.face.side * self.datum - phi
-        rows[1] -= 1.0
-        away: Array = self.face.side * rows
-        return away
 
 
 @dataclass(frozen=True, eq=False)

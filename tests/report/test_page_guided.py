@@ -23,7 +23,6 @@ from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
-
     from camgeo.report.page.content import Content
     from camgeo.report.page.scene import Body
 
