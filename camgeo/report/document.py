@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
+    from kin.judge.verdict import SurfaceVerdict
     from kin.law.joints import Joint
 
 BELOW = "below rounding"
@@ -154,11 +155,19 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_error": None if file.bound is None else file.bound.worst / mm,
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
-        "measured_error": None if file.measured_error is None else file.measured_error / mm,
-        "motion": None if file.motion is None else _motion(recipe, file.motion),
-        **_measures(recipe, file.perimeter, file.area),
     }
-    return entry
+    if len(file.surfaces) < 2:
+        return entry | _surface(recipe, file.surface)
+    return entry | {"surfaces": [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]}
+
+
+def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
+    """What the judge measured of a surface of a file."""
+    return {
+        "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
+        "motion": None if surface.motion is None else _motion(recipe, surface.motion),
+        **_measures(recipe, surface.perimeter, surface.area),
+    }
 
 
 def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any] | None:

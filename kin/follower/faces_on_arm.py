@@ -145,7 +145,7 @@ class OfArmFace:
         return np.mod(self.face.starts(self.bearing), TURN)
 
     def rows(self, phi: Array) -> Array:
-        """See `kin.follower.drive.Excitation`."""
+        """See `Excitation`."""
         rows = self.face.touch(self.bearing, phi)
         rows[0] += self.face.side * self.datum - phi
         rows[1] -= 1.0

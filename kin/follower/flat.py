@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from kin.follower.base import Closure, Follower, Rests
-from kin.follower.drive import OfFace
 from kin.follower.envelope import FlatEnvelope, LiftPitch
+from kin.follower.guide import METRE
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
@@ -26,6 +26,31 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array, Indices
+
+
+@dataclass(frozen=True, eq=False)
+class OfFace:
+    """Distance at which a flat face rests on a contour, its normal `turned` ahead of the shaft angle.
+
+    Between two breaks it is that of one corner or one circle: q = R + C.u(theta), q'' = R - q. Along a line of travel
+    on which it stands askew it is q over `share`, the cosine.
+    """
+
+    bearing: Bearing
+    turned: float = 0.0
+    share: float = 1.0
+    smooth: ClassVar[bool] = False  # over an edge the contact leaps from end to end
+
+    @property
+    def breaks(self) -> Array:
+        """Where the contact passes from piece to piece."""
+        return np.mod(self.bearing.breaks - self.turned, TURN)
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        theta = phi + self.turned
+        rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
+        return rows
 
 
 @dataclass(frozen=True, eq=False)
