@@ -76,20 +76,9 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     checks, surfaces = list(file.checks), list[SurfaceVerdict]()
     standing = part.milling.standing if part.milling is not None else 0.0
     for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
-        found = judge_contour(chain.contour, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
-        checks += [replace(check, surface=surface.name) for check in found.checks]
-        judged, away = found.judged, found.deviation
-        surfaces.append(
-            SurfaceVerdict(
-                surface.name,
-                chain.contour,
-                judged and judged.motion,
-                judged and judged.play,
-                away.worst[0] if away else None,
-                chain.pieces,
-                found.linkage,
-            )
-        )
+        found, more = judge_contour(chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
+        checks += [replace(check, surface=surface.name) for check in more]
+        surfaces.append(found)
     closures: tuple[ClosureVerdict, ...] = ()
     if part.closures:
         from kin.judge.closure import judge_closures  # most cams have one surface
