@@ -85,15 +85,14 @@ class Surface:
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
         """Least and greatest value of one of `series`, found once; None of one that there is not."""
-        from camgeo.curve.extremes import greatest, least
+        from camgeo.curve.extremes import both
         from camgeo.curve.rates import stretches
 
         if name not in self._extremes:
             figure = self.series.get(name)
             if figure is None:
                 return None
-            over = stretches(self.base.shape)
-            self._extremes[name] = least(figure, over), greatest(figure, over)
+            self._extremes[name] = both(figure, stretches(self.base.shape))
         return self._extremes[name]
 
 

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from camgeo.sweep.search.refine import PolishError
 from camgeo.sweep.search.run import chunks_of, compute, gathered
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from camgeo.sweep.search.ask import Ask
@@ -36,18 +36,11 @@ _NEAR = 0.15  # of an axis's range in every value: polishing would lead designs 
 _APART = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
 
 
-class Polish(Protocol):
-    """Makes a design better without breaking a limit."""
-
-    def __call__(self, ask: Ask, values: dict[str, float], /) -> tuple[dict[str, float], dict[str, float]]:
-        """Values of a design that is as good or better, and its figures, in mm and degrees; or PolishError."""
-
-
-class Measure(Protocol):
-    """Tells of a few designs also what the search went without."""
-
-    def __call__(self, ask: Ask, values: Floats, /) -> Mapping[str, Floats]:
-        """All figures (m,) of designs with values (m, axes), in mm and degrees."""
+Values: TypeAlias = dict[str, float]
+Polish: TypeAlias = "Callable[[Ask, Values], tuple[Values, Values]]"
+"""Values and figures, mm and degrees, of a design as good or better that breaks no limit; raises PolishError."""
+Measure: TypeAlias = "Callable[[Ask, Floats], Mapping[str, Floats]]"
+"""All figures (m,) of designs with values (m, axes), in mm and degrees: also what the search went without."""
 
 
 @dataclass(frozen=True)
