@@ -17,7 +17,7 @@ from kin.judge.bore import bore_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
 from kin.judge.surfaces import SIZED, Parted, deepest, parted
-from kin.judge.verdict import SurfaceVerdict, Verdict
+from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
 from kin.numeric.places import place_text
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour.contour import Contour
-    from kin.judge.closure import ClosureVerdict
     from kin.judge.intent import Limits, PartIntent
     from kin.read.drawing.drawing import Drawing
     from kin.read.files import AnySolid
