@@ -17,7 +17,7 @@ from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
@@ -85,15 +85,14 @@ class Surface:
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
         """Least and greatest value of one of `series`, found once; None of one that there is not."""
-        from camgeo.curve.extremes import greatest, least
+        from camgeo.curve.extremes import both
         from camgeo.curve.rates import stretches
 
         if name not in self._extremes:
             figure = self.series.get(name)
             if figure is None:
                 return None
-            over = stretches(self.base.shape)
-            self._extremes[name] = least(figure, over), greatest(figure, over)
+            self._extremes[name] = both(figure, stretches(self.base.shape))
         return self._extremes[name]
 
 
@@ -270,10 +269,18 @@ class ExactCam(ABC):
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
         """What kin judges surfaces by, each by its name: a follower made of the same contacts by kin's own means."""
+        return self._followers(self.follower.contacts)
+
+    @cached_property
+    def running(self) -> dict[str, Gauge]:
+        """The follower itself on each surface: with the touch of its first contact, where gauges are wider."""
+        touch = self.follower.contacts[0].touch
+        return self._followers([replace(contact, touch=touch) for contact in self.follower.contacts])
+
+    def _followers(self, contacts: Sequence[Contact[Guide, Touch]]) -> dict[str, Gauge]:
         from kin.follower.follower import followers_of
 
-        sides = {surface.name: surface.side for surface in self.surfaces}
-        return followers_of(self.follower.contacts, self.judged_law, sides)
+        return followers_of(contacts, self.judged_law, {surface.name: surface.side for surface in self.surfaces})
 
     @property
     def gauge(self) -> Gauge:

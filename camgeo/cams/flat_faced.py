@@ -107,7 +107,7 @@ class ExactLifted(ExactCam):
         """A yoke where two parallel faces fit the cam, else one face."""
         contacts = self.contacts
         if not contacts:
-            mean, deviation, _ = breadth_of(self.law)
+            mean, deviation, _ = self._breadth
             yoke = self.cam.always_in_a_yoke or is_constant(mean, deviation)
             contacts = opposite(Flat(), mean) if yoke else (Contact(Translating(), Flat()),)
         two = len(contacts) > 1
@@ -115,6 +115,10 @@ class ExactLifted(ExactCam):
         if not two:
             return Follower(name, contacts, ("contact-travel",))
         return Follower(name, contacts, ("constant-breadth", "contact-travel"), "constant-breadth")
+
+    @cached_property
+    def _breadth(self) -> tuple[float, float, float]:
+        return breadth_of(self.law)
 
     @cached_property
     def motion(self) -> Position:
@@ -151,7 +155,7 @@ class ExactLifted(ExactCam):
 
     def _constant_breadth(self) -> Proof:
         """Constancy of the breadth, for a yoke (AS eq. 4)."""
-        mean, deviation, at = breadth_of(self.law)
+        mean, deviation, at = self._breadth
         limit = SAME_BREADTH * abs(mean)
         return Proof(deviation <= limit, deviation, limit, "mm", degrees(at))
 

@@ -56,9 +56,10 @@ class MotionAsked(ABC):
         from kin.law.programme import IntentError
         from kin.law.sources.peaks import extremes
 
-        least, _, greatest, at = extremes(motion.motion, 0)
+        least, greatest = motion.range
         stroke = (greatest - least) / self.scale
         if stroke > MOST * (1.0 + _ROUNDING):
+            *_, at = extremes(motion.motion, 0)
             raise IntentError(
                 f"a motion over {stroke:.10g} in all, to its greatest displacement at {math.degrees(at):.6g} degrees; "
                 f"give displacements that differ by {MOST:.0f} at most",

@@ -9,7 +9,7 @@ interval: at the top itself nothing is left. Intervals that may still hold more 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -49,8 +49,14 @@ class Extreme:
 
 def least(figure: Figure, stretches: Array) -> Extreme:
     """Least value of a figure over stretches (m, 2), none of which spans a break."""
-    found = greatest(lambda tau, side=1: -figure(tau, side), stretches)
-    return Extreme(-found.value, found.at, found.room)
+    return both(figure, stretches)[0]
+
+
+def both(figure: Figure, stretches: Array) -> tuple[Extreme, Extreme]:
+    """Least and greatest value of a figure over stretches (m, 2), none of which spans a break."""
+    seen = _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS))
+    lowest = _greatest(lambda tau, side=1: -figure(tau, side), seen.negative())
+    return Extreme(-lowest.value, lowest.at, lowest.room), _greatest(figure, seen)
 
 
 def surely_positive(figure: Figure, stretches: Array) -> bool:
@@ -66,25 +72,47 @@ def surely_positive(figure: Figure, stretches: Array) -> bool:
 
 def greatest(figure: Figure, stretches: Array) -> Extreme:
     """Greatest value of a figure over stretches (m, 2), none of which spans a break; limits at breaks count."""
-    low, high = divided(stretches[:, 0], stretches[:, 1], CELLS)
-    best, at, size = -np.inf, float(low[0]), 0.0
+    return _greatest(figure, _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS)))
+
+
+class _Seen(NamedTuple):
+    """Intervals (n,), the figure's derivatives (order + 1, 2 n) at their low and high ends, bounds over them."""
+
+    low: Array
+    high: Array
+    rows: Array
+    below: Array
+    above: Array
+
+    @staticmethod
+    def of(figure: Figure, low: Array, high: Array) -> _Seen:
+        """Look at the ends, and bound."""
+        rows = figure(Jet.variable(np.concatenate([low, high]), ORDER), np.repeat([1, -1], low.size)).derivatives()
+        return _Seen(low, high, rows, *figure(BallJet.variable(low, high, ORDER)).bounds())
+
+    def negative(self) -> _Seen:
+        """The same of the negative figure."""
+        return _Seen(self.low, self.high, -self.rows, -self.above, -self.below)
+
+
+def _greatest(figure: Figure, seen: _Seen) -> Extreme:
+    best, at, size = -np.inf, float(seen.low[0]), 0.0
     for _ in range(LEVELS):
-        ends = np.concatenate([low, high])
-        rows = figure(Jet.variable(ends, ORDER), np.repeat([1, -1], low.size)).derivatives()
-        size = max(size, float(np.abs(rows[0]).max()))
-        tops, rows = _with_tops(figure, low, high, rows)
-        places, values = np.concatenate([ends, tops]), rows[0].ravel()
+        low, high = seen.low, seen.high
+        size = max(size, float(np.abs(seen.rows[0]).max()))
+        tops, rows = _with_tops(figure, low, high, seen.rows)
+        places, values = np.concatenate([low, high, tops]), rows[0].ravel()
         top = int(np.argmax(values))
         if values[top] > best:
             best, at = float(values[top]), float(places[top])
-        reach = _most(figure, low, high, rows)
+        reach = _most(seen, rows)
         open_ = ~(reach <= best + SHARPNESS * size)
         if not open_.any():
             return Extreme(best, at, SHARPNESS * size)
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        low, high = divided(low, high, PARTS)
+        seen = _Seen.of(figure, *divided(low, high, PARTS))
     return Extreme(best, at, float(reach.max()) - best)
 
 
@@ -115,11 +143,11 @@ def _with_tops(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Ar
     return tops, values
 
 
-def _most(figure: Figure, low: Array, high: Array, rows: Array) -> Array:
+def _most(seen: _Seen, rows: Array) -> Array:
     """Upper bound of the figure over each interval (n,), of value and slope at three places (2, 3, n)."""
-    below, above = figure(BallJet.variable(low, high, ORDER)).bounds()
+    below, above = seen.below, seen.above
     top = rows[0, :2].max(axis=0)
-    width = high - low
+    width = seen.high - seen.low
     dip = np.where((below[1] >= 0.0) | (above[1] <= 0.0), 0.0, np.maximum(-below[2], 0.0) * width**2 / 8.0)
     reach: Array = np.fmin(top + dip, above[0])
     slope = np.abs(rows[1]) + ROUNDING * np.abs(rows).max(axis=(0, 1))

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 TURN = 2.0 * math.pi
 _LOOKS = 1024  # angles at which a formula's rounding is asked for
+MOST_KEPT = 8  # bounds over many intervals
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,8 +319,17 @@ class FramedShape(OfLaw[SourceT]):
         return series_of(self.figures, t, order, side, self._rates)
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
-        return bounds_of(self.figures, low, high, self._rates)
+        """Proved bounds over intervals (n,); a parallel asks for the same ones."""
+        asked = low.tobytes(), high.tobytes()
+        if asked not in self._bounds:
+            if len(self._bounds) == MOST_KEPT:
+                self._bounds.clear()
+            self._bounds[asked] = bounds_of(self.figures, low, high, self._rates)
+        return self._bounds[asked]
+
+    @cached_property
+    def _bounds(self) -> dict[tuple[bytes, bytes], Bounds]:
+        return {}
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         """Speed and turn from the motion's figures: two orders fewer."""

@@ -37,6 +37,7 @@ from camgeo.recipe.figures import (
     SIZE,
 )
 from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width, slack
+from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design, SurfaceDesign
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
+    from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
@@ -260,7 +262,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 
 def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
-    from kin.numeric.monotone import RoughError, between, cells, pieces
+    from kin.numeric.monotone import RoughError, between, cells, extremes
 
     position = design.motion
     unit, scale = position.unit, position.shown(1.0)
@@ -274,8 +276,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
-        row = pieces(made, _ORDERS[name])
-        low, high = row.least(), row.greatest()
+        low, high = extremes(made, _ORDERS[name])
         if name == "swing":
             found[name] = Measured(scale * (high[0] - low[0]), unit)
             continue
@@ -329,9 +330,9 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
 
 def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     """Measure a figure of a file that has a contour; `checks` are all that were made."""
-    motion, unread = file.motion, "the file could not be judged"
+    unread, surfaces = "the file could not be judged", file.surfaces or (UNREAD,)
     if name == "contour-error":
-        return Measured(file.measured_error, "mm", detail=unread)
+        return _greatest(Measured(one.measured_error, "mm", detail=unread, surface=one.name) for one in surfaces)
     if name == "pieces":
         return Measured(None if file.pieces is None else float(file.pieces), "", detail=unread)
     if name == "output-error":
@@ -343,11 +344,18 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         ]
         lost = "a single flat face has no backlash, and of a trimmed contour it is not judged"
         return _of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
+    dwell = name == "dwell-error"
+    return _greatest(_of_motion_error(one, dwell=dwell) for one in surfaces)
+
+
+def _of_motion_error(surface: SurfaceVerdict, *, dwell: bool) -> Measured:
+    """Greatest error of the motion on a surface of a file, or how far its dwells are from flat."""
+    motion = surface.motion
     if motion is None:
-        return Measured(None, "", detail=unread)
-    if name == "dwell-error":
-        return Measured(motion.dwell_flatness, motion.unit, detail="the motion has no dwell")
-    return Measured(motion.max, motion.unit, motion.at_deg)
+        return Measured(None, "", detail="the file could not be judged", surface=surface.name)
+    if dwell:
+        return Measured(motion.dwell_flatness, motion.unit, None, "the motion has no dwell", surface.name)
+    return Measured(motion.max, motion.unit, motion.at_deg, surface=surface.name)
 
 
 def of_dynamics(name: str, section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str | None, Measured]:

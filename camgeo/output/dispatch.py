@@ -57,13 +57,13 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 SURFACES: dict[tuple[str, str | None], int] = {
-    ("dxf", "arcs"): 1,
-    ("dxf", "polyline"): 1,
-    ("dxf", "spline"): 1,
+    ("dxf", "arcs"): 2,
+    ("dxf", "polyline"): 2,
+    ("dxf", "spline"): 2,
     ("dxf", "exact"): 1,
-    ("svg", "arcs"): 1,
-    ("svg", "polyline"): 1,
-    ("svg", "spline"): 1,
+    ("svg", "arcs"): 2,
+    ("svg", "polyline"): 2,
+    ("svg", "spline"): 2,
     ("step", "arcs"): 1,
     ("step", "spline"): 1,
     ("step", "exact"): 1,
@@ -71,10 +71,10 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("3mf", None): 1,
     ("glb", None): 1,
     ("gcode", None): 1,
-    ("csv", "motion"): 1,
-    ("csv", "contacts"): 1,
+    ("csv", "motion"): 2,
+    ("csv", "contacts"): 2,
     ("csv", "polar"): 1,
-    ("csv", "inspection"): 1,
+    ("csv", "inspection"): 2,
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 

@@ -12,7 +12,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units, of_displacements
 from camgeo.recipe.export import NO_CONTOUR
-from camgeo.report.bound import is_strict, sign, words
+from camgeo.report.bound import is_strict, named, sign, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
+    from kin.judge.verdict import SurfaceVerdict
     from kin.law.joints import Joint
 
 BELOW = "below rounding"
@@ -154,11 +155,19 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_error": None if file.bound is None else file.bound.worst / mm,
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
-        "measured_error": None if file.measured_error is None else file.measured_error / mm,
-        "motion": None if file.motion is None else _motion(recipe, file.motion),
-        **_measures(recipe, file.perimeter, file.area),
     }
-    return entry
+    if len(file.surfaces) < 2:
+        return entry | _surface(recipe, file.surface)
+    return entry | {"surfaces": [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]}
+
+
+def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
+    """What the judge measured of a surface of a file."""
+    return {
+        "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
+        "motion": None if surface.motion is None else _motion(recipe, surface.motion),
+        **_measures(recipe, surface.perimeter, surface.area),
+    }
 
 
 def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any] | None:
@@ -254,7 +263,7 @@ def table(report: dict[str, Any]) -> str:
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
     rows += [
         (
-            check["name"],
+            named(check),
             "ok" if check["ok"] else "FAILED",
             value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
@@ -274,11 +283,11 @@ def table(report: dict[str, Any]) -> str:
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
-    for file in report["files"]:
+    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
         motion = file.get("motion") or {}
         rows.append(
             (
-                escaped(file["path"]),
+                f"{escaped(file['path'])} {file.get('name', '')}".rstrip(),
                 str(file.get("bytes", "stale")),
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
@@ -314,7 +323,7 @@ def _times(stages: Sequence[dict[str, Any]]) -> str:
 
 def _told(check: dict[str, Any]) -> str:
     """A failed check as a sentence."""
-    text = f"{check['name']}"
+    text = named(check)
     if check.get("file"):
         text += f" ({escaped(check['file'])})"
     if check["value"] is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,8 +55,7 @@ def _face_length(exact: ExactCam, surface: Surface) -> Check:
     if place is None:
         raise TypeError("no contact travels along a face")
     t = spread(exact.breaks, 2.0 * math.pi)
-    low = _greatest(lambda u: -place(u), t)  # continuous too
-    high = _greatest(place, t)
+    low, high = _greatest(lambda u: np.array([-1.0, 1.0])[:, None] * place(u), t)
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
@@ -68,7 +68,9 @@ def _pressure_angle(exact: ExactCam, surface: Surface) -> Check:
         worst = max(proved, key=lambda one: abs(one.value))
         value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
-    value, at = _greatest(lambda t: np.degrees(np.abs(surface.pressure(t))), spread(exact.breaks, 2.0 * math.pi))
+    ((value, at),) = _greatest(
+        lambda t: np.degrees(np.abs(surface.pressure(t)))[None], spread(exact.breaks, 2.0 * math.pi)
+    )
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", exact.motion.shaft_deg(at))
 
 
@@ -146,24 +148,27 @@ def slack(extreme: Extreme) -> float:
     return extreme.room if extreme.room > EXACT * max(abs(extreme.value), 1.0) else 0.0
 
 
-def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
-    """Greatest value of a continuous function of period 2 pi, looked at at t (n,) and closely about the best; where.
+def _greatest(of: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
+    """Greatest values of k continuous functions of period 2 pi, looked at at t (n,) and closely about the best; where.
 
-    Of places that are equal but for rounding the first.
+    `of` gives the values (k, n). Of places that are equal but for rounding the first.
     """
-    seen = of(t)
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
-    worst = int(np.argmax(seen >= (1.0 - SAME) * seen.max()))
-    at, value = float(t[worst]), float(seen[worst])
-    low, high = float(around[worst]), float(around[worst + 2])
+    best, ranges = [], []
+    for seen in of(t):
+        worst = int(np.argmax(seen >= (1.0 - SAME) * seen.max()))
+        best.append((float(seen[worst]), float(t[worst])))
+        ranges.append((float(around[worst]), float(around[worst + 2])))
     for _ in range(ZOOMS):
-        t = np.linspace(low, high, ZOOM + 1)
-        seen = of(t)
-        worst = int(np.argmax(seen))
-        if seen[worst] > value:
-            at, value = float(t[worst]), float(seen[worst])
-        low, high = max(low, t[worst] - (high - low) / ZOOM), min(high, t[worst] + (high - low) / ZOOM)
-    return value, at
+        near = [np.linspace(low, high, ZOOM + 1) for low, high in ranges]
+        rows = of(np.concatenate(near)).reshape(len(near), len(near), -1)
+        for i, (low, high) in enumerate(ranges):
+            worst = int(np.argmax(rows[i, i]))
+            at = float(near[i][worst])
+            best[i] = max(best[i], (float(rows[i, i, worst]), at), key=itemgetter(0))
+            step = (high - low) / ZOOM
+            ranges[i] = max(low, at - step), min(high, at + step)
+    return best
 
 
 MADE: dict[str, Callable[[ExactCam, Surface], Check]] = {

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 SMALL = 0.01  # of a cam's size: undercut no deeper may be worth cutting off
 LOOKS, GOLDEN = 4096, 0.5 * (math.sqrt(5.0) - 1.0)  # places at which a contour's direction is looked at, their step
+FIRST = 256  # of them that are looked at first: where so many stretches run backwards, some of these do
 TOO_MANY = "at least {} stretches of the contour run backwards; give the motion fewer or lower waves"
 
 
@@ -243,7 +244,10 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
 
 def _seen_backward(curve: Curve) -> Array:
     """Parameters (n,), of LOOKS, at which a contour begins to run backwards: so many stretches there are at least."""
-    t = curve.shape.period * np.sort(np.arange(LOOKS) * GOLDEN % 1.0)  # in step with no number of waves
+    t = curve.shape.period * np.mod(np.arange(LOOKS, dtype=np.float64) * GOLDEN, 1.0)  # in step with no number of waves
+    if not (curve.sample(t[:FIRST]).speed < 0.0).any():
+        return t[:0]
+    t = np.sort(t)
     backward = curve.sample(t).speed < 0.0
     begins: Array = t[backward & ~np.roll(backward, 1)]
     return begins

@@ -16,23 +16,37 @@ if TYPE_CHECKING:
 
 def intended(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
-    from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
+    from kin.judge.intent import ClosureIntent, DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
-    driven, asked, linkage, gauges = design.driven, recipe.dwell, None, design.exact.gauges
+    driven, asked, linkage = design.driven, recipe.dwell, None
+    closures: tuple[ClosureIntent, ...] = ()
+    exact = design.exact
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
         linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell)
+    surfaces = tuple(
+        SurfaceIntent(
+            exact.gauges[one.surface.name],
+            one.surface.name,
+            one.surface.layer if one.surface.name else "",
+            side=one.surface.side,
+            trimmed=one.trimmed,
+            follower=exact.running[one.surface.name] if one.surface.name else None,
+        )
+        for one in design.surfaces
+    )
+    if len(surfaces) > 1 and design.follower.closure:
+        pushes, stops = (surface.name for surface in surfaces)
+        closures = (ClosureIntent(pushes, stops, design.follower.closure),)
     intent = PartIntent(
-        surfaces=tuple(
-            SurfaceIntent(gauges[one.surface.name], one.surface.name, side=one.surface.side, trimmed=one.trimmed)
-            for one in design.surfaces
-        ),
+        surfaces=surfaces,
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
         thickness=recipe.part.thickness,
         outline=recipe.part.outer,
         linkage=linkage,
+        closures=closures,
     )
     (disc,) = design.discs
     if recipe.part.plain or disc.body is None:

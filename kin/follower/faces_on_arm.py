@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
-from kin.follower.drive import OfArmFace
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
@@ -131,6 +130,29 @@ class ArmFace:
         return swing
 
 
+@dataclass(frozen=True, eq=False)
+class OfArmFace:
+    """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
+
+    face: ArmFace
+    bearing: Bearing
+    datum: float
+    smooth: ClassVar[bool] = False
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Where the contact passes from piece to piece."""
+        return np.mod(self.face.starts(self.bearing), TURN)
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        rows = self.face.touch(self.bearing, phi)
+        rows[0] += self.face.side * self.datum - phi
+        rows[1] -= 1.0
+        away: Array = self.face.side * rows
+        return away
+
+
 class _OnArm(Moved):
     """Flat faces on arms about one pivot.
 
@@ -203,8 +225,8 @@ class _OnArm(Moved):
         breaks = np.mod(self.motion.breaks, TURN)
         nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks]))
 
-        def error(phi: Array, of: Indices) -> Array:
-            return self._rows(bearing, i, phi, middle[of]) - self.course.rows(phi)
+        def error(phi: Array, interval: Indices) -> Array:
+            return self._rows(bearing, i, phi, middle[interval]) - self.course.rows(phi)
 
         def error_at(phi: Array, side: Side) -> Array:
             intended, at = self.course.rows(phi), np.isin(phi, (*breaks, 0.0, TURN))
@@ -219,8 +241,8 @@ class _OnArm(Moved):
         starts = [face.starts(bearing) for face in self.faces]
         nodes, middle = _stretches(np.concatenate(starts))
 
-        def play(phi: Array, of: Indices) -> Array:
-            a, b = (self._rows(bearing, i, phi, middle[of]) for i in (0, 1))
+        def play(phi: Array, interval: Indices) -> Array:
+            a, b = (self._rows(bearing, i, phi, middle[interval]) for i in (0, 1))
             return a - b
 
         every, low, high = np.arange(len(middle)), nodes[:-1], nodes[1:]

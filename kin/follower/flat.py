@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from kin.follower.base import Closure, Follower, Rests
-from kin.follower.drive import OfFace
 from kin.follower.envelope import FlatEnvelope, LiftPitch
+from kin.follower.guide import METRE
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
@@ -26,6 +26,31 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array, Indices
+
+
+@dataclass(frozen=True, eq=False)
+class OfFace:
+    """Distance at which a flat face rests on a contour, its normal `turned` ahead of the shaft angle.
+
+    Between two breaks it is that of one corner or one circle: q = R + C.u(theta), q'' = R - q. Along a line of travel
+    on which it stands askew it is q over `share`, the cosine.
+    """
+
+    bearing: Bearing
+    turned: float = 0.0
+    share: float = 1.0
+    smooth: ClassVar[bool] = False  # over an edge the contact leaps from end to end
+
+    @property
+    def breaks(self) -> Array:
+        """Where the contact passes from piece to piece."""
+        return np.mod(self.bearing.breaks - self.turned, TURN)
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        theta = phi + self.turned
+        rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
+        return rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +121,8 @@ class FlatFace(Follower):
             at = np.where(at == 0, len(nodes) - 1, at)
             at_high[:, at - 1] += intended[:, at] - share * lift.derivatives(nodes[at], 2, -1)
 
-        def error(phi: Array, of: Indices) -> Array:
-            return bearing.derivatives(phi + ahead, stretch[of]) - share * lift.derivatives(phi, 2)
+        def error(phi: Array, interval: Indices) -> Array:
+            return bearing.derivatives(phi + ahead, stretch[interval]) - share * lift.derivatives(phi, 2)
 
         fine = resolution(bearing.contour.vertices) + 4.0 * lift.rounding
         return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=fine)
@@ -147,7 +172,7 @@ def lift_range(bearing: Bearing, begin: float, end: float) -> float:
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)
 
-    def lift(theta: Array, of: Indices) -> Array:
-        return bearing.derivatives(theta, stretch[of])
+    def lift(theta: Array, interval: Indices) -> Array:
+        return bearing.derivatives(theta, stretch[interval])
 
     return extremes(nodes[:-1], nodes[1:], at_low, at_high, lift, resolution=resolution(bearing.contour.vertices)).span

@@ -13,14 +13,14 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from kin.contour.arcs import left, right
 from kin.contour.nearest import signed_distance
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
-from kin.follower.drive import OfRoller
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch
@@ -46,6 +46,51 @@ ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
 CLOSER = 8  # places about which samples are looked at more closely, and steps to either side
 ROUNDS = 4  # of samples, each closer than the last
 SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a train
+INSET = 1e-6  # how far within an interval between two angles it is looked for the piece that is met there
+HALVINGS = 60  # of an interval, more than a number has bits: a passage is found to its last places
+
+
+@dataclass(frozen=True, eq=False)
+class OfRoller:
+    """Position of a guided roller that rests on a contour; `obstacle` is what the roller's centre cannot enter.
+
+    The guide stands at the shaft angle and what it is `turned` ahead. What a piece's curvature and tangent make of the
+    derivatives is the guide's to tell.
+    """
+
+    obstacle: Arcs
+    guide: Guide
+    turned: float = 0.0
+    smooth: ClassVar[bool] = False  # the roller may rest in a hollow
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Where the roller passes from piece to piece; two passages within a millionth of an interval may be lost."""
+        ends = self.guide.shaft_angle(np.concatenate([self.obstacle.start, self.obstacle.ends])) - self.turned
+        ends = np.unique(np.mod(ends[np.isfinite(ends)], TURN))
+        width = np.diff(ends, append=ends[:1] + TURN)
+        ends, width = ends[width > 1e-12], width[width > 1e-12]
+        low, high = ends + INSET * width, ends + (1.0 - INSET) * width
+        piece = _touched(self.obstacle, self.guide, low, self.turned)[1]
+        leaps = piece != _touched(self.obstacle, self.guide, high, self.turned)[1]
+        low, high, piece = low[leaps], high[leaps], piece[leaps]
+        for _ in range(HALVINGS if len(low) else 0):
+            middle = 0.5 * (low + high)
+            same = _touched(self.obstacle, self.guide, middle, self.turned)[1] == piece
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        return np.sort(np.mod(np.concatenate([ends, low]), TURN))
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        guide, angle = self.guide, phi + self.turned
+        r, piece = _touched(self.obstacle, self.guide, phi, self.turned)
+        met = self.obstacle.take(piece)
+        position = guide.position(r)
+        x = guide.centre(angle, position)
+        outward = right(met.tangent) + met.curvature[:, None] * (x - met.start)
+        tangent = left(outward / np.hypot(outward[:, 0], outward[:, 1])[:, None])
+        rows: Array = guide.si * np.stack([position, *guide.rates(angle, x, tangent, met.curvature)])
+        return rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,9 +322,9 @@ def _closely(held: Sequence[Held], law: Law, looked: Array) -> tuple[float, floa
     return worst
 
 
-def _touched(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
+def _touched(obstacle: Arcs, guide: Guide, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
     """Distance from the shaft of a roller held in contact, and the piece it meets, at shaft angles phi (n,)."""
-    r, piece = first_contact(obstacle, guide, phi)
+    r, piece = first_contact(obstacle, guide, phi + turned)
     if (piece < 0).any():
         raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))
     return r, piece

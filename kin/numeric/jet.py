@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
@@ -50,9 +51,8 @@ def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
 
 def finite(c: Array, operation: str) -> Jet:
     """Return the jet of these coefficients (order + 1, n), all of them finite, or DomainError."""
-    sound = np.isfinite(c)
-    if not sound.all():
-        demand(sound.all(axis=0), operation)
+    if not math.isfinite(np.vdot(c, c)):  # or squares alone overflow
+        demand(np.isfinite(c).all(axis=0), operation)
     return Jet(c)
 
 

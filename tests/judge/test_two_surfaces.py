@@ -213,7 +213,8 @@ def test_a_flank_that_is_missing(tmp_path, layers, missing):
     assert not check.ok
     named = ("inner", "outer")[missing] if layers[0] != "CUT" else "inner"
     assert check.detail == f"the {named} is missing, on which its follower runs"
-    assert not (verdict.surfaces or verdict.closures)
+    assert not verdict.surfaces
+    assert not verdict.closures
 
 
 def test_the_flanks_of_an_arm(tmp_path):

@@ -92,6 +92,7 @@ def found_for(kind: str, request: pytest.FixtureRequest) -> Made:
     return found
 
 
+@pytest.mark.slow
 def test_each_file_is_named_with_its_unit(made: Made) -> None:
     _, folder, report = made
     for kind in PLAIN:
@@ -103,6 +104,7 @@ def test_each_file_is_named_with_its_unit(made: Made) -> None:
     assert report["units"] == "mm"
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", DRAWN)
 def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest.FixtureRequest) -> None:

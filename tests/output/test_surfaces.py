@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 from support.groove import CAM, grooved
+from support.heavy import ezdxf
 
 from camgeo.output import pipeline
 from camgeo.output.dispatch import SURFACES
 from camgeo.recipe.export import FILES
+from camgeo.report import document
 from camgeo.schema.errors import RecipeErrors
+from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 PART = "part: {thickness: 8, bore: 10}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
 FORMS = sorted(SURFACES, key=str)
+ALONE = [form for form in FORMS if SURFACES[form] == 1]
 
 
 def written(kind: str, how: str | None) -> str:
@@ -33,7 +37,7 @@ def test_every_form_of_a_file_is_in_the_table() -> None:
     assert set(SURFACES) == offered - {("html", None)}
 
 
-@pytest.mark.parametrize(("kind", "how"), FORMS)
+@pytest.mark.parametrize(("kind", "how"), ALONE)
 def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | None, tmp_path: Path) -> None:
     text = f"{CAM}\n{PART}\n{MILLED}\nexport: {{files: [{written(kind, how)}]}}\n"
     recipe = grooved(text)
@@ -45,8 +49,79 @@ def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | Non
     assert not list(tmp_path.rglob("*.*"))
 
 
-def test_a_form_that_is_taught_more_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(SURFACES, ("dxf", "arcs"), 2)
+def test_a_form_that_is_taught_more_is_named(tmp_path: Path) -> None:
     recipe = grooved(f"{CAM}\nexport: {{files: [{{csv: {{as: polar}}}}]}}\n")
     with pytest.raises(RecipeErrors, match=r"csv as polar does not hold a cam of 2 surfaces.*give dxf as arcs"):
         pipeline.export(recipe, tmp_path / "out")
+
+
+HELD = [form for form in FORMS if SURFACES[form] > 1 and form[0] in {"dxf", "svg"}]
+LIMITED = "limits: {contour-error: {at_most: 0.002}, size: {at_most: 200}}"
+
+
+def exported(files: str, folder: Path, clearance: float = 0.03, more: str = "") -> pipeline.Outcome:
+    text = f"{CAM}\npart: {{bore: 10}}\n{more}\nexport: {{tolerance: 0.001, files: [{files}]}}\n"
+    return pipeline.export(grooved(text, clearance), folder)
+
+
+@pytest.mark.parametrize(("kind", "how"), HELD)
+def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, tmp_path: Path) -> None:
+    outcome = exported(written(kind, how), tmp_path, more=LIMITED)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    checks = {(check["name"], check.get("surface")) for check in outcome.report["checks"]}
+    for name in ("pitch-radius", "undercut-global", "pressure-angle", "contour", "motion"):
+        assert checks >= {(name, "inner"), (name, "outer")}
+    assert checks >= {("form-closure", None), ("limit:contour-error", "outer"), ("limit:size", "outer")}
+    (file,) = outcome.report["files"]
+    inner, outer = file["surfaces"]
+    exact = outcome.report["contour"]
+    for one in (inner, outer):
+        assert one["measured_error"] <= 0.001
+        assert one["perimeter"] == pytest.approx(exact[one["name"]]["perimeter"], rel=1e-5)
+    assert outer["perimeter"] - inner["perimeter"] > 2 * 3.14 * 16
+    assert "perimeter" not in file
+
+
+@pytest.mark.parametrize(("kind", "how"), HELD)
+def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: Path) -> None:
+    """A file of another clearance fails on the outer flank alone, by what it is off."""
+    folder = exported(written(kind, how), tmp_path, clearance=0.035).folder
+    assert folder is not None
+    (path,) = (path for path in folder.iterdir() if path.suffix == f".{kind}")
+    meant = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [{written(kind, how)}]}}\n")
+    checks = pipeline.judged(meant, [path])["checks"]
+    failed = {(check["name"], check.get("surface")) for check in checks if not check["ok"]}
+    assert failed == {("contour", "outer"), ("motion", "outer"), ("form-closure", None)}
+    (off,) = (check["value"] for check in checks if (check["name"], check.get("surface")) == ("contour", "outer"))
+    assert off == pytest.approx(0.005, abs=0.001)
+
+
+def test_layers_and_columns_are_those_of_the_flanks(tmp_path: Path) -> None:
+    folder = exported("dxf, {csv: {as: contacts}}", tmp_path).folder
+    assert folder is not None
+    drawing = ezdxf.readfile(folder / "groove.dxf")
+    layers = [entity.dxf.layer for entity in drawing.modelspace() if entity.dxf.layer != "REFERENCE"]
+    assert layers == ["GROOVE_INNER", "GROOVE_OUTER", "BORE"]
+    header = (folder / "groove.csv").read_text().partition("\n")[0].split(",")
+    assert [name for name in header if name.endswith("_x_mm")] == ["inner_x_mm", "outer_x_mm"]
+
+
+def test_a_contact_knows_its_surface_and_one_roller_is_one() -> None:
+    design = designed(grooved(CAM))
+    assert design.follower.arrangement.contacts == 1
+    assert [contact.surface for contact in design.follower.contacts] == ["inner", "outer"]
+    with pytest.raises(ValueError, match="too many values"):
+        _ = design.only_surface
+
+
+def test_a_page_draws_every_surface() -> None:
+    recipe = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [dxf]}}\n")
+    outcome, found = pipeline.shown(recipe)
+    assert outcome.ok
+    (cam,) = (body for body in found.scene.bodies if body.name == "cam")
+    assert len(cam.shapes[0].rings) == 3  # both flanks, and the bore
+    assert {"contact, inner", "contact, outer"} <= {body.name for body in found.scene.bodies}
+    titles = [plot.title for plot in found.plots]
+    assert titles[-2:] == ["Curvature of the pitch curve, inner", "Curvature of the pitch curve, outer"]
+    rows = [row for row in document.table(outcome.report).splitlines() if row.startswith("groove.dxf")]
+    assert [row.split()[1] for row in rows] == ["inner", "outer"]

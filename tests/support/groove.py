@@ -47,6 +47,7 @@ class ExactGroove(ExactGuided):
                 pitch.pressure_angle,
                 series={"slope": pitch.slope, "spin": Spin(pitch, radius, float(side))},
                 name=name,
+                layer=f"GROOVE_{name.upper()}",
             )
             for name, side, radius in zip(FLANKS, (1, -1), self.cam.radii, strict=True)
         )
@@ -58,7 +59,9 @@ class ExactGroove(ExactGuided):
         (contact,) = alone.contacts
         rollers = zip(FLANKS, self.cam.radii, strict=True)
         return replace(
-            alone, contacts=tuple(replace(contact, touch=Roller(radius), surface=name) for name, radius in rollers)
+            alone,
+            closure="form-closure",
+            contacts=tuple(replace(contact, touch=Roller(radius), surface=name) for name, radius in rollers),
         )
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from kin.law.formula.expression import FUNCTIONS, OF_TWO, Builder, Expression, FormulaError
 
@@ -90,6 +91,7 @@ class _Token:
     column: int
 
 
+@lru_cache(maxsize=256)
 def parse(text: str, variables: tuple[str, ...]) -> Expression:
     """Return the expression that a text means; raises FormulaError."""
     if len(text) > MOST_CHARACTERS:

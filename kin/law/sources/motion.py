@@ -97,7 +97,8 @@ class Motion:
     def joints(self) -> tuple[Joint, ...]:
         """Angles at which S, S', S'' or S''' jump, with what jumps; the end of a motion that goes on is at 0."""
         knots = self.motion.knots
-        right, left = self.motion.derivatives(knots[:-1], ORDERS, 1), self.motion.derivatives(knots[1:], ORDERS, -1)
+        side = np.repeat([1, -1], knots.size - 1)
+        right, left = np.hsplit(self.motion.derivatives(np.append(knots[:-1], knots[1:]), ORDERS, side), 2)
         size = np.maximum(np.abs(right).max(axis=1), np.abs(left).max(axis=1))
         # within each part too: a short one, whose derivatives are the greatest, is easily stepped over
         inside = (knots[:-1, None] + np.diff(knots)[:, None] * _INSIDE).ravel()
