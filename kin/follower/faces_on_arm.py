@@ -225,8 +225,8 @@ class _OnArm(Moved):
         breaks = np.mod(self.motion.breaks, TURN)
         nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks]))
 
-        def error(phi: Array, of: Indices) -> Array:
-            return self._rows(bearing, i, phi, middle[of]) - self.course.rows(phi)
+        def error(phi: Array, interval: Indices) -> Array:
+            return self._rows(bearing, i, phi, middle[interval]) - self.course.rows(phi)
 
         def error_at(phi: Array, side: Side) -> Array:
             intended, at = self.course.rows(phi), np.isin(phi, (*breaks, 0.0, TURN))
@@ -241,8 +241,8 @@ class _OnArm(Moved):
         starts = [face.starts(bearing) for face in self.faces]
         nodes, middle = _stretches(np.concatenate(starts))
 
-        def play(phi: Array, of: Indices) -> Array:
-            a, b = (self._rows(bearing, i, phi, middle[of]) for i in (0, 1))
+        def play(phi: Array, interval: Indices) -> Array:
+            a, b = (self._rows(bearing, i, phi, middle[interval]) for i in (0, 1))
             return a - b
 
         every, low, high = np.arange(len(middle)), nodes[:-1], nodes[1:]
