@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
+    from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.expected_checks import Foreseen
@@ -158,7 +159,7 @@ class Run:
     fault: str = ""
     certain: bool = False
     selected: set[str] = field(default_factory=set)
-    _report: dict[str, Any] | None = field(default=None, repr=False)
+    _report: Entry | None = field(default=None, repr=False)
 
     def load(self) -> None:
         """Read the recipe, or find its faults."""
@@ -171,7 +172,7 @@ class Run:
             self._refused(errors)
 
     @property
-    def report(self) -> dict[str, Any] | None:
+    def report(self) -> Entry | None:
         """The report on the recipe; None where it has faults, which `fault` then gives."""
         if self._report is None and not self.fault:
             self._run()
@@ -279,14 +280,14 @@ class CheckItem(pytest.Item):
         """Say where the item comes from."""
         return self.path, None, self.name
 
-    def _whole(self, report: dict[str, Any] | None) -> None:
+    def _whole(self, report: Entry | None) -> None:
         if report is None:
             _fail(self.run.fault)
             return
         more = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
         self._hold(more, report)
 
-    def _one(self, wanted: Foreseen, report: dict[str, Any]) -> None:
+    def _one(self, wanted: Foreseen, report: Entry) -> None:
         found = [check for check in report["checks"] if (check["name"], check.get("file")) == wanted]
         if found:
             self.user_properties += [(key, found[0][key]) for key in ("value", "limit", "unit", "at_deg")]
@@ -294,7 +295,7 @@ class CheckItem(pytest.Item):
             return
         self._missing(wanted, report)
 
-    def _hold(self, checks: list[dict[str, Any]], report: dict[str, Any]) -> None:
+    def _hold(self, checks: list[Entry], report: Entry) -> None:
         from camgeo.report.failure import failure
 
         assert self.run.recipe is not None
@@ -302,7 +303,7 @@ class CheckItem(pytest.Item):
         if failed:
             _fail("\n".join(failed))
 
-    def _missing(self, wanted: Foreseen, report: dict[str, Any]) -> None:
+    def _missing(self, wanted: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
         from camgeo.checks.declared import CHECKS, MOTION, SECOND_OPINIONS
         from camgeo.report.failure import headline

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.api.loading import recipe_of
 from camgeo.checks.declared import (
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.loading import RecipeSource
     from camgeo.api.report import Report
+    from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.files import AnySolid, Drawing
@@ -219,7 +220,7 @@ def _judged(
     tolerance: float | None,
     angles: int | None = None,
     second_opinion: bool = False,
-) -> dict[str, Any]:
+) -> Entry:
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
     from camgeo import verify as judged
@@ -236,7 +237,7 @@ def _judged(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance, second_opinion=second_opinion))
+    report: Entry = dict(judged(recipe, path, tolerance=tolerance, second_opinion=second_opinion))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
@@ -246,7 +247,7 @@ def _judged(
     if not asked:
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
     _all_hold(asked, report, recipe, str(path))
-    entry: dict[str, Any] = report["files"][0]
+    entry: Entry = report["files"][0]
     return entry
 
 
@@ -268,7 +269,7 @@ def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Repo
         report = check(recipe, second_opinion=second_opinion)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
-    told: dict[str, Any] = dict(report)
+    told: Entry = dict(report)
     _all_hold(told["checks"], told, recipe, recipe.name)
     return report
 
@@ -305,7 +306,7 @@ def _length(name: str, value: float) -> float:
 # --- all of them ------------------------------------------------------------------------------------------------------
 
 
-def _all_hold(checks: Iterable[dict[str, Any]], report: dict[str, Any], recipe: Recipe, what: str) -> None:
+def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Recipe, what: str) -> None:
     __tracebackhide__ = True
     from camgeo.report.failure import failure
 

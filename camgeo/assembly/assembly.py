@@ -28,7 +28,7 @@ GROUND = "ground"
 class Member:
     """A body with its exact place, None for what stands still.
 
-    Members of one `group` are pressed together and move as one; `flipped` ones are printed upside down.
+    Members of one `group` are pressed together and move as one.
     """
 
     name: str
@@ -36,7 +36,6 @@ class Member:
     group: str
     place: Place | None = None
     colour: str = "#9aa5b1"
-    flipped: bool = False
 
     def body(self, steps: int = STEPS) -> PrintBody:
         """Return it as what is printed, with its places at so many equal steps of a turn."""
@@ -76,7 +75,3 @@ class Assembly:
     sizes: Sizes
     touching: frozenset[frozenset[str]] = frozenset()
     remarks: tuple[str, ...] = ()
-
-    def member(self, name: str) -> Member:
-        """Find a member by its name, which must be one."""
-        return next(member for member in self.members if member.name == name)

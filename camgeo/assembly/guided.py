@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import GROUND, Assembly, Fit, Member
+from camgeo.assembly.assembly import Assembly, Member
 from camgeo.assembly.body import Plate
 from camgeo.assembly.guide import guide_length
-from camgeo.assembly.poses import Turning, lifted, swung
-from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, roller_fits, rolling
-from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import bar, box, disc, eye, moved, pin, retainer
+from camgeo.assembly.poses import lifted, swung
+from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, pivoted, roller_fits, rolling
+from camgeo.assembly.shapes import bar, box, disc, eye, moved
 from camgeo.assembly.sizes import THIN, BodyError
 from camgeo.assembly.yoke import SHAFT, guided
 from camgeo.fit.bound import EXACT
@@ -197,16 +196,7 @@ def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         Plate(disc(hub), (eye(s),), low, high),
         Plate(box(inner, y0, float(view.place(SHAFT).max()) + s.bar, y1), (), low, high),
     )
-    place, pivot = swung(view.design.motion, arm_of.pivot, view.datum, arm_of.side), (arm_of.pivot, 0.0)
+    place = swung(view.design.motion, arm_of.pivot, view.datum, arm_of.side)
     follower = Member("follower", plates, "follower", place, ARM_COLOUR)
-    width = max(2.0 * base_radius(drive), drive.reach)
-    stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)
-    ground = base((*stand, *pin(s, pivot, s.plate, low, high)))
-    members = (follower, ground, Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR))
-    fits = (
-        *shaft_fits(drive),
-        Fit("follower on the pivot", s.clearance),
-        Fit("retainer on the pivot", s.press, pressed=True),
-    )
     touching = frozenset({frozenset({"cam", follower.name})})
-    return Assembly((*turned(drive, low, Turning(), members), *members), fits, s, touching, (SPRING,))
+    return pivoted(follower, arm_of.pivot, (low, high), drive, touching=touching, remarks=(SPRING,))

@@ -156,16 +156,32 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
         plates.append(Plate(moved(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high))
-    place, pivot = swinging(view.design.motion, away), (away, 0.0)
-    pair = Member("pair", tuple(plates), "pair", place, ARM_COLOUR)
-    width = max(2.0 * base_radius(drive), reach)
-    foot = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)
-    ground = base((*foot, *pin(s, pivot, s.plate, low, high)))
-    members = (pair, ground, Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR))
-    fits = (
-        Fit("the pair's faces about the cam", s.clearance),
+    pair = Member("pair", tuple(plates), "pair", swinging(view.design.motion, away), ARM_COLOUR)
+    return pivoted(pair, away, (low, high), drive, fits=(Fit("the pair's faces about the cam", s.clearance),))
+
+
+def pivoted(
+    follower: Member,
+    away: float,
+    heights: tuple[float, float],
+    drive: Drive,
+    *,
+    fits: tuple[Fit, ...] = (),
+    touching: frozenset[frozenset[str]] = frozenset(),
+    remarks: tuple[str, ...] = (),
+) -> Assembly:
+    """Return the mechanism of a follower in the plane of the cam, about a pivot `away` from the shaft.
+
+    `heights` are those of the cam's disc, `fits` those that stand before all others.
+    """
+    s, pivot, (low, high) = drive.sizes, (away, 0.0), heights
+    pads = [bar((0.0, 0.0), pivot, max(2.0 * base_radius(drive), drive.reach))]
+    ground = base((*bearing(drive, pads, low + drive.disk.bottom - s.gap), *pin(s, pivot, s.plate, low, high)))
+    members = (follower, ground, Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR))
+    every = (
+        *fits,
         *shaft_fits(drive),
-        Fit("pair on the pivot", s.clearance),
+        Fit(f"{follower.name} on the pivot", s.clearance),
         Fit("retainer on the pivot", s.press, pressed=True),
     )
-    return Assembly((*turned(drive, low, Turning(), members), *members), fits, s)
+    return Assembly((*turned(drive, low, Turning(), members), *members), every, s, touching, remarks)

@@ -218,7 +218,7 @@ def turned(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tu
     held = retainer(s, (0.0, 0.0), 0.0, 2.0 * shaft.journal)
     return (
         Member(CAM, disk.raised(z), CAM, place, CAM_COLOUR),
-        Member("shaft", tuple(plates), CAM, place, SHAFT_COLOUR, flipped=True),
+        Member("shaft", tuple(plates), CAM, place, SHAFT_COLOUR),
         Member("retainer-shaft", held, CAM, place, CLIP_COLOUR),
     )
 

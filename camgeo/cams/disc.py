@@ -8,9 +8,9 @@ from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
-from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
-from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
+from camgeo.schema.readers import form_of_kinds
 from camgeo.schema.yaml_source import Mapping as Written
 from camgeo.schema.yaml_source import entries
 from kin.law.contacts import (
@@ -81,18 +81,7 @@ FOLLOWERS: dict[str, Table] = {
 }
 
 
-def _read_follower(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
-    return reader.one_of(field, node, path)
-
-
-FOLLOWER = Form(
-    "a follower",
-    "a mapping with the kind of follower and its fields",
-    _read_follower,
-    lambda _: one_of_schema("follower", FOLLOWERS),
-    tables=FOLLOWERS,
-    group="follower of kind",
-)
+FOLLOWER = form_of_kinds("follower", FOLLOWERS, "follower of kind")
 
 TABLE = Table(
     (

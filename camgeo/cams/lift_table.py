@@ -7,9 +7,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from camgeo.schema.fields import MOST_TEXT, Form
+from camgeo.schema.fields import Form
 from camgeo.schema.file_bytes import bytes_of
-from camgeo.schema.scalars import Complaint
+from camgeo.schema.scalars import MOST_TEXT, Complaint
 from camgeo.schema.yaml_source import Scalar, described
 
 if TYPE_CHECKING:

@@ -154,10 +154,6 @@ def _drawing(_: Scene, file: FileRequest) -> bool:
     return file.kind not in NO_CONTOUR | SOLIDS
 
 
-def _plain(scene: Scene, file: FileRequest) -> bool:
-    return _drawing(scene, file) and file.kind != "gcode"
-
-
 def _solid(scene: Scene, file: FileRequest) -> bool:
     return _contour(scene, file) and file.kind in SOLIDS
 

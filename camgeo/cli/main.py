@@ -8,7 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.cli import laws as laws_command
 from camgeo.cli import report as page_command
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from _typeshed import SupportsWrite
 
+    from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
 
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
@@ -224,9 +225,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _loaded(
-    paths: Sequence[str], tolerance: str | None, only: Sequence[str]
-) -> tuple[list[Recipe], dict[int, dict[str, Any]]]:
+def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) -> tuple[list[Recipe], dict[int, Entry]]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong.
 
     Those others come second, by their place in the call, as a list of reports has them.
@@ -235,7 +234,7 @@ def _loaded(
     from camgeo.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
-    refused: dict[int, dict[str, Any]] = {}
+    refused: dict[int, Entry] = {}
     for i, path in enumerate(paths):
         try:
             recipe = load(path)
@@ -257,16 +256,16 @@ def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
     return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _told(recipes: list[Recipe], refused: dict[int, dict[str, Any]], task: Task, arguments: argparse.Namespace) -> int:
+def _told(recipes: list[Recipe], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
     """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
     from camgeo.cli.recipes import unmade
 
     status = WRONG if refused else OK
-    entries: list[dict[str, Any]] = []
+    entries: list[Entry] = []
     for found in results(recipes, task, arguments.jobs):
         status = max(status, found.status)
         if found.report is not None:
-            report: dict[str, Any] = dict(found.report)
+            report: Entry = dict(found.report)
             if task.out is None:
                 _mention(report, mixtures(Path(arguments.out) / found.report.recipe.name))
             entries.append(report)
@@ -287,7 +286,7 @@ def _told(recipes: list[Recipe], refused: dict[int, dict[str, Any]], task: Task,
     return status
 
 
-def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
+def _mention(report: Entry, mixed: Sequence[str]) -> None:
     """Say where files and reports do not belong together; the verdict is of what was judged, whatever that is."""
     if mixed:
         report["mixed"] = [*report.get("mixed", ()), *mixed]
@@ -295,7 +294,7 @@ def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
         _complain(text)
 
 
-def _show(report: dict[str, Any], *, verbose: bool) -> None:
+def _show(report: Entry, *, verbose: bool) -> None:
     from camgeo.report.document import summary, table, verdict
 
     say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import add_out, decimal
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
@@ -14,6 +14,7 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
+    from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
     from camgeo.schema.errors import RecipeErrors
@@ -77,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     return status
 
 
-def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, dict[str, Any]]:
+def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, Entry]:
     """Write the page of one recipe and say so; gives the exit status and page.json, or the errors in its place."""
     from camgeo.cli.recipes import unmade
     from camgeo.common.errors import SurroundingsError
@@ -131,7 +132,7 @@ def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -
     return made
 
 
-def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
+def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> Entry:
     """Write page and pictures beside the recipe's files, all or none; return the report that names them.
 
     Pictures of an earlier call stay as they are, as files do that `export --only` leaves out.
@@ -140,7 +141,7 @@ def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) ->
     from camgeo.report.document import encoded
     from camgeo.report.listed import listed
 
-    report: dict[str, Any] = {"recipe": recipe.name, "ok": ok, "files": [listed(*item) for item in files.items()]}
+    report: Entry = {"recipe": recipe.name, "ok": ok, "files": [listed(*item) for item in files.items()]}
     with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)

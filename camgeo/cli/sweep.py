@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping
 
+    from camgeo.checks.remedies import Entry
     from camgeo.sweep.search.ask import Ask
-    from camgeo.sweep.search.run import Told
+    from camgeo.sweep.search.run import Listener
     from camgeo.sweep.search.search import Means, Outcome
 
 _EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
@@ -84,7 +85,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     how = How(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:
-        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
+        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, listener=_teller(progress))
     except KeyboardInterrupt:
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
@@ -103,18 +104,19 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
 
 def _means() -> Means:
-    from camgeo.sweep.search.evaluator import REASONS, figures, measure
+    from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.figures import REASONS, figures
     from camgeo.sweep.search.refine import polish
     from camgeo.sweep.search.search import Means
 
-    return Means(figures, measure, polish, REASONS)
+    return Means(figures, Ask.measured, polish, REASONS)
 
 
 def _complain(ask: Ask, text: str) -> None:
     complain(f"camgeo: {ask.recipe.name}: {text}")
 
 
-def _teller(progress: Progress) -> Told:
+def _teller(progress: Progress) -> Listener:
     """Progress with the time left, from the speed so far."""
 
     def tell(what: str, done: int, wanted: int, seconds: float) -> None:
@@ -133,7 +135,7 @@ def duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
-def _summary(report: dict[str, Any], folder: Path) -> str:
+def _summary(report: Entry, folder: Path) -> str:
     """What was found, or why nothing was, in a line; `failing` overlap, as a design may break several limits."""
     counts, rank, run = report["counts"], report["sweep"]["rank"], report["run"]
     speed = f", {run['designs_per_second']:,.0f} a second" if run["designs_per_second"] else ""
@@ -148,7 +150,7 @@ def _summary(report: dict[str, Any], folder: Path) -> str:
     return f"{report['recipe']}: no design is within the limits, of {looked}: {', '.join(reasons)}{near}; {folder}"
 
 
-def _nearest(report: dict[str, Any]) -> str:
+def _nearest(report: Entry) -> str:
     """The design that misses the limits by least, as a share of each, and what it misses."""
     near = report["nearest"]
     bounds = report["sweep"]["limits"][near["breaks"]]
@@ -164,18 +166,18 @@ def _by_figure(values: Mapping[str, Number]) -> list[tuple[str, Number]]:
     return [(name, value) for name, value in values.items() if name not in PRESENT]
 
 
-def _stuck(report: dict[str, Any]) -> str:
+def _stuck(report: Entry) -> str:
     """How many designs have no figures, and why."""
     counts = report["counts"]
     why = ", ".join(f"{reason} {number:,}" for reason, number in counts["reasons"].items())
     return f"{counts['not_turning']:,} do not turn" + (f" ({why})" if why else "")
 
 
-def _value(report: dict[str, Any], figure: str, value: float) -> str:
+def _value(report: Entry, figure: str, value: float) -> str:
     return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
 
 
-def _table(report: dict[str, Any]) -> str:
+def _table(report: Entry) -> str:
     """The counts and the first of the best designs."""
     counts = report["counts"]
     lines = [f"  {_stuck(report)}"]

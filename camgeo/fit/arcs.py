@@ -17,7 +17,7 @@ import numpy as np
 from camgeo.common.rounding import upward
 from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
-from camgeo.fit.free_arcs import Fitted
+from camgeo.fit.free_arcs import Fitted, cross
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
@@ -295,7 +295,7 @@ def _round(curve: Curve, density: Density, inner: Array, limit: float) -> Fitted
     """
     first, last = curve.span(density.t[:1], density.t[-1:])
     along = np.concatenate([first.tangent, inner, last.tangent])
-    step = np.arctan2(_cross(along[:-1], along[1:]), np.sum(along[:-1] * along[1:], axis=1))
+    step = np.arctan2(cross(along[:-1], along[1:]), np.sum(along[:-1] * along[1:], axis=1))
     turned = np.append(0.0, np.cumsum(step))
     count = max(1, math.ceil(float(np.abs(turned).max()) / HALF_TURN))
     order = np.sign(turned[-1])
@@ -305,7 +305,7 @@ def _round(curve: Curve, density: Density, inner: Array, limit: float) -> Fitted
     nodes[0], nodes[-1] = density.t[0], density.t[-1]
     a, b = (first, last) if count == 1 else curve.span(nodes[:-1], nodes[1:])
     curvature, bulges, arrived = _arc_from(a.point, a.tangent, b.point)
-    miss = np.abs(_cross(arrived, b.tangent)) / np.abs(curvature)
+    miss = np.abs(cross(arrived, b.tangent)) / np.abs(curvature)
     if float(miss.max()) > rounding(curve.size):
         return None
     chain = Chain(a.point, a.tangent, curvature, nodes[:-1], nodes[1:])
@@ -362,17 +362,12 @@ def _arc_from(start: Array, tangent: Array, end: Array) -> tuple[Array, Array, A
     square = np.sum(chord * chord, axis=1)
     length = np.sqrt(square)
     cosine = np.sum(tangent * chord, axis=1) / length
-    cross = _cross(tangent, chord)
-    curvature = 2.0 * cross / square
-    bulge = (cross / length) / (1.0 + cosine)
+    across = cross(tangent, chord)
+    curvature = 2.0 * across / square
+    bulge = (across / length) / (1.0 + cosine)
     return curvature, bulge, 2.0 * (cosine / length)[:, None] * chord - tangent
 
 
 def _interleave(a: Array, b: Array) -> Array:
     """a0, b0, a1, b1, ... (2n, ...)."""
     return np.stack([a, b], axis=1).reshape(-1, *a.shape[1:])
-
-
-def _cross(a: Array, b: Array) -> Array:
-    cross: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return cross

@@ -57,15 +57,10 @@ class Chain:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Proved range of f for each piece (n,): the curve lies at most `outside` and at least `inside` from the piece.
-
-    `seen_high` and `seen_low` (n,) are the extremes found at nodes, so the true extremes lie between seen and proved.
-    """
+    """Proved range of f for each piece (n,): the curve lies at most `outside` and at least `inside` from the piece."""
 
     inside: Array
     outside: Array
-    seen_low: Array
-    seen_high: Array
 
     @property
     def worst(self) -> Array:
@@ -84,12 +79,11 @@ def chain_deviation(
     """
     count = chain.low.size
     inside, outside = np.empty(count), np.empty(count)
-    seen_low, seen_high = np.empty(count), np.empty(count)
     todo = np.arange(count)
     while todo.size:
         part = Chain(*(getattr(chain, name)[todo] for name in ("start", "tangent", "curvature", "low", "high")))
         low, high, node_low, node_high = _ranges(curve, part, nodes)
-        inside[todo], outside[todo], seen_low[todo], seen_high[todo] = low, high, node_low, node_high
+        inside[todo], outside[todo] = low, high
         seen = np.maximum(node_high, -node_low)
         loose = np.maximum(high - node_high, node_low - low) > SLACK * tolerance
         if decide and count <= FEW:
@@ -100,7 +94,7 @@ def chain_deviation(
         nodes *= 2
         if nodes > MOST_NODES:
             break
-    return Deviation(inside, outside, seen_low, seen_high)
+    return Deviation(inside, outside)
 
 
 def seen_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:

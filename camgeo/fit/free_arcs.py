@@ -238,11 +238,11 @@ def _arcs(layout: _Layout, joints: _Joints, frame: Frame) -> _Arcs:
     start, along = point[left], tangent[left]
     chord = point[right] - start
     square = np.sum(chord * chord, axis=1)
-    curvature = 2.0 * _cross(along, chord) / square
+    curvature = 2.0 * cross(along, chord) / square
     mean = along + tangent[right]
     mean /= np.hypot(mean[:, 0], mean[:, 1])[:, None]
     chain = Chain(start, along, curvature, joints.t[left], joints.t[right])
-    return _Arcs(frame, chain, chord, np.sqrt(square), _cross(chord, mean))
+    return _Arcs(frame, chain, chord, np.sqrt(square), cross(chord, mean))
 
 
 def _peaks(layout: _Layout, arcs: _Arcs, at: Frame) -> _Peaks:
@@ -344,10 +344,11 @@ def _bulges(arcs: _Arcs) -> Array:
     """Tangents of a quarter of each arc's angle (n,)."""
     along = arcs.chain.tangent
     cosine = np.sum(along * arcs.chord, axis=1) / arcs.length
-    bulges: Array = (_cross(along, arcs.chord) / arcs.length) / (1.0 + cosine)
+    bulges: Array = (cross(along, arcs.chord) / arcs.length) / (1.0 + cosine)
     return bulges
 
 
-def _cross(a: Array, b: Array) -> Array:
-    cross: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return cross
+def cross(a: Array, b: Array) -> Array:
+    """Cross products (n,) of vectors (n, 2): above 0 where b points left of a."""
+    area: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return area

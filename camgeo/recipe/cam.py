@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
-from camgeo.schema.fields import Field, Form, Table
-from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.readers import form_of_kinds
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Cam
+    from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
-    from camgeo.schema.yaml_source import Node
 
 CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
 MADE = (
@@ -23,20 +22,7 @@ MADE = (
 """Which followers there are cams for, in the error of a kind that is none."""
 
 
-def read_cam(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
-    """Read the cam by the table of its kind."""
-    return reader.one_of(field, node, path)
-
-
-CAM = Form(
-    "a cam",
-    "a mapping with the kind of cam and its fields",
-    read_cam,
-    lambda _: one_of_schema("cam", CAMS),
-    tables=CAMS,
-    group="cam of kind",
-    others=MADE,
-)
+CAM = form_of_kinds("cam", CAMS, "cam of kind", MADE)
 
 
 def check_cam(cam: Values, reader: Reader) -> None:

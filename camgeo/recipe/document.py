@@ -13,7 +13,7 @@ from camgeo.schema.change import changed
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import present
-from camgeo.schema.yaml_source import Source, as_written, read_source
+from camgeo.schema.yaml_source import Source, as_written
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -92,7 +92,7 @@ class Document:
 
     def source(self) -> Source:
         """Read the text as a tree."""
-        return _source(self.text, self.path)
+        return Source.of(self.text, str(self.path))
 
     def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
         """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
@@ -103,9 +103,5 @@ class Document:
             if there in given:
                 raise self.error(there, f"the same field as {given[there]}", None, "give it one value")
             given[there] = path
-            text = changed(_source(text, self.path), there, value)
+            text = changed(Source.of(text, str(self.path)), there, value)
         return text
-
-
-def _source(text: str, path: Path) -> Source:
-    return read_source(text.encode("utf-8", "surrogatepass"), str(path))

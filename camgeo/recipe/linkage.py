@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.readers import form_of_kinds
 from camgeo.schema.yaml_source import join
 
 if TYPE_CHECKING:
@@ -79,11 +80,6 @@ class DwellAsked:
     band: float
     at_least: float | None = None
     over: Literal["shaft", "relative"] = "shaft"
-
-
-def read_linkage(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
-    """Read the linkage by the table of its kind."""
-    return reader.one_of(field, node, path)
 
 
 def read_dyads(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
@@ -161,7 +157,7 @@ DYADS: dict[str, Table] = {
 }
 
 
-_DYAD = Form("a dyad", "a mapping with the kind of dyad and its fields", read_linkage, _dyads_schema, tables=DYADS)
+_DYAD = form_of_kinds("dyad", DYADS)
 _LIST = Form(
     "a list of dyads",
     "a list of dyads such as [{kind: rrr, point: [80, 0], ground: [140, 80], links: [100, 30]}]",
@@ -231,14 +227,7 @@ TURNING = ("inverted-slider-crank",)  # whose frame may be given a swing: the li
 SLIDING = ("slider-crank", "rrp")  # kinds of linkage and of dyad whose output is a length
 
 
-LINKAGE = Form(
-    "a linkage",
-    "a mapping with the kind of linkage and its fields",
-    read_linkage,
-    lambda _: one_of_schema("linkage", LINKAGES),
-    tables=LINKAGES,
-    group="linkage of kind",
-)
+LINKAGE = form_of_kinds("linkage", LINKAGES, "linkage of kind")
 
 
 DWELL = (

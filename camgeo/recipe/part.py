@@ -16,6 +16,8 @@ from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Scalar
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
@@ -421,6 +423,14 @@ def _told(value: float, reader: Reader) -> str:
 
 
 SIDES = {"square": 4, "hexagon": 6}
+FEATURES: Mapping[str, Callable[..., object]] = {
+    "flat": Flat,
+    "hub": Hub,
+    "set_screw": SetScrew,
+    "bolts": Bolts,
+    "dowel": Dowel,
+    "lightening": Lightening,
+}
 
 
 def build_part(values: Values) -> Part:
@@ -429,24 +439,12 @@ def build_part(values: Values) -> Part:
     form: Values = bore if isinstance(bore, dict) else {}
     name = next((name for name in SIDES if name in form), "")
     width = form[name] if name else bore
-    mark = values.get("mark")
-    return Part(
-        thickness=values.get("thickness"),
-        outer=values.get("outer"),
-        bore=width,
-        sides=SIDES.get(name, 0),
-        bore_at=form.get("at", 0.0),
-        keyway=_keyway(values.get("keyway"), width),
-        flat=Flat(**values["flat"]) if "flat" in values else None,
-        hub=Hub(**values["hub"]) if "hub" in values else None,
-        set_screw=SetScrew(**values["set_screw"]) if "set_screw" in values else None,
-        bolts=Bolts(**values["bolts"]) if "bolts" in values else None,
-        dowel=Dowel(**values["dowel"]) if "dowel" in values else None,
-        lightening=Lightening(**values["lightening"]) if "lightening" in values else None,
-        chamfer=values.get("chamfer"),
-        mark=None if mark is None else Mark(**{"kind" if key == "as" else key: item for key, item in mark.items()}),
-        wall=values.get("wall"),
-    )
+    features: Values = {name: feature(**values[name]) for name, feature in FEATURES.items() if name in values}
+    features |= {name: values[name] for name in ("thickness", "outer", "chamfer", "wall") if name in values}
+    if "mark" in values:
+        features["mark"] = Mark(**{"kind" if key == "as" else key: item for key, item in values["mark"].items()})
+    shape = {"bore": width, "sides": SIDES.get(name, 0), "bore_at": form.get("at", 0.0)}
+    return Part(**shape, keyway=_keyway(values.get("keyway"), width), **features)
 
 
 def _keyway(keyway: Values | None, bore: float | None) -> Keyway | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import (
     BENT,
@@ -16,6 +16,9 @@ from camgeo.checks.declared import (
     REVERSAL,
     WALL,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 STRICT: dict[str, float | None] = {
     **dict.fromkeys(BENT),
@@ -42,6 +45,11 @@ def words(check: dict[str, Any]) -> str:
     """Say on which side of its limit the figure must lie: `at least`, `more than`, `at most`, `less than`."""
     below, least = ("less than", "more than") if is_strict(check) else ("at most", "at least")
     return least if check["sense"] == "at_least" else below
+
+
+def named(check: Mapping[str, object]) -> str:
+    """Name of a check, with that of the surface that it is of where the cam has several."""
+    return f"{check['name']} {check.get('surface', '')}".rstrip()
 
 
 def sign(check: dict[str, Any]) -> str:

@@ -12,7 +12,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units, of_displacements
 from camgeo.recipe.export import NO_CONTOUR
-from camgeo.report.bound import is_strict, sign, words
+from camgeo.report.bound import is_strict, named, sign, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 
@@ -263,7 +263,7 @@ def table(report: dict[str, Any]) -> str:
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
     rows += [
         (
-            check["name"],
+            named(check),
             "ok" if check["ok"] else "FAILED",
             value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
@@ -283,11 +283,11 @@ def table(report: dict[str, Any]) -> str:
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
-    for file in report["files"]:
+    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
         motion = file.get("motion") or {}
         rows.append(
             (
-                escaped(file["path"]),
+                f"{escaped(file['path'])} {file.get('name', '')}".rstrip(),
                 str(file.get("bytes", "stale")),
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
@@ -323,7 +323,7 @@ def _times(stages: Sequence[dict[str, Any]]) -> str:
 
 def _told(check: dict[str, Any]) -> str:
     """A failed check as a sentence."""
-    text = f"{check['name']}"
+    text = named(check)
     if check.get("file"):
         text += f" ({escaped(check['file'])})"
     if check["value"] is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY, LIMIT, LIMITS, Declared
-from camgeo.report.bound import words
+from camgeo.report.bound import named, words
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -34,7 +34,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
 def headline(check: dict[str, Any]) -> str:
     """Tell a failed check on one line."""
     file = check.get("file")
-    text = f"{check['name']} of {file}" if file else check["name"]
+    text = f"{named(check)} of {file}" if file else named(check)
     if check["value"] is None:
         return f"{text}: {check.get('detail') or 'nothing to measure'}"
     parts = [_value(check), _limit(check)]

@@ -9,22 +9,23 @@ from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
-from camgeo.schema.edit import index_of, line_starts, spelled
+from camgeo.schema.edit import spelled
 from camgeo.schema.errors import RecipeError, RecipeErrors, shown
 from camgeo.schema.yaml_source import (
     MAX_DEPTH,
     Mapping,
     Scalar,
     Sequence,
+    Source,
     entries,
     is_empty,
+    is_within,
     join,
-    read_source,
     scalars,
 )
 
 if TYPE_CHECKING:
-    from camgeo.schema.yaml_source import Node, Source
+    from camgeo.schema.yaml_source import Node
 
 Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | None"
 """What may stand in a recipe: a text, a number, a truth value, nothing, and lists and mappings of those."""
@@ -53,7 +54,7 @@ def changed(source: Source, path: str, value: Value) -> str:
             return _checked(source, path, _added(source, node, at, steps[i:], value))
         node, at = found, join(at, step)
     own = {id(scalar) for _, scalar in scalars(node)}
-    if any(id(scalar) in own for there, scalar in scalars(source.root) if not _is_below(there, path)):
+    if any(id(scalar) in own for there, scalar in scalars(source.root) if not is_within(there, path)):
         raise _refused(source, path, "an alias shares this place with others", "write the value out where it stands")
     text = _flow(value, path, source.file, 0)
     first, behind = _span(source, node.mark, node.end)
@@ -72,7 +73,7 @@ def exchanged(source: Source, path: str, key: str, value: Value) -> str:
     pairs = node.entries if isinstance(node, Mapping) else ()
     for old, held in pairs:
         if isinstance(old, Scalar) and old.text == name:
-            first, behind = _index(source, old.mark), _index(source, held.end)
+            first, behind = source.index(old.mark), source.index(held.end)
             text = source.text[first:behind]
             there = f"{path.removesuffix(str(name))}{key}"
             new = f"{key}: {_flow(value, there, source.file, 0)}{text[len(text.rstrip()) :]}"
@@ -113,15 +114,10 @@ def _added(source: Source, node: Node, at: str, steps: list[str | int], value: V
     if not isinstance(node, Mapping):
         return changed(source, at, {name: value})
     if node.flow:
-        end = _index(source, node.entries[-1][1].end) if node.entries else _index(source, node.end) - 1
+        end = source.index(node.entries[-1][1].end) if node.entries else source.index(node.end) - 1
         return f"{source.text[:end]}{', ' if node.entries else ''}{text}{source.text[end:]}"
     key, last = node.entries[-1]
-    line, column = last.mark if is_empty(last) else last.end
-    behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins
-    while behind > key.mark[0] and not source.lines[behind - 1].strip():
-        behind -= 1
-    starts = [*line_starts(source.text), len(source.text)]
-    cut = starts[behind]
+    cut = [*source.starts, len(source.text)][source.last_line(key, last)]
     before = source.text[:cut]
     newline = "\r\n" if "\r\n" in source.text else "\n"
     before += "" if before.endswith(("\n", "\r")) else newline
@@ -131,7 +127,7 @@ def _added(source: Source, node: Node, at: str, steps: list[str | int], value: V
 def _checked(source: Source, path: str, text: str, new_path: str = "") -> str:
     """Give back the new text, if it says what the old one did but for the value at a path, or at a new one."""
     try:
-        new = read_source(text.encode("utf-8", "surrogatepass"), source.file).root
+        new = Source.of(text, source.file).root
     except RecipeErrors as errors:
         raise _refused(source, path, "the value cannot be put there", "write it into the text by hand") from errors
     if _others(source.root, path) != _others(new, new_path or path):
@@ -139,21 +135,13 @@ def _checked(source: Source, path: str, text: str, new_path: str = "") -> str:
     return text
 
 
-def _is_below(path: str, top: str) -> bool:
-    return path == top or path.startswith((f"{top}.", f"{top}["))
-
-
 def _others(root: Node, path: str) -> dict[str, str]:
     """Give the texts at all other paths; nothing, which a value may have replaced, is none."""
-    return {at: scalar.text for at, scalar in scalars(root) if not (_is_below(at, path) or is_empty(scalar))}
-
-
-def _index(source: Source, mark: tuple[int, int]) -> int:
-    return index_of(line_starts(source.text), mark)
+    return {at: scalar.text for at, scalar in scalars(root) if not (is_within(at, path) or is_empty(scalar))}
 
 
 def _span(source: Source, mark: tuple[int, int], end: tuple[int, int]) -> tuple[int, int]:
-    return _index(source, mark), max(_index(source, mark), _index(source, end))
+    return source.index(mark), max(source.index(mark), source.index(end))
 
 
 def _refused(source: Source, path: str, problem: str, remedy: str) -> RecipeErrors:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.common.errors import CallError
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.quantity import parted
 from camgeo.schema.scalars import Complaint, read_number
-from camgeo.schema.yaml_source import Mapping, Scalar, Source, is_empty, keys, read_source, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Source, keys, read_source, scalars
 
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.schema.yaml_source import Mark, Node
+    from camgeo.schema.yaml_source import Node
 
-_LINE_END = re.compile(r"\r\n|\r|\n")
 _NAME = "recipe"  # of a text in errors
 
 
@@ -43,10 +42,9 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
         if shared := [other for other, node in found if node is scalar and other != path]:
             raise CallError(f"an alias shares the number at {path} with {shared[0]}")
         changes.append((scalar, spelled(value)))
-    starts = line_starts(source.text)
     text = source.text
     for scalar, number in sorted(changes, key=lambda change: change[0].mark, reverse=True):
-        first, behind = index_of(starts, scalar.mark), index_of(starts, scalar.end)
+        first, behind = source.index(scalar.mark), source.index(scalar.end)
         text = text[:first] + _like(text[first:behind], number) + text[behind:]
     return text
 
@@ -81,17 +79,7 @@ def spelled(value: float) -> str:
 
 
 def _source(recipe: str | Source) -> Source:
-    return recipe if isinstance(recipe, Source) else read_source(recipe.encode("utf-8", "surrogatepass"), _NAME)
-
-
-def line_starts(text: str) -> list[int]:
-    """Indices in a text at which its lines begin."""
-    return [0, *(found.end() for found in _LINE_END.finditer(text))]
-
-
-def index_of(starts: list[int], mark: Mark) -> int:
-    """Index in a text of a line and a column, from where its lines begin."""
-    return starts[mark[0] - 1] + mark[1] - 1
+    return recipe if isinstance(recipe, Source) else Source.of(recipe, _NAME)
 
 
 def _like(old: str, number: str) -> str:
@@ -103,26 +91,21 @@ def _like(old: str, number: str) -> str:
 
 def _without_entry(source: Source, root: Mapping, index: int) -> str:
     """Cut an entry out of braces, with the comma that sets it off."""
-    starts = line_starts(source.text)
     if index + 1 < len(root.entries):
         first, behind = root.entries[index][0].mark, root.entries[index + 1][0].mark
     elif index:
         first, behind = root.entries[index - 1][1].end, root.entries[index][1].end
     else:
         first, behind = root.entries[index][0].mark, root.entries[index][1].end
-    return source.text[: index_of(starts, first)] + source.text[index_of(starts, behind) :]
+    return source.text[: source.index(first)] + source.text[source.index(behind) :]
 
 
 def _without_lines(source: Source, root: Mapping, index: int) -> str:
     """Cut the lines of an entry, and the indented comments behind it."""
     key, value = root.entries[index]
-    starts = [*line_starts(source.text), len(source.text)]
+    starts = [*source.starts, len(source.text)]
     first, indent = key.mark
-    line, column = value.mark if is_empty(value) else value.end
-    behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins
-    while behind > first and not source.lines[behind - 1].strip():
-        behind -= 1
-    behind = max(behind, first)
+    behind = max(source.last_line(key, value), first)
     for number, text in enumerate(source.lines[behind:], behind + 1):
         if re.match(rf"[ \t]{{{indent},}}#", text):
             behind = number
@@ -131,7 +114,8 @@ def _without_lines(source: Source, root: Mapping, index: int) -> str:
     return source.text[: starts[first - 1]] + source.text[starts[behind] :]
 
 
-def _plain(node: Node) -> Any:  # noqa: ANN401 - texts, lists of them, lists of those
+def _plain(node: Node) -> object:
+    """Texts, lists of them, lists of those: what a tree says, without its places."""
     if isinstance(node, Scalar):
         return node.text
     if isinstance(node, Mapping):
@@ -139,5 +123,5 @@ def _plain(node: Node) -> Any:  # noqa: ANN401 - texts, lists of them, lists of 
     return tuple(map(_plain, node.items))
 
 
-def _plain_pair(pair: tuple[Node, Node]) -> tuple[Any, Any]:
+def _plain_pair(pair: tuple[Node, Node]) -> tuple[object, object]:
     return _plain(pair[0]), _plain(pair[1])

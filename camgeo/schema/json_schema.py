@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from camgeo.schema.fields import (
     MOST,
-    MOST_TEXT,
     Field,
     Kind,
     Table,
     length,
 )
 from camgeo.schema.quantity import ANGLES, LENGTHS
+from camgeo.schema.scalars import MOST_TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

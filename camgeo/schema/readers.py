@@ -1,10 +1,11 @@
-"""Which function reads which kind of field, those apart whose topic has a form of its own."""
+"""Which function reads which kind of field, and the forms of mappings that come in kinds."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import Kind
+from camgeo.schema.fields import Form, Kind
+from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.read_list import (
     read_harmonics,
     read_numbers,
@@ -15,6 +16,9 @@ from camgeo.schema.read_scalar import read_choice, read_formula, read_numeric, r
 from camgeo.schema.reader import Reader
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.schema.fields import Table
     from camgeo.schema.reader import Readers
 
 READERS: Readers = {
@@ -38,3 +42,16 @@ READERS: Readers = {
     Kind.NUMBERS: read_numbers,
     Kind.TABLE: Reader.mapping,
 }
+
+
+def form_of_kinds(noun: str, tables: Mapping[str, Table], group: str = "", others: str = "") -> Form:
+    """Make the form of a mapping whose `kind` says which table has its keys; see `Form` for `group` and `others`."""
+    return Form(
+        f"a {noun}",
+        f"a mapping with the kind of {noun} and its fields",
+        Reader.one_of,
+        lambda _: one_of_schema(noun, tables),
+        tables=tables,
+        group=group,
+        others=others,
+    )

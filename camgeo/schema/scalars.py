@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from camgeo.schema.fields import MOST_LAMBDA, MOST_TEXT
-
+MOST_LAMBDA = 200
+MOST_TEXT = 1000  # characters
 _UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")
 _FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 import yaml
@@ -30,6 +31,7 @@ _FORBIDDEN = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\u
 _DISPUTED = re.compile(
     r"[\t?]|[|>][0-9+-]*#"
 )  # libyaml takes some that PyYAML's own reader refuses: the latter decides
+_LINE_END = re.compile(r"\r\n|\r|\n")
 _DIRECTIVE = re.compile(r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%")
 _BARE = re.compile(r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
 _PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]{1,40}")
@@ -84,6 +86,28 @@ class Source:
     lines: tuple[str, ...]
     root: Node
 
+    @staticmethod
+    def of(text: str, file: str) -> Source:
+        """Read a text, as `read_source` reads bytes."""
+        return read_source(text.encode("utf-8", "surrogatepass"), file)
+
+    @cached_property
+    def starts(self) -> list[int]:
+        """Indices in the text at which its lines begin."""
+        return [0, *(end.end() for end in _LINE_END.finditer(self.text))]
+
+    def index(self, mark: Mark) -> int:
+        """Index in the text of a line and a column."""
+        return self.starts[mark[0] - 1] + mark[1] - 1
+
+    def last_line(self, key: Node, value: Node) -> int:
+        """Number of the last line of an entry of a mapping in lines, blank ones behind it left out."""
+        line, column = value.mark if is_empty(value) else value.end
+        last = line - (column == 1)  # a block of text ends where the next line begins
+        while last > key.mark[0] and not self.lines[last - 1].strip():
+            last -= 1
+        return last
+
 
 @dataclass(slots=True)
 class _Frame:
@@ -127,7 +151,7 @@ def read_source(data: bytes, file: str) -> Source:
     if _DIRECTIVE.match(text):
         place = _place(text, text.index("%"))
         raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
-    lines = tuple(re.split(r"\r\n|\r|\n", text))
+    lines = tuple(_LINE_END.split(text))
     return Source(file, text, lines, _parse(text, lines, file))
 
 
@@ -216,7 +240,7 @@ def _decode(data: bytes, file: str) -> str:
 def _place(text: str, index: int | None) -> Mark:
     """Line and column of the character at `index`, or of the last one."""
     before = text[:-1] if index is None else text[:index]
-    lines = re.split(r"\r\n|\r|\n", before)
+    lines = _LINE_END.split(before)
     return len(lines), len(lines[-1].removeprefix("\ufeff")) + 1
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from support.bodies import FIT, build, placed, polygon
 from support.cases import few
+from support.parts import member_of
 
 from camgeo.assembly.body import Plate
 from camgeo.assembly.build import assembly_of
@@ -183,7 +184,7 @@ def test_rates_are_those_of_the_places(name: str) -> None:
 
 def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.ndarray:
     """Path (n, 2) of a point of a body."""
-    member = assembly.member(name)
+    member = member_of(assembly, name)
     assert member.place is not None
     x, y, angle = member.place(np.linspace(0.0, TURN, 9), 0)[:, 0]
     c, s = np.cos(angle), np.sin(angle)
@@ -219,7 +220,7 @@ def test_joints_meet(
     for member, at in ((one, point), (other, there or point)):
         radii = [
             (kind, 0.5 * float(np.hypot(*(ring.points[0] - ring.points[1]))))
-            for plate in assembly.member(member).plates
+            for plate in member_of(assembly, member).plates
             for kind, rings in (("pin", (plate.outline,)), ("hole", plate.holes))
             for ring in rings
             if ring.count == 2 and np.abs(ring.points.mean(axis=0) - at).max() < 1e-9
@@ -234,7 +235,7 @@ def test_joints_meet(
 
 def test_the_faces_of_a_yoke_stand_at_the_breadth_and_the_clearance() -> None:
     _, design, assembly = made("yoke")
-    frame = assembly.member("yoke").plates[0]
+    frame = member_of(assembly, "yoke").plates[0]
     x0, _, x1, _ = frame.holes[0].box()
     assert design.follower.breadth == pytest.approx(50.0)
     assert x1 - x0 == pytest.approx(50.0 + assembly.sizes.clearance, abs=1e-12)
@@ -243,13 +244,13 @@ def test_the_faces_of_a_yoke_stand_at_the_breadth_and_the_clearance() -> None:
 
 def test_the_square_of_a_linkage_stands_at_the_breadth_and_the_clearance() -> None:
     assembly = made("four-bar")[2]
-    box = assembly.member("frame").plates[0].holes[0].box()
+    box = member_of(assembly, "frame").plates[0].holes[0].box()
     assert np.allclose(box, np.array([-1.0, -1.0, 1.0, 1.0]) * 25.1, atol=1e-12)
 
 
 def test_the_pair_of_faces_stands_off_by_half_the_clearance() -> None:
     assembly = made("flat pair")[2]
-    for plate in assembly.member("pair").plates[1:]:
+    for plate in member_of(assembly, "pair").plates[1:]:
         edge = np.roll(plate.outline.points, -1, axis=0) - plate.outline.points
         off = (plate.outline.points[:, 0] * edge[:, 1] - plate.outline.points[:, 1] * edge[:, 0]) / np.hypot(*edge.T)
         assert np.abs(off).min() == pytest.approx(assembly.sizes.gap_each_side)
@@ -258,15 +259,15 @@ def test_the_pair_of_faces_stands_off_by_half_the_clearance() -> None:
 def test_rollers_are_exactly_as_intended_and_turn_on_their_pins() -> None:
     assembly = made("double roller")[2]
     for side in ("a", "b"):
-        (wheel,) = assembly.member(f"roller-{side}").plates
+        (wheel,) = member_of(assembly, f"roller-{side}").plates
         assert 0.5 * np.hypot(*(wheel.outline.points[0] - wheel.outline.points[1])) == pytest.approx(8.0, abs=1e-12)
-    cam = assembly.member("cam")
+    cam = member_of(assembly, "cam")
     assert (cam.plates[0].low, cam.plates[0].high) == (wheel.low, wheel.high)
 
 
 def test_a_single_flat_face_is_exact_and_says_what_holds_it() -> None:
     assembly = made("flat face")[2]
-    assert assembly.member("follower").plates[0].outline.box()[0] == 0.0
+    assert member_of(assembly, "follower").plates[0].outline.box()[0] == 0.0
     assert frozenset({"cam", "follower"}) in assembly.touching
     assert "gravity or a spring" in assembly.remarks[0]
 
@@ -280,9 +281,9 @@ def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) ->
     assert len(touching) == (2 if name == "roller yoke" else 1)
     allowed = FIT + 3.0 * FLATTENED
     for phi in np.linspace(0.1, TURN, 13):
-        disc_, low, high = placed(assembly.member("cam"), phi)[0]
+        disc_, low, high = placed(member_of(assembly, "cam"), phi)[0]
         for touch in touching:
-            level = [p for p, a, b in placed(assembly.member(touch), phi) if a < high and b > low]
+            level = [p for p, a, b in placed(member_of(assembly, touch), phi) if a < high and b > low]
             assert min(p.distance(disc_) for p in level) <= allowed, (touch, phi)
             assert all(not p.intersects(disc_.buffer(-allowed)) for p in level), (touch, phi)
 
@@ -291,7 +292,7 @@ def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) ->
 def test_the_frame_leaves_the_boss_of_the_base_its_space() -> None:
     assembly = made("roller yoke")[2]
     checks = {check.detail: check for check in collision_checks(only(assembly, "frame", "base"))}
-    frame, base = assembly.member("frame").plates[0], assembly.member("base").plates
+    frame, base = member_of(assembly, "frame").plates[0], member_of(assembly, "base").plates
     assert len(frame.holes) == 1
     assert any(plate.high > frame.low and plate.low < frame.high for plate in base)
     assert checks["frame and base"].ok
@@ -299,11 +300,11 @@ def test_the_frame_leaves_the_boss_of_the_base_its_space() -> None:
 
 def test_a_stem_runs_on_its_own_line_between_its_guides_blocks() -> None:
     assembly = made("roller on a stem")[2]
-    place = assembly.member("stem").place
+    place = member_of(assembly, "stem").place
     assert place is not None
     assert (place(np.linspace(0.0, TURN, 9), 0)[1, 0] == 8.0).all()
-    s, stem = assembly.sizes, assembly.member("stem").plates[0]
-    beside = [p.outline.box() for p in assembly.member("base").plates if p.low < stem.high < p.high]
+    s, stem = assembly.sizes, member_of(assembly, "stem").plates[0]
+    beside = [p.outline.box() for p in member_of(assembly, "base").plates if p.low < stem.high < p.high]
     blocks = [box_ for box_ in beside if box_[0] > 45.0]
     gaps = [min(abs(y - 8.0) for y in (box_[1], box_[3])) for box_ in blocks]
     assert gaps == pytest.approx([0.5 * (s.bar + s.clearance)] * 2)
@@ -312,7 +313,7 @@ def test_a_stem_runs_on_its_own_line_between_its_guides_blocks() -> None:
 def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
     _, _, assembly = made("pivot within")
     assert "retainer-pivot" not in {member.name for member in assembly.members}
-    cam, arm = assembly.member("cam").plates[0], assembly.member("arm").plates[0]
+    cam, arm = member_of(assembly, "cam").plates[0], member_of(assembly, "arm").plates[0]
     assert cam.low == pytest.approx(arm.high + assembly.sizes.gap)
     assert "keeps the arm on its pin" in assembly.remarks[0]
 
@@ -328,13 +329,13 @@ def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
 def test_the_shaft_fits_the_bore(bore: str, more: str, area: float) -> None:
     text = SHAPES["yoke"] + PART.replace("bore: 8", f"bore: {bore}{more}")
     assembly = build(text)[2]
-    plates = assembly.member("shaft").plates
+    plates = member_of(assembly, "shaft").plates
     assert plates[1].outline.area == pytest.approx(area)
     journal = 0.5 * np.hypot(*(plates[0].outline.points[0] - plates[0].outline.points[1]))
-    holes = [hole for plate in assembly.member("base").plates for hole in plate.holes]
+    holes = [hole for plate in member_of(assembly, "base").plates for hole in plate.holes]
     least = min(0.5 * float(np.hypot(*(hole.points[0] - hole.points[1]))) for hole in holes)
     assert least == pytest.approx(journal + 0.1)
-    (clip,) = assembly.member("retainer-shaft").plates
+    (clip,) = member_of(assembly, "retainer-shaft").plates
     inner = 0.5 * np.hypot(*(clip.holes[0].points[0] - clip.holes[0].points[1]))
     assert inner == pytest.approx(journal - 0.05)
 
@@ -342,8 +343,8 @@ def test_the_shaft_fits_the_bore(bore: str, more: str, area: float) -> None:
 @pytest.mark.parametrize("more", ["flat: {across: 7}", "keyway: {width: 2, depth: 1, at: 90}"])
 def test_the_shaft_of_a_flat_or_a_key_keeps_the_clearance_all_round(more: str) -> None:
     assembly = build(SHAPES["yoke"] + PART.replace("bore: 8", f"bore: 8, {more}"))[2]
-    drive = assembly.member("shaft").plates[1].outline
-    bore = assembly.member("cam").plates[0].holes[0]
+    drive = member_of(assembly, "shaft").plates[1].outline
+    bore = member_of(assembly, "cam").plates[0].holes[0]
     gap = polygon(bore).exterior.distance(polygon(drive))
     assert gap == pytest.approx(0.1, abs=0.005)
     assert polygon(bore).contains(polygon(drive))
@@ -429,8 +430,8 @@ def only(assembly: Assembly, *names: str) -> Assembly:
 @pytest.mark.slow
 def test_a_bar_at_the_level_of_the_cam_is_caught() -> None:
     whole = made("four-bar")[2]
-    low, assembly = whole.member("cam").plates[0].low, only(whole, "frame", "rocker")
-    planted = shifted(assembly, "rocker", low - assembly.member("rocker").plates[0].low)
+    low, assembly = member_of(whole, "cam").plates[0].low, only(whole, "frame", "rocker")
+    planted = shifted(assembly, "rocker", low - member_of(assembly, "rocker").plates[0].low)
     wrong = [check for check in collision_checks(planted) if not check.ok]
     assert [check.detail.partition(" interfere")[0] for check in wrong] == ["frame and rocker"]
     assert wrong[0].value is not None
@@ -438,15 +439,15 @@ def test_a_bar_at_the_level_of_the_cam_is_caught() -> None:
     assert wrong[0].at_deg is not None
     assert "mm" in wrong[0].detail
     # shapely agrees that there they interfere
-    there = [placed(planted.member(name), math.radians(wrong[0].at_deg)) for name in ("frame", "rocker")]
+    there = [placed(member_of(planted, name), math.radians(wrong[0].at_deg)) for name in ("frame", "rocker")]
     assert any(a[0].intersects(b[0]) and a[1] < b[2] and b[1] < a[2] for a in there[0] for b in there[1])
 
 
 def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     assembly = only(made("pivot within")[2], "cam", "base")
-    ground = assembly.member("base")
-    post = Plate(disc(4.0, 60.0, 0.0), (), 0.0, assembly.member("cam").plates[0].high)
-    planted = replace(assembly, members=(assembly.member("cam"), replace(ground, plates=(*ground.plates, post))))
+    ground = member_of(assembly, "base")
+    post = Plate(disc(4.0, 60.0, 0.0), (), 0.0, member_of(assembly, "cam").plates[0].high)
+    planted = replace(assembly, members=(member_of(assembly, "cam"), replace(ground, plates=(*ground.plates, post))))
     (_, check) = collision_checks(planted)
     assert not check.ok
     assert check.detail.startswith("cam and base interfere, near (5")

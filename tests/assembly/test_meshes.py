@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from support.cases import few
 from support.heavy import trimesh
+from support.parts import member_of
 
 from camgeo.assembly.body import Plate, PrintBody
 from camgeo.assembly.build import assembly_of
@@ -154,7 +155,7 @@ def test_corners_that_are_one_once_rounded_leave_nothing_open():
     """The edge of an arm passes under a rail at a slant: three pairs of corners lie within a millionth of a mm."""
     recipe = load_text(SLANTED, "c.yaml")
     design = designed(recipe)
-    base = assembly_of(recipe, design, Job.of(recipe, design).fits[0].within("arcs", E)).member("base").body()
+    base = member_of(assembly_of(recipe, design, Job.of(recipe, design).fits[0].within("arcs", E)), "base").body()
     mesh, off = body_mesh(base, tolerance=E, precision=SINGLE)
     assert off <= E
     assert as_trimesh(mesh).is_watertight

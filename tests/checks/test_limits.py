@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
+from support.sweepers import evaluate
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
@@ -27,7 +28,7 @@ from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
-from camgeo.sweep.search.figures import REASONS, asked_of, evaluate
+from camgeo.sweep.search.figures import REASONS, asked_of
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
@@ -150,7 +151,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -237,7 +238,7 @@ def test_both_bounds_are_a_check_each() -> None:
     ("text", "name", "why"),
     [
         (FLAT, "dwell-error", "the motion has no dwell"),
-        (FLAT, "backlash", "a single translating flat face has no backlash, and of a trimmed contour it is not judged"),
+        (FLAT, "backlash", "a single flat face has no backlash, and of a trimmed contour it is not judged"),
     ],
 )
 def test_a_figure_that_cannot_be_had_fails(text: str, name: str, why: str) -> None:
@@ -318,7 +319,7 @@ SLIGHT = ROLLER.replace("625", "20")
 FINE = "export: {tolerance: 0.0001, "
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [

@@ -15,6 +15,7 @@ from support.page_tables import PaperRow, Row, cells, off
 from support.places import ROOT
 
 import camgeo
+from camgeo.api.design import Design
 
 DOCS = ROOT / "docs"
 FIGURES = DOCS / "figures"
@@ -71,6 +72,20 @@ def test_a_wrong_figure_and_a_wrong_word_of_a_table_are_found() -> None:
     assert off(shown, [replace(rows[0], ours=rows[0].ours + 1e-4), *rows[1:]]) != []
     assert off(shown, [replace(rows[0], source="SW 25"), *rows[1:]]) != []
     assert off(shown, rows[:-1]) != []
+
+
+def test_a_spoilt_motion_is_found_by_the_rows_of_its_equations(monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = Design.motion
+
+    def spoilt(self, theta, *, derivative=0):
+        """A ten-thousandth of a millimetre, twice a turn."""
+        wave = np.sin(2 * np.asarray(theta) + derivative * np.pi / 2)
+        return sound(self, theta, derivative=derivative) + 1e-4 * 2**derivative * wave
+
+    monkeypatch.setattr(Design, "motion", spoilt)
+    failed = {row.source for row in paper_pages.TABLES["validation.md", "paper SW"]() if not row.holds}
+    assert failed >= {"Figure 3", "Figure 4", "2", "3", "4, 5, 6", "9", "10", "11, 12, 13, 14", "15, 16, 17", "31, 32"}
+    assert "1" not in failed  # the contour's own breadth is none of it
 
 
 @pytest.mark.parametrize("paper", EQUATIONS)

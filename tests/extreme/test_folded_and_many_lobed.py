@@ -123,7 +123,7 @@ def undercut_by_small_rise(radius):
         curve = recipe(cam, files=ARCS).cam.exact().surfaces[0].curve
         lost = remains(curve, causes(curve)).lost
     corners = np.concatenate([one.corners for one in lost])
-    ends = PitchCurve.of(curve).at(np.array([[one.start, one.end] for one in lost]).ravel()).point
+    ends = PitchCurve.of(curve).curve.sample(np.array([[one.start, one.end] for one in lost]).ravel()).point
     off = np.abs(np.hypot(*(ends - np.repeat(corners, 2, axis=0)).T) - radius).max() / radius
     yield Row(
         f"law of 0.001 degrees over 0.01, lambda/mu = 7/5, roller of {radius:g} mm",
@@ -309,7 +309,7 @@ def arcs():
         )
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(30)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -344,6 +344,7 @@ DOUBLES = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few(DOUBLES, 2))
 def test_double_roller_follows_ever_finer_polygons_ever_better(name):
     transmission, formula = DOUBLES[name]
@@ -410,6 +411,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     assert 0.95 * play < gap < 1.001 * play
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05

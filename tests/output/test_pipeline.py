@@ -47,7 +47,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(18)
 @pytest.mark.parametrize("path", few(RECIPES, 3), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)
@@ -95,6 +95,7 @@ def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> Non
     assert motion["value"] <= 2.0 * motion["limit"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("arc", "tolerance"),
     [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
@@ -196,6 +197,7 @@ def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(
     assert not (tmp_path / "shu-wu").exists()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["stl", "dxf"])
 def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp_path: Path) -> None:
     import subprocess
@@ -270,7 +272,7 @@ def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
     assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", ["reuleaux", "reuleaux-nine", "as-figure-13-1", "w-figure-9"])
 def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].parent / f"{name}.yaml")
@@ -298,6 +300,7 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("clearance", "rounding", "breadth", "told"),
     [

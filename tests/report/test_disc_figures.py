@@ -420,8 +420,8 @@ def test_a_guide_without_a_stem() -> None:
 
 @pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
-    from camgeo.sweep.search import evaluator
     from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.figures import figures as searched
 
     text = disc("kind: roller, radius: 9, offset: 6", more=TRAIN + "\n")
     text += """\
@@ -435,7 +435,7 @@ sweep:
 """
     recipe = load_text(text, "cam.yaml")
     ask = Ask.of(recipe)
-    columns = evaluator.figures(ask.scene(ask.figures), ask.plan.values(0, 3))
+    columns = searched(ask.scene(ask.figures), ask.plan.values(0, 3))
     names = ["pressure-angle-return", "peak-acceleration-at-speed", "jam-margin", "roller-speed"]
     for i, base in enumerate((30, 35, 40)):
         found = figures(text.replace("base_radius: 36", f"base_radius: {base}"), *names)

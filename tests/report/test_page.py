@@ -142,6 +142,7 @@ def test_text_of_a_recipe_cannot_break_out(tmp_path: Path) -> None:
     assert "{{data}} &lt;/pre&gt;" in text
 
 
+@pytest.mark.slow
 def test_the_same_recipe_gives_the_same_page() -> None:
     assert of("shu-wu").text == Made(RECIPES / "shu-wu.yaml").text
 
@@ -166,6 +167,7 @@ def test_checks_stand_with_their_values_failed_ones_first(tmp_path: Path) -> Non
     parsed(made.text)
 
 
+@pytest.mark.thin(3)
 def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
     table = made.text.partition('id="checks-head"')[2].partition("</section>")[0]
     for check in made.outcome.report["checks"]:

@@ -192,6 +192,7 @@ def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -
     assert all(y.endswith(unit) for (y, _), unit in zip(axes, units, strict=False))
 
 
+@pytest.mark.slow
 def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: Path) -> None:
     page_ = opened(browser, of("shu-wu"), tmp_path)
     page_.ask("""(() => {
@@ -223,6 +224,7 @@ def test_the_address_leads_to_an_angle_and_follows_it(browser: Browser, tmp_path
     assert page_.problems == []
 
 
+@pytest.mark.slow
 def test_on_a_phone_the_drawing_stays_in_sight(browser: Browser, tmp_path: Path) -> None:
     browser.size(390, 844, mobile=True)
     try:

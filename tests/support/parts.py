@@ -46,3 +46,8 @@ def failures(path, recipe, design, tolerance=0.01, **changes):
     """Names of the checks that a file fails; `changes` of the intent."""
     intent = replace(intended(recipe, design), **changes)
     return {check.name for check in verify(path, intent, 36, Limits(tolerance)).checks if not check.ok}
+
+
+def member_of(assembly, name):
+    """The body of an assembly with this name."""
+    return next(member for member in assembly.members if member.name == name)

@@ -12,6 +12,7 @@ import numpy as np
 
 from camgeo.recipe.loading import read
 from camgeo.sweep.search.ask import Ask
+from camgeo.sweep.search.figures import Evaluator
 from camgeo.sweep.search.gather import REASON
 from camgeo.sweep.search.job import Job
 from camgeo.sweep.search.plan import Axis, Plan, steps
@@ -120,3 +121,13 @@ def tree(folder: Path) -> dict[str, bytes]:
                 data = re.sub(rb'"run": \{.*?\}', b"", data, flags=re.DOTALL)
             found[str(path.relative_to(folder))] = data
     return found
+
+
+def evaluate(recipe, paths, values, **how):
+    """Figures of designs in which the fields at `paths` have the values (m, k), as `Evaluator` gives them."""
+    return Evaluator.of(recipe, paths, **how).found(values)
+
+
+def compute(recipe, values):
+    """Figures of designs with the values (m, k) of a recipe's sweep."""
+    return evaluate(recipe, tuple(axis.path for axis in recipe.sweep.vary), values).figures

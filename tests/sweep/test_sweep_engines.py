@@ -25,7 +25,7 @@ from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, t
 from camgeo.recipe.loading import read
 from camgeo.sweep.search import engines
 from camgeo.sweep.search.ask import Ask
-from camgeo.sweep.search.evaluator import figures
+from camgeo.sweep.search.figures import figures
 from camgeo.sweep.search.job import Job, VersionsError, result
 from camgeo.sweep.search.plan import Axis, Plan
 from camgeo.sweep.search.run import How, chunks_of, compute
@@ -233,6 +233,7 @@ def slowly(seconds: float) -> float:
     return seconds
 
 
+@pytest.mark.slow
 def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
     begun = time.monotonic()
     results = engines.at_once(slowly, [0.0, 60.0, 60.0], 2)

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 from support.places import RECIPES
+from support.sweepers import evaluate
 
 from camgeo.cams.flat_faced import breadth_of
 from camgeo.recipe.loading import load, load_text
 from camgeo.sweep.search import refine
 from camgeo.sweep.search.ask import Ask
-from camgeo.sweep.search.figures import evaluate
 from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
 from camgeo.sweep.search.refine import PolishError, output_error, polish
 from camgeo.synthesis.linkage import mechanism_of

@@ -101,7 +101,7 @@ def neck_from(pitch: Pitch, first: float, second: float) -> Neck | None:
 
 def rolling_radius(pitch: Pitch, t: Array, s: Array) -> Array:
     """R(x(t), y(s)) for all pairs, (n, m): infinite where y lies on the outer side of the tangent at x."""
-    x, y = pitch.at(t), pitch.at(s)
+    x, y = pitch.curve.sample(t), pitch.curve.sample(s)
     d = x.point[:, None] - y.point[None]
     across = np.einsum("nmi,ni->nm", d, x.normal)
     square = np.einsum("nmi,nmi->nm", d, d)
@@ -243,8 +243,7 @@ def _double_normals(pitch: Pitch, ends: Array) -> Array:
     ends = ends.copy()
     count = ends.shape[0]
     for _ in range(NEWTON):
-        both = pitch.at(ends.T.ravel())
-        x, y = both.part(slice(None, count)), both.part(slice(count, None))
+        x, y = pitch.curve.sample(ends.T.ravel()).split(count)
         d = x.point - y.point
         f, g = np.sum(d * x.tangent, axis=1), np.sum(d * y.tangent, axis=1)
         ft, fs = x.speed - x.turn * np.sum(d * x.normal, axis=1), -y.speed * np.sum(x.tangent * y.tangent, axis=1)
@@ -264,8 +263,7 @@ def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Arra
     The slant is how far both tangents are from square to it.
     """
     count = ends.shape[0]
-    both = pitch.at(ends.T.ravel())
-    x, y = both.part(slice(None, count)), both.part(slice(count, None))
+    x, y = pitch.curve.sample(ends.T.ravel()).split(count)
     d = x.point - y.point
     length = np.hypot(d[:, 0], d[:, 1])
     slant = np.full(count, np.inf)

@@ -17,6 +17,7 @@ from camgeo.curve.parallel import Parallel
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from camgeo.curve.curve import Frame
     from kin.numeric.arrays import Array
 
 
@@ -33,12 +34,7 @@ class Pitch:
             raise TypeError("only a roller's contour has a pitch curve")
         return Pitch(Curve(contour.shape.base, contour.runs))
 
-    def at(self, t: Array) -> Points:
-        """Points at parameters t (n,)."""
-        f = self.curve.sample(t)
-        return Points(f.point, f.tangent, f.normal, f.speed, f.turn, f.speed_slope, f.turn_slope)
-
-    def bounds(self, low: Array, high: Array, points: Points, t: Array) -> Bends:
+    def bounds(self, low: Array, high: Array, points: Frame, t: Array) -> Bends:
         """Bounds over intervals [low, high] (n,), each about a point at t (n,) of its own."""
         b = self.curve.cells.over(low, high)
         far = np.maximum(t - low, high - t)
@@ -62,31 +58,6 @@ class Pitch:
         breaks = np.array(self.curve.runs[0].breaks)
         inside: NDArray[np.bool_] = np.searchsorted(breaks, high) > np.searchsorted(breaks, low, side="right")
         return inside
-
-
-@dataclass(frozen=True)
-class Points:
-    """Points, tangents, outward normals (n, 2); speed, turn and their derivatives (n,) of the pitch curve."""
-
-    point: Array
-    tangent: Array
-    normal: Array
-    speed: Array
-    turn: Array
-    speed_slope: Array
-    turn_slope: Array
-
-    def part(self, chosen: slice) -> Points:
-        """Give a slice of the points."""
-        return Points(
-            self.point[chosen],
-            self.tangent[chosen],
-            self.normal[chosen],
-            self.speed[chosen],
-            self.turn[chosen],
-            self.speed_slope[chosen],
-            self.turn_slope[chosen],
-        )
 
 
 @dataclass(frozen=True)
@@ -134,8 +105,8 @@ class Pairs:
         """Work out what is known of the pairs of boxes."""
         count = boxes.low.shape[0]
         centre = 0.5 * (boxes.low + boxes.high)
-        both = pitch.at(centre.T.ravel())
-        x, y = both.part(slice(None, count)), both.part(slice(count, None))
+        both = pitch.curve.sample(centre.T.ravel())
+        x, y = both.split(count)
         bends = pitch.bounds(boxes.low.T.ravel(), boxes.high.T.ravel(), both, centre.T.ravel())
         bend_low, bend_high = bends.low.reshape(2, count), bends.high.reshape(2, count)
         reach = 0.5 * bends.speed.reshape(2, count) * (boxes.high - boxes.low).T

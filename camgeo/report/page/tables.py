@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
-from camgeo.report.bound import sign
+from camgeo.report.bound import named, sign
 from camgeo.report.document import measured, pieces_word, value_text
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _row(state: tuple[str, str], one: dict[str, Any], limit: str, over: str, tol
     detail = f'<div class="detail">{escape(told)}</div>' if told else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
-        f'<th scope="row">{escape(one["name"])}{detail}</th>'
+        f'<th scope="row">{escape(named(one))}{detail}</th>'
         f'<td class="number">{value}</td>'
         f"<td>{escape(_unit(one['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(one['at_deg'], over))}"
         f"{_cell(escape(one.get('file', '')), 'file')}</tr>"
@@ -88,7 +88,7 @@ def _is_in_frame(check: dict[str, Any]) -> bool:
 def written(report: dict[str, Any]) -> str:
     """Return the table of files."""
     rows = []
-    for file in report["files"]:
+    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
         if file.get("stale"):
             cells = ["left as it was", *[NONE] * 6]
         else:
@@ -105,7 +105,8 @@ def written(report: dict[str, Any]) -> str:
             ]
         body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
         link = f'<a href="{quote(file["path"])}">{escape(file["path"])}</a>'
-        rows.append(f'<tr><th scope="row">{link}</th>{body}</tr>')
+        surface = f" {escape(file['name'])}" if "name" in file else ""
+        rows.append(f'<tr><th scope="row">{link}{surface}</th>{body}</tr>')
     if not rows:
         return "<p>No files were made.</p>"
     unit = "in" if report["units"] == "inch" else "mm"

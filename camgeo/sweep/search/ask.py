@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.sweep import Axis as Varied
     from camgeo.recipe.sweep import Sweep
+    from camgeo.sweep.search.gather import Floats
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
@@ -113,6 +114,11 @@ class Ask:
             sweep=plain,
         )
         return Scene(recipe, figures)
+
+    def measured(self, values: Floats) -> dict[str, Floats]:
+        """All figures (m,) of designs with the values (m, axes) of the sweep, in mm and degrees."""
+        scene = self.scene(self.all_figures)
+        return Evaluator.of(scene.recipe, scene.paths).found(values).figures
 
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""

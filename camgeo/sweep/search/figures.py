@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -22,6 +22,7 @@ from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import rebuilt
 from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
 from camgeo.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
+from camgeo.sweep.search.gather import REASON
 from camgeo.sweep.search.linkages import Lengths, angles, engine
 from camgeo.sweep.search.windows import Samples, longest
 from kin.linkage.loop import side_of
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.linkage.four_bar import Linkage
 
-__all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
-
 Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
 
@@ -43,6 +42,7 @@ REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
 _SAMPLES = 360
 DWELLS = (DWELL, "dwell-relative")
+_HEAP = 3 << 20  # numbers, 24 MB
 
 
 class Found(NamedTuple):
@@ -68,36 +68,12 @@ class Scene:
         return tuple(axis.path for axis in self.recipe.sweep.vary) if self.recipe.sweep else ()
 
 
-def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
-    """Give the figures of designs with the given values (m, k) of the recipe's sweep, in its units; see `evaluate`."""
-    if recipe.sweep is None:
-        raise ValueError(f"{recipe.name}: there is no sweep")
-    return evaluate(recipe, tuple(axis.path for axis in recipe.sweep.vary), values).figures
-
-
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
     if recipe.dynamics is not None:
         given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
-
-
-def evaluate(
-    recipe: Recipe,
-    paths: Sequence[str],
-    values: Array,
-    *,
-    figures: Sequence[str] | None = None,
-    samples: int | None = None,
-) -> Found:
-    """Give the figures of designs in which the fields at `paths` have the values (m, k), as the recipe writes them.
-
-    `figures`, if given, are those wanted besides those limited. `samples` is their number, raised to a multiple
-    of 4. A design that does not exist or does not turn has nan for all figures. One that breaks a limit of the
-    recipe's sweep is computed no further: its dwells are -inf. Raises ValueError for a path at which no number stands.
-    """
-    return Evaluator.of(recipe, paths, figures=figures, samples=samples).found(values)
 
 
 class _Motion(Protocol):
@@ -140,7 +116,11 @@ class Evaluator:
         figures: Sequence[str] | None = None,
         samples: int | None = None,
     ) -> Evaluator:
-        """See `evaluate`. Raises ValueError for a path at which no number stands."""
+        """Prepare for designs in which the fields at `paths` differ.
+
+        `figures`, if given, are those wanted besides those limited. `samples` is their number, raised to a multiple
+        of 4. Raises ValueError for a path at which no number stands.
+        """
         sweep = recipe.sweep
         limits = sweep.limits if sweep else ()
         wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
@@ -166,7 +146,11 @@ class Evaluator:
         return 1.0 if linkage is not None and output_slides(linkage) else math.degrees(1.0)
 
     def found(self, values: Array) -> Found:
-        """Give the figures of designs with values (m, k); see `evaluate`."""
+        """Give the figures of designs with values (m, k) at the paths, as the recipe writes them.
+
+        A design that does not exist or does not turn has nan for all figures. One that breaks a limit of the recipe's
+        sweep is computed no further: its dwells are -inf.
+        """
         m = len(values)
         values = np.asarray(values, dtype=float).reshape(m, len(self.paths))
         figures = {name: np.full(m, np.nan) for name in self.wanted}
@@ -334,3 +318,18 @@ def _acute(sine: Array | None, count: int, smooth: NDArray[np.bool_]) -> Array:
     smallest[(sine.min(axis=1) < 0.0) & (sine.max(axis=1) > 0.0)] = 0.0
     found: Array = np.degrees(np.arcsin(np.minimum(smallest, 1.0)))
     return found
+
+
+def figures(scene: Scene, values: Array) -> dict[str, Array]:
+    """Figures of designs with the values (m, axes) of the scene's sweep, and why a design has none, as a number."""
+    found = _evaluator(scene).found(values)
+    return {**found.figures, REASON: found.reason.astype(np.float64)}
+
+
+@lru_cache(maxsize=1)
+def _evaluator(scene: Scene) -> Evaluator:
+    """What the chunks of a sweep share; a process that computes one computes many."""
+    # glibc hands the memory of each block back to the system, and takes it again page by page for the next, at a tenth
+    # of all time. It keeps what is smaller than the largest piece it was ever given back.
+    np.empty(_HEAP)
+    return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from camgeo.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from camgeo.checks.remedies import Entry
     from camgeo.sweep.search.ask import Ask, Unit
     from camgeo.sweep.search.gather import Gathered, Nearest
     from camgeo.sweep.search.recipes import Best
@@ -50,8 +51,8 @@ class Files:
 
 
 def outputs(
-    ask: Ask, found: Gathered, best: Sequence[Best], run: dict[str, Any], reasons: Sequence[str] = ()
-) -> tuple[dict[str, bytes], dict[str, Any]]:
+    ask: Ask, found: Gathered, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
+) -> tuple[dict[str, bytes], Entry]:
     """All files of a sweep, `sweep.json` among them, and what that says. Only its `run` depends on how it was run.
 
     `reasons` are the words for the numbers of why a design does not turn.
@@ -138,7 +139,7 @@ def _curves(ask: Ask, best: Sequence[Best], made: dict[str, bytes]) -> list[byte
     return [pictures["png"], pictures["svg"]]
 
 
-def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> dict[str, Any]:
+def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
     """What was asked and what came of it, figures in the recipe's units."""
     sweep, counts, units = ask.sweep, found.counts, ask.units(FIGURES)
     bounds = {
@@ -197,7 +198,7 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
     }
 
 
-def _nearest(ask: Ask, near: Nearest, unit: Unit) -> dict[str, Any]:
+def _nearest(ask: Ask, near: Nearest, unit: Unit) -> Entry:
     """The design that comes nearest to the limits where none keeps them, its figure in the recipe's unit."""
     return {
         "index": near.index,
@@ -208,5 +209,5 @@ def _nearest(ask: Ask, near: Nearest, unit: Unit) -> dict[str, Any]:
     }
 
 
-def _axis(low: float, high: float, values: tuple[float, ...]) -> dict[str, Any]:
+def _axis(low: float, high: float, values: tuple[float, ...]) -> Entry:
     return {"from": low, "to": high, "values": len(values) or None}

@@ -12,8 +12,8 @@ import numpy as np
 from camgeo.recipe.loading import read
 from camgeo.schema.change import changed
 from camgeo.schema.edit import without
-from camgeo.schema.fields import MOST_TEXT
-from camgeo.schema.yaml_source import Mapping, read_source, scalars
+from camgeo.schema.scalars import MOST_TEXT
+from camgeo.schema.yaml_source import Mapping, Source, scalars
 from camgeo.sweep.search.pictures import Curve
 from camgeo.sweep.search.rebuilt import mechanism_in
 
@@ -55,7 +55,7 @@ def recipe_text(ask: Ask, best: Best) -> str:
     for section in ("sweep", "name", "about"):
         text = without(text, section)
     for path in ask.recipe.tables:
-        source = read_source(text.encode(), str(ask.recipe.path))  # its recipe stands in another folder
+        source = Source.of(text, str(ask.recipe.path))  # its recipe stands in another folder
         file = dict(scalars(source.root))[path].text
         text = changed(source, path, (ask.recipe.path.parent / file).resolve().as_posix())
     name = f"{ask.recipe.name}-best-{best.place}"
@@ -85,7 +85,7 @@ def _about(ask: Ask, best: Best) -> str:
 
 def _opened(text: str, entries: collections.abc.Mapping[str, str]) -> str:
     """Put entries before the first of a recipe's text, in its own way of writing."""
-    root = read_source(text.encode(), "recipe").root
+    root = Source.of(text, "recipe").root
     if not isinstance(root, Mapping):
         raise TypeError("a recipe is a mapping")
     line, column = root.mark

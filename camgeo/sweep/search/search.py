@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -21,13 +21,13 @@ from camgeo.sweep.search.refine import PolishError
 from camgeo.sweep.search.run import chunks_of, compute, gathered
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.gather import Floats, Gathered
     from camgeo.sweep.search.job import Compute
-    from camgeo.sweep.search.run import How, Told, Work
+    from camgeo.sweep.search.run import How, Listener, Work
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
@@ -36,18 +36,11 @@ _NEAR = 0.15  # of an axis's range in every value: polishing would lead designs 
 _APART = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
 
 
-class Polish(Protocol):
-    """Makes a design better without breaking a limit."""
-
-    def __call__(self, ask: Ask, values: dict[str, float], /) -> tuple[dict[str, float], dict[str, float]]:
-        """Values of a design that is as good or better, and its figures, in mm and degrees; or PolishError."""
-
-
-class Measure(Protocol):
-    """Tells of a few designs also what the search went without."""
-
-    def __call__(self, ask: Ask, values: Floats, /) -> Mapping[str, Floats]:
-        """All figures (m,) of designs with values (m, axes), in mm and degrees."""
+Values: TypeAlias = dict[str, float]
+Polish: TypeAlias = "Callable[[Ask, Values], tuple[Values, Values]]"
+"""Values and figures, mm and degrees, of a design as good or better that breaks no limit; raises PolishError."""
+Measure: TypeAlias = "Callable[[Ask, Floats], Mapping[str, Floats]]"
+"""All figures (m,) of designs with values (m, axes), in mm and degrees: also what the search went without."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +62,9 @@ class Outcome:
     work: Work
 
 
-def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, told: Told | None = None) -> Outcome:
+def search(
+    ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, listener: Listener | None = None
+) -> Outcome:
     """Run the sweep of a recipe.
 
     Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
@@ -81,9 +76,9 @@ def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, 
     demand_room(ask, out)
     job = Job(ask.plan, ask.scene(ask.figures), means.compute)
     chunks = chunks_of(job, out / ask.recipe.name)
-    work = compute(job, chunks, how, fresh=fresh, told=told)
+    work = compute(job, chunks, how, fresh=fresh, listener=listener)
     found = gathered(job, chunks, ask.ranking)
-    best = best_of(ask, found, means, how, told)
+    best = best_of(ask, found, means, how, listener)
     run = {
         "engine": str(how),
         "key": job.key,
@@ -127,7 +122,7 @@ def demand_room(ask: Ask, out: Path) -> None:
             raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
 
 
-def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
+def best_of(ask: Ask, found: Gathered, means: Means, how: How, listener: Listener | None = None) -> list[Best]:
     """The best designs with all their figures.
 
     If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
@@ -145,7 +140,7 @@ def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None
     ]
     if not ask.sweep.refine:
         return _measured(ask, plain, means.measure)
-    polished = _measured(ask, _polished(ask, plain, means.polish, how, told), means.measure)
+    polished = _measured(ask, _polished(ask, plain, means.polish, how, listener), means.measure)
     polished.sort(key=lambda design: _order(ask, design))
     best: list[Best] = []
     for design in polished:
@@ -182,19 +177,19 @@ def _apart(ask: Ask, found: Gathered) -> list[int]:
     return places
 
 
-def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, told: Told | None) -> list[Best]:
+def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: Listener | None) -> list[Best]:
     """Each design polished, several at once where there are processes for it; in the same order."""
     started = time.perf_counter()
-    if told is not None:
-        told("polished", 0, len(plain), 0.0)
+    if listener is not None:
+        listener("polished", 0, len(plain), 0.0)
     workers = min(how.processes, len(plain))
     work = partial(_polish, polish, ask)
     results = at_once(work, plain, workers) if workers > 1 else ((design, work(design)) for design in plain)
     done: dict[int, Best] = {}
     for design, result in results:
         done[design.place] = result
-        if told is not None:
-            told("polished", len(done), len(plain), time.perf_counter() - started)
+        if listener is not None:
+            listener("polished", len(done), len(plain), time.perf_counter() - started)
     return [done[design.place] for design in plain]
 
 

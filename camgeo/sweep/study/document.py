@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.measures.units import in_units
 from camgeo.report.document import aligned
@@ -13,6 +13,7 @@ from camgeo.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from camgeo.sweep.study.margins import Margin
     from kin.judge.check import Check
@@ -24,7 +25,7 @@ def document(
     margins: Sequence[Margin],
     skipped: Sequence[tuple[str, str]],
     failed: Sequence[Check] = (),
-) -> dict[str, Any]:
+) -> Entry:
     """The study, keys as the contract of study.json fixes them, and more; `failed` are checks of the exact cam."""
     length = in_units(recipe, None, "mm")[1]
     rungs = [rung for rung in found if isinstance(rung, Rung)]
@@ -45,10 +46,10 @@ def document(
     }
 
 
-def _row(recipe: Recipe, rung: Rung) -> dict[str, Any]:
+def _row(recipe: Recipe, rung: Rung) -> Entry:
     mm = recipe.mm
     motion, unit = in_units(recipe, rung.motion_error, rung.motion_unit)
-    entry: dict[str, Any] = {
+    entry: Entry = {
         "form": rung.form,
         "tolerance": rung.tolerance / mm,
         "geometry_error": None if rung.geometry_error is None else rung.geometry_error / mm,
@@ -69,7 +70,7 @@ def _row(recipe: Recipe, rung: Rung) -> dict[str, Any]:
     return entry
 
 
-def _margin(recipe: Recipe, margin: Margin) -> dict[str, Any]:
+def _margin(recipe: Recipe, margin: Margin) -> Entry:
     value, unit = in_units(recipe, margin.value, margin.unit)
     if margin.unit == "deg/mm":
         value, unit = margin.value * recipe.mm, f"deg/{in_units(recipe, None, 'mm')[1]}"
@@ -82,7 +83,7 @@ def _margin(recipe: Recipe, margin: Margin) -> dict[str, Any]:
     }
 
 
-def table(study: dict[str, Any]) -> str:
+def table(study: Entry) -> str:
     """Rows, where the ladders ended, and the margins, as aligned text."""
     linkage = any("output_error" in row for row in study["rows"])
     head = [

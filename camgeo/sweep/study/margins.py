@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
-LOOKS = 1440  # parameters over the turn at which smooth figures are looked at
 SMALL = 1e-7  # mm: an error of the profile that stands for the limit of small ones
 EPS = float(np.finfo(np.float64).eps)
 

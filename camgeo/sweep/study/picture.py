@@ -10,13 +10,15 @@ from kin.read.home import prepare_home
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from camgeo.checks.remedies import Entry
+
 COLOURS = {"polyline": "#0072B2", "arcs": "#D55E00", "spline": "#009E73", "stl": "#CC79A7", "exact": "#E69F00"}
 MARKS = {"polyline": "o", "arcs": "s", "spline": "^", "stl": "D", "exact": "*"}
 SLOPES = {"polyline": 2, "arcs": 3, "spline": 5}  # error falls as pieces to the minus this
 DOTS = 150
 
 
-def picture(study: dict[str, Any]) -> bytes:
+def picture(study: Entry) -> bytes:
     """Draw a study as PNG, under matplotlib's own defaults; raises ModuleNotFoundError without matplotlib."""
     prepare_home()
     import matplotlib as mpl
@@ -56,7 +58,7 @@ def picture(study: dict[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def _slope(axes: Axes, rows: list[dict[str, Any]], order: int, colour: str) -> None:
+def _slope(axes: Axes, rows: list[Entry], order: int, colour: str) -> None:
     """Draw error ~ pieces^-order through the last row, and through theory's own count where there is one."""
     last = rows[-1]
     count = last["least_pieces"] or last["pieces"]

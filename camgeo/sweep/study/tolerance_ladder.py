@@ -91,19 +91,19 @@ def climb(
     folder: Path,
     *,
     patience: float,
-    told: Callable[[str], None] | None = None,
+    listener: Callable[[str], None] | None = None,
 ) -> Iterator[Rung | Ended]:
     """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended.
 
-    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `told` hears of
-    every rung before it begins. ValueError for a form there is not.
+    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `listener` hears
+    of every rung before it begins. ValueError for a form there is not.
     """
     exact = form == "exact"
     first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
     for exponent in range(first, last - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
-        if told is not None:
-            told(f"{form} within {10.0**exponent:.0e}")
+        if listener is not None:
+            listener(f"{form} within {10.0**exponent:.0e}")
         try:
             rung = _rung(recipe, design, form, tolerance, folder)
         except RecipeErrors as errors:
