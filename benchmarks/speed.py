@@ -153,7 +153,8 @@ def judge() -> None:
     ):
 
         def contact(follower: object = follower, points: np.ndarray = points) -> None:
-            follower.contact(Contour.from_vertices(points), phi)
+            for drive in follower.resting(Contour.from_vertices(points)):
+                drive.rows(phi)
 
         def whole(follower: object = follower, points: np.ndarray = points) -> None:
             follower.judge(Contour.from_vertices(points), phi)

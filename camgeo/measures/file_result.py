@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from kin.contour.contour import Contour
-    from kin.judge.closure import ClosureVerdict
-    from kin.judge.verdict import SurfaceVerdict, Verdict
+    from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 
 
 @dataclass(frozen=True)

@@ -155,15 +155,12 @@ class Response:
             state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
         return state
 
-    def particular(self, at: Samples) -> Array:
-        """Values of p and p' (2, n)."""
-        x = at.time / self.half[at.stretch] - 1.0
-        return np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
-
     def states(self, starts: Array, at: Samples) -> Array:
         """Values z and z' (2, n), from the states (2, m) at all starts."""
-        found: Array = self.particular(at) + self.rung(starts, at)
-        return found
+        x = at.time / self.half[at.stretch] - 1.0
+        driven = np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
+        states: Array = driven + self.rung(starts, at)
+        return states
 
     def rung(self, starts: Array, at: Samples) -> Array:
         """The free part of z and z' (2, n), as `states`."""

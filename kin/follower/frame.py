@@ -231,8 +231,8 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
     at_low = intended.error(low, way.low, rows[:, :, :-1])
     at_high = intended.error(high, way.high, rows[:, :, 1:])
 
-    def error(theta: Array, of: Indices) -> Array:
-        return intended.error(theta, way.rows(theta, of), intended.rows(theta))
+    def error(theta: Array, interval: Indices) -> Array:
+        return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
 
     resolution = _resolution(intended.mechanism, rows[1, 0], at_low[0])
     worst, at = extremes(low, high, at_low, at_high, error, resolution=resolution).worst

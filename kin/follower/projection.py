@@ -173,10 +173,10 @@ def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[
     return feet
 
 
-def better(one: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
+def better(first: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
     """For each point the foot of the greater score (n,), by default of the greater excess."""
-    wins = (one.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
-    pairs = zip(one.rows, two.rows, strict=True)
+    wins = (first.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
+    pairs = zip(first.rows, two.rows, strict=True)
     return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))
 
 

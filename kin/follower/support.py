@@ -74,8 +74,8 @@ class Bearing:
         near, near_low, near_high = self.between(nodes)
         far, far_low, far_high = self.between(nodes, np.pi)
 
-        def breadth(theta: Array, of: Indices) -> Array:
-            return self.derivatives(theta, near[of]) + self.derivatives(theta + np.pi, far[of])
+        def breadth(theta: Array, interval: Indices) -> Array:
+            return self.derivatives(theta, near[interval]) + self.derivatives(theta + np.pi, far[interval])
 
         return extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, breadth, resolution=resolution)
 

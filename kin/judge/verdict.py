@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
-    from kin.judge.closure import ClosureVerdict
     from kin.read.files import Kind
 
 
@@ -47,6 +46,16 @@ class SurfaceVerdict:
 
 
 UNREAD = SurfaceVerdict()
+
+
+@dataclass(frozen=True)
+class ClosureVerdict:
+    """What is left between two surfaces: to the gauges, which is meant to be nothing, and to the follower itself."""
+
+    pushes: str
+    stops: str
+    gauges: Play
+    play: Play
 
 
 class OfSurfaces:

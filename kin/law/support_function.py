@@ -134,10 +134,6 @@ class Lift:
         """Give p and its derivatives at theta (n,), (order + 1, n); at a break the right-hand limit, or left (-1)."""
         return self.law.derivatives(theta, order, side)
 
-    def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Enclose p and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each; see `Piecewise`."""
-        return self.law.enclosure(lower, upper, order)
-
     def radius_enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
         """Enclose rho = p + p'' and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each.
 

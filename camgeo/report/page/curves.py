@@ -174,6 +174,14 @@ def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact)
     return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""),), note=margin)
 
 
+def off(recipe: Recipe, name: str, error: tuple[Array, Array]) -> Plot:
+    """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm."""
+    rows = zip(("least", "greatest"), error, strict=True)
+    series = tuple(Series(word, closed(row) / recipe.mm) for word, row in rows)
+    note = "distance outside the exact contour, negative inside"
+    return Plot(f"Error of {name}", length_unit(recipe), series, limits=((0.0, ""),), note=note)
+
+
 def closed(values: Array) -> Array:
     """Return values (STEPS,) with the first repeated at the end."""
     return np.append(values, values[0])

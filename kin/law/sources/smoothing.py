@@ -76,6 +76,12 @@ class Task(NamedTuple):
         """A displacement in the table's own unit, as a message has it."""
         return f"{value / self.rows.unit:.{digits}g}{_UNITS.get(self.rows.unit, '')}"
 
+    def tell_above(self, value: float) -> str:
+        """A displacement above the reading, with as many digits, three at least, as show that it is."""
+        unit, shown = self.rows.unit, float(f"{self.reading / self.rows.unit:.6g}")
+        digits = next((k for k in range(3, 17) if float(f"{value / unit:.{k}g}") > shown), 17)
+        return self.tell(value, digits)
+
     def keeps(self, motion: Motion) -> bool:
         """Whether the motion that is made of this one stays within the reading of every row."""
         base = motion.range[0] if self.around == 1 else 0.0
@@ -352,6 +358,7 @@ class Bounded:
         """The spline of fewest spans, of counts that grow by a fifth, that keeps every row within the reading."""
         smooth = Sections.of(between, ends, None if ends is None else _feet(rows, ends))
         most = max(1, min(len(inside.s) // 2, _MOST_SPANS))
+        suspect = any(fault.line in inside.lines for fault in self.faults)  # so many spans could follow that row
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
             raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
@@ -359,7 +366,7 @@ class Bounded:
             if (between, spacing) not in self._sections:
                 self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
             sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
-            found = self._counted(inside, sections, most * 2 // 3)
+            found = self._counted(inside, sections, most * 2 // 3 if suspect else most)
             if found is not None:
                 return found
         found = self._counted(inside, smooth, most)
@@ -439,15 +446,15 @@ class Bounded:
     def _unmet(self, rows: Samples, off: Array) -> UnmetError:
         """Say how near the rows a spline of a span for two rows comes, and which of them is least like a motion's."""
         i = int(np.argmax(np.abs(off)))
-        worst, reached = int(rows.lines[i]), self.task.tell(float(abs(off[i])), 3)
+        worst, reached = int(rows.lines[i]), float(abs(off[i]))
         line = min((fault.line for fault in self.faults if fault.line in rows.lines), default=worst)
         where, least = ("here", "") if line == worst else (f"at line {worst}", "; this row fits its neighbours least")
-        return UnmetError(
-            f"the rows scatter about any smooth curve: the closest one is {reached} off {where}, the reading error is "
-            f"{self.task.tell(self.task.reading)}{least}",
-            self.field,
-            line,
-        )
+        nearest = f"the closest one is {self.task.tell_above(reached)} off {where}"
+        if reached <= self.task.reading:
+            nearest = "only one that bends at every other row is near enough"
+        reading = self.task.tell(self.task.reading)
+        problem = f"the rows scatter about any smooth curve: {nearest}, the reading error is {reading}{least}"
+        return UnmetError(problem, self.field, line)
 
     def demand_supported(self, motion: Motion) -> None:
         """Refuse a motion that leaves the rows once its least value is off, or accelerates more than they allow."""
