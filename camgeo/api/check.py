@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from camgeo.measures.units import in_units
@@ -61,6 +60,8 @@ class Check(judge.Check):
         return f"{text}: {self.detail}" if self.detail else text
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         return f'<p style="color:{"inherit" if self.ok else "#b00020"}">{escape(str(self))}</p>'
 
 

@@ -23,7 +23,6 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
-from camgeo.schema.change import changed, exchanged
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
@@ -100,6 +99,8 @@ class Recipe(Document):
 
     def sized(self) -> Recipe:
         """Give the recipe with the sizes that its cam found in the place of `sizing`; itself where there are none."""
+        from camgeo.schema.change import changed, exchanged
+
         document: Document = self
         for path, size in self.cam.sizes.items():
             source, value = document.source(), size / self.mm

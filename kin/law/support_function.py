@@ -17,7 +17,6 @@ import numpy as np
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, first_harmonic
-from kin.law.reuleaux import closed_angles, corners
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
@@ -312,6 +311,8 @@ def lift_reuleaux(
         )
     half, size = math.pi / (2 * sides), breadth - 2 * rounding
     if angles:
+        from kin.law.reuleaux import closed_angles, corners
+
         own = closed_angles(sides, angles)
         centres = [(size * one.real, size * one.imag) for one in corners(own)]
         centres += centres

@@ -26,8 +26,8 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.moving_frame import Oscillating
 from camgeo.files.dxf import write_dxf as drawn_spline
 from camgeo.fit.spline import fit_spline
-from kin.follower.follower import Roller
 from kin.follower.guide import Line
+from kin.follower.roller import Roller
 from kin.judge.holes import round_hole
 from kin.judge.intent import Limits
 from kin.judge.verify import verify

@@ -24,9 +24,9 @@ from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 from kin.linkage.four_bar import FourBar
 from kin.linkage.mechanism import Mechanism
-from kin.read.files import read_stl
 from kin.read.mesh.mesh import weld
 from kin.read.mesh.prism import evened, rounding, upright
+from kin.read.mesh.stl import read_stl
 
 THICK, EDGES = 8.0, 400
 HOLLOW = (4, 3, 60.0, {1: 625.0})

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius
-from camgeo.synthesis.part.lightening import Placed, lightened
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
 from camgeo.synthesis.part.walls import contour_gap, distance_inside
 from kin.numeric.records import dataclass, replace
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
 
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.part import Hub, Mark, Part, SetScrew
+    from camgeo.synthesis.part.lightening import Placed
     from camgeo.synthesis.part.shapes import Layer
     from camgeo.synthesis.part.walls import Looks
 
@@ -114,6 +114,8 @@ def body_of(part: Part, looks: Looks) -> Body:
         openings.append(mark)
     placed = None
     if part.lightening is not None:
+        from camgeo.synthesis.part.lightening import lightened
+
         there = openings if hub is None else [*openings, hub]
         found, placed = lightened(part.lightening, looks, there, edge)
         openings += found
