@@ -144,7 +144,7 @@ def test_text_of_a_recipe_cannot_break_out(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_same_recipe_gives_the_same_page() -> None:
-    assert of("shu-wu").text == Made(RECIPES / "shu-wu.yaml").text
+    assert of("w-ellipse").text == Made(RECIPES / "w-ellipse.yaml").text
 
 
 # --- the tables -------------------------------------------------------------------------------------------------------
