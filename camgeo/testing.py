@@ -10,7 +10,6 @@ in the recipe's units, as in its report.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.api.loading import recipe_of
@@ -30,6 +29,7 @@ from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.keys import MOST_ANGLES
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -400,7 +400,6 @@ WHERE_ONE_IS_ALL = {
     "camgeo/sweep/study/margins.py": 1,
     "camgeo/sweep/search/cams.py": 1,  # support functions
     "camgeo/report/document.py": 1,  # flat keys, where there is one
-    "camgeo/report/page/outline.py": 1,
 }
 """How often a file takes one surface for all; it goes down as forms of files are taught more."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from camgeo.measures.units import in_units
 from camgeo.report.bound import sign, words
 from camgeo.report.document import BELOW, value_text
 from kin.judge import check as judge
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.measures.figures import Measured

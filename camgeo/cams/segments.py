@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Scalar, join
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     import kin.law.programme

@@ -8,12 +8,12 @@ interval: at the top itself nothing is left. Intervals that may still hold more 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.numeric.elementary import BallJet, Jet
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side

@@ -262,7 +262,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 
 def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
-    from kin.numeric.monotone import RoughError, between, cells, extremes
+    from kin.numeric.monotone import RoughError, between, cells, pieces
 
     position = design.motion
     unit, scale = position.unit, position.shown(1.0)
@@ -276,7 +276,8 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
-        low, high = extremes(made, _ORDERS[name])
+        row = pieces(made, _ORDERS[name])
+        low, high = row.least(), row.greatest()
         if name == "swing":
             found[name] = Measured(scale * (high[0] - low[0]), unit)
             continue

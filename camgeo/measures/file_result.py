@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.export import NO_PART
 from kin.judge.verdict import OfSurfaces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path

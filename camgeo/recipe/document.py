@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import collections.abc
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from camgeo.common.arguments import is_a, number_of, path_of
@@ -14,6 +13,7 @@ from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import present
 from camgeo.schema.yaml_source import Source, as_written
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -8,7 +8,6 @@ one: its keys, how they are read and published, what they are checked for and wh
 from __future__ import annotations
 
 import collections.abc
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -30,6 +29,7 @@ from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
 from camgeo.schema.yaml_source import read_source
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY
@@ -15,6 +14,7 @@ from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, named, sign, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -16,7 +16,6 @@ splines; how far a sampled motion may be from the true one is given beside it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, product
 from typing import TYPE_CHECKING, NamedTuple
@@ -28,6 +27,7 @@ from kin.clearance.pose import alike
 from kin.contour.arcs import turned
 from kin.contour.region import Region
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

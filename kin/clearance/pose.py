@@ -9,13 +9,13 @@ may be from it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices

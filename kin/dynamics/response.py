@@ -16,7 +16,6 @@ Neither has a time step: their number is that of the drive's stretches, times a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,6 +24,7 @@ import numpy as np
 from kin.dynamics.oscillator import Free
 from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,7 +6,6 @@ angles, found stretch by stretch between the breaks of the contour's support fun
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -21,6 +20,7 @@ from kin.follower.support import Bearing, bearing_of
 from kin.law.contacts import Flat
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour

@@ -9,7 +9,6 @@ nothing but the zero of the shaft angle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -26,6 +25,7 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.longest_window import dwells
 from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

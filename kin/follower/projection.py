@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,7 +7,6 @@ radius of curvature at it, 0 for a corner.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.bernstein import values
 from kin.numeric.distinct import distinct
 from kin.numeric.extrema import extremes
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.bezier import Beziers

@@ -8,7 +8,6 @@ has p and p' continuous all round; p'' may jump, and does so at declared breaks 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from typing import TYPE_CHECKING
@@ -23,6 +22,7 @@ from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
 from kin.numeric.interval import Ball
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

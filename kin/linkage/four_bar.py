@@ -20,7 +20,6 @@ line of force. `force_line` is that line.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -44,6 +43,7 @@ from kin.linkage.loop import (
     with_value,
 )
 from kin.numeric.elementary import Jet, sqrt
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array

@@ -278,7 +278,8 @@ def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: 
     assert main(["verify", str(text), str(inches), "--tolerance", "0.00001in"]) == 1
     shown = page_outline.read(recipe, inches)
     assert shown is not None
-    assert np.abs(shown.arcs.start).max() > 35.0
+    (arcs,) = shown.arcs
+    assert np.abs(arcs.start).max() > 35.0
 
 
 def test_an_inch_recipe_with_files_in_mm(tmp_path: Path) -> None:

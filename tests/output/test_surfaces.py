@@ -122,6 +122,11 @@ def test_a_page_draws_every_surface() -> None:
     assert len(cam.shapes[0].rings) == 3  # both flanks, and the bore
     assert {"contact, inner", "contact, outer"} <= {body.name for body in found.scene.bodies}
     titles = [plot.title for plot in found.plots]
-    assert titles[-2:] == ["Curvature of the pitch curve, inner", "Curvature of the pitch curve, outer"]
+    assert titles[-4:-2] == ["Curvature of the pitch curve, inner", "Curvature of the pitch curve, outer"]
+    assert titles[-2:] == ["Error of groove.dxf, inner", "Error of groove.dxf, outer"]
+    for plot in found.plots[-2:]:
+        least, greatest = (series.values for series in plot.series)
+        assert -0.001 <= least.min() < -0.0003
+        assert 0.0003 < greatest.max() <= 0.001
     rows = [row for row in document.table(outcome.report).splitlines() if row.startswith("groove.dxf")]
     assert [row.split()[1] for row in rows] == ["inner", "outer"]

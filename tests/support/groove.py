@@ -5,7 +5,6 @@ The metal lies within the inner flank, as of a disc, and outside the outer one, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +17,7 @@ from camgeo.curve.moving_frame import CentreShape
 from camgeo.curve.parallel import Parallel
 from camgeo.recipe.loading import read
 from kin.law.contacts import Roller
+from kin.numeric.records import dataclass, fields, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam, Follower

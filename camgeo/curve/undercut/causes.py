@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius, reversals
 from camgeo.curve.moving_frame import CentreShape
 from camgeo.curve.parallel import Parallel
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal

@@ -8,7 +8,6 @@ there is any is proved (`reversals`, `narrowest_necks`); the extent and depth ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.curve.backwards import backwards
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve, Run
 from camgeo.curve.undercut.causes import Causes, UndercutError, causes, follower_radius, in_ring
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal

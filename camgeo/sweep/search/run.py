@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from contextlib import closing
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.common import workers
@@ -16,6 +15,7 @@ from camgeo.sweep.search import engines
 from camgeo.sweep.search.gather import gather
 from camgeo.sweep.search.job import Job, result
 from camgeo.sweep.search.store import ChunkError, Chunks
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -19,6 +18,7 @@ from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.sweep.search.recipes import Best, recipe_text
 from camgeo.sweep.search.refine import PolishError
 from camgeo.sweep.search.run import chunks_of, compute, gathered
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.checks.declared import PRESSURE, REVERSAL, WALL
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.output.dispatch import make
@@ -20,6 +19,7 @@ from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.study.least_pieces import least_pieces
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

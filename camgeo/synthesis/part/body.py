@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius
 from camgeo.synthesis.part.lightening import Placed, lightened
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
 from camgeo.synthesis.part.walls import contour_gap, distance_inside
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
