@@ -362,7 +362,7 @@ class Bounded:
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
             raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
-        # three rows a span at every spacing before two: what is found between rows is a joint, and no joint a row's noise
+        # three rows a span at every spacing before two: jumps are looked for as joints before spans follow them
         for share in (2.0 / 3.0,) if suspect else (2.0 / 3.0, 1.0, 2.0):
             for spacing in _SPACINGS:
                 if (between, spacing) not in self._sections:
