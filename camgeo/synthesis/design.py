@@ -148,7 +148,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         from camgeo.synthesis.checks import guide_checks, motion_checks
 
         checks = [check for surface in sounded for check in surface.checks]
-        checks += motion_checks(exact) + guide_checks(recipe, exact, sounded)
+        contours = [(made.surface, made.contour) for made in sounded if made.contour is not None]
+        checks += motion_checks(exact) + guide_checks(recipe, exact, contours)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

@@ -194,7 +194,7 @@ def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -
 
 @pytest.mark.slow
 def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: Path) -> None:
-    page_ = opened(browser, of("shu-wu"), tmp_path)
+    page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
     page_.ask("""(() => {
       window.saved = [];
       const made = URL.createObjectURL;
@@ -204,7 +204,7 @@ def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: P
     })()""")
     pictures = page_.ask("Promise.all(window.saved.map((blob) => blob.text()))")
     assert len(pictures) == page_.ask("document.querySelectorAll('.plot').length")
-    assert page_.ask("window.named")[1] == "shu-wu-velocity.svg"
+    assert page_.ask("window.named")[1] == "as-figure-9-2a-velocity.svg"
     for picture in pictures:
         root = ET.fromstring(picture)
         assert not re.search(r"var\(|class=|<style", picture)

@@ -362,13 +362,15 @@ class Bounded:
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
             raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
-        for spacing in _SPACINGS:
-            if (between, spacing) not in self._sections:
-                self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
-            sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
-            found = self._counted(inside, sections, most * 2 // 3 if suspect else most)
-            if found is not None:
-                return found
+        # three rows a span at every spacing before two: jumps are looked for as joints before spans follow them
+        for share in (2.0 / 3.0,) if suspect else (2.0 / 3.0, 1.0, 2.0):
+            for spacing in _SPACINGS:
+                if (between, spacing) not in self._sections:
+                    self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
+                sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
+                found = self._counted(inside, sections, int(most * share))
+                if found is not None:
+                    return found
         found = self._counted(inside, smooth, most)
         if found is not None:
             return found
@@ -462,13 +464,14 @@ class Bounded:
         if not self.task.keeps(motion):
             problem = "no motion that begins at its least value keeps the reading of the rows; this row leaves it first"
             raise UnmetError(problem, self.field, self.line)
+        suspect = min((fault.line for fault in self.faults), default=self.line)
         h = np.diff(rows.theta)
         most = np.abs(np.diff(np.diff(rows.s) / h)) + 2.0 * self.task.reading * (1.0 / h[1:] + 1.0 / h[:-1])
         most = (most / (0.5 * (h[1:] + h[:-1]))).max()
         reached = np.abs(motion.derivatives(np.linspace(0.0, total, _LOOKS * len(rows.s)), 2)[2]).max()
         if reached > _WILD * most:
             problem = f"a motion near the rows has {reached / most:.3g} times the acceleration that they support"
-            raise UnmetError(problem, self.field, self.line)
+            raise UnmetError(problem, self.field, suspect)
 
 
 def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:
