@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import gc
 import sys
-from contextlib import contextmanager
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -21,14 +19,12 @@ from camgeo.recipe.export import KINDS
 from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
     from _typeshed import SupportsWrite
 
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
-
-COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -38,8 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         words = sys.argv[1:] if argv is None else argv
         arguments = _parser(words).parse_args(words)
         command: Callable[[argparse.Namespace], int] = arguments.run
-        with _rare_collections():
-            status = command(arguments)
+        status = command(arguments)
         sys.stdout.flush()
     except KeyboardInterrupt:
         _complain("interrupted")
@@ -52,20 +47,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         silence("stdout")
         return SURROUNDINGS
     return status
-
-
-@contextmanager
-def _rare_collections() -> Iterator[None]:
-    """Let Python's search for cycles wait until there is something to find.
-
-    By default it goes again and again over what the imports make, ezdxf's above all: a tenth of a short run.
-    """
-    usual = gc.get_threshold()
-    gc.set_threshold(COLLECT_AFTER)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*usual)
 
 
 class _Parser(argparse.ArgumentParser):

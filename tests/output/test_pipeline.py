@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 from unittest import mock
 
@@ -200,9 +203,6 @@ def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["stl", "dxf"])
 def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp_path: Path) -> None:
-    import subprocess
-    import sys
-
     code = (
         "import sys; from pathlib import Path; from dataclasses import replace\n"
         "from camgeo.output import pipeline; from camgeo.recipe.loading import load\n"
@@ -222,6 +222,32 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+UNUSED = {
+    "camgeo": "assembly cli.laws cli.report cli.study cli.sweep cli.watch machining report.page schema.edit sweep",
+    "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
+    "camgeo.synthesis": "linkage motion_table part.lightening view",
+    "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",
+    "kin.law": "formula.formula frame_swing reuleaux routes transmission_law",
+    "kin.read": "drawing.svg gcode mesh.threemf step",
+}
+OF_DXF = "camgeo.files.dxf camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
+OF_STL = "camgeo.files.stl camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize(("kind", "own", "other"), [("stl", OF_STL, OF_DXF), ("dxf", OF_DXF, OF_STL)])
+def test_a_command_imports_its_scene_alone(kind: str, own: str, other: str, tmp_path: Path) -> None:
+    recipe = RECIPES[0].with_name("shu-wu.yaml")
+    words = ["export", str(recipe), "--only", kind, "--out", str(tmp_path)]
+    code = f"import sys; from camgeo.cli.main import main; assert main({words!r}) == 0; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    modules = set(done.stdout.split())
+    unused = {f"{room}.{name}" for room, names in UNUSED.items() for name in names.split()}
+    assert all(find_spec(name) for name in unused)
+    assert {*own.split(), "camgeo.cams.constant_breadth"} <= modules
+    assert not modules & {*unused, *other.split()}
 
 
 def test_no_second_counts_twice() -> None:
