@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from kin.follower.follower import Follower
+    from kin.follower.base import Follower
     from kin.read.drawing.dxf import Drawing
 
 ROOT = Path(__file__).parents[1]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.follower.follower import Follower as Gauge
+    from kin.follower.base import Follower as Gauge
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint

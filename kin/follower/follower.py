@@ -6,9 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kin.follower.base import Closure, Follower
 from kin.follower.flat import FlatFace, Yoke
-from kin.follower.motion_error import ContactError, Judged, MotionError, Play
 from kin.law.contacts import Flat, Oscillating, Translating
 from kin.law.piecewise import Piecewise
 from kin.law.support_function import Lift
@@ -16,21 +14,9 @@ from kin.law.support_function import Lift
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kin.follower.base import Follower
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.transmission_law import Transmission
-
-__all__ = [
-    "Closure",
-    "ContactError",
-    "FlatFace",
-    "Follower",
-    "Judged",
-    "MotionError",
-    "Play",
-    "Yoke",
-    "follower_of",
-    "followers_of",
-]
 
 
 def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, side: Side = 1) -> Follower:

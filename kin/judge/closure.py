@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.follower.base import Closure
 from kin.follower.drive import Shifted
-from kin.follower.follower import Closure, ContactError, Play
+from kin.follower.motion_error import ContactError, Play
 from kin.judge.check import Check, failed
 from kin.judge.contour_checks import fine, play_checks
 from kin.judge.verdict import ClosureVerdict
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.contour import Contour
+    from kin.follower.base import Follower
     from kin.follower.drive import Excitation
-    from kin.follower.follower import Follower
     from kin.judge.intent import ClosureIntent, Limits, SurfaceIntent
     from kin.numeric.arrays import Array, Indices
 

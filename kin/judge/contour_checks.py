@@ -9,8 +9,7 @@ import numpy as np
 
 from kin.contour.contour import ARC_SHARE
 from kin.follower.deviation import Deviation, convex_deviation, deviation
-from kin.follower.follower import Closure, ContactError, Follower, Judged, MotionError, Play
-from kin.follower.motion_error import ALLOWANCE
+from kin.follower.motion_error import ALLOWANCE, ContactError, Judged, MotionError, Play
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, limit_of, stroke_of, unlimited
 from kin.judge.verdict import SurfaceVerdict
@@ -18,6 +17,7 @@ from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
+    from kin.follower.base import Closure, Follower
     from kin.judge.intent import Limits, LinkageIntent, SurfaceIntent
     from kin.numeric.arrays import Array
     from kin.read.nesting import Chain

@@ -20,15 +20,12 @@ __all__ = ["KW_ONLY", "dataclass", "field", "fields", "replace"]
 T = TypeVar("T")
 
 
-def _values(names: tuple[str, ...]) -> Callable[[object], tuple[object, ...]]:
-    return lambda record: tuple([getattr(record, name) for name in names])
-
-
 def _freeze(kind: type[T], *, eq: bool) -> None:
     """Give a class whose `__init__` is made what makes it a value: no field is set twice, equal fields are equal."""
     every = fields(kind)  # type: ignore[arg-type]  # the decorator below has made it one
     names = frozenset(entry.name for entry in every)
-    shown = tuple(entry.name for entry in every if entry.repr)
+    shown = [entry.name for entry in every if entry.repr]
+    compared = [entry.name for entry in every if entry.compare]
 
     def set_once(self: object, name: str, value: object) -> None:
         if name in self.__dict__ or name not in names:
@@ -42,19 +39,18 @@ def _freeze(kind: type[T], *, eq: bool) -> None:
     def text(self: object) -> str:
         return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 
-    methods: dict[str, object] = {"__setattr__": set_once, "__delattr__": keep}
-    if "__repr__" not in kind.__dict__:
-        methods["__repr__"] = text
+    def values(self: object) -> tuple[object, ...]:
+        return tuple([getattr(self, name) for name in compared])
+
+    def equal(self: object, other: object) -> bool:
+        return values(self) == values(other) if type(self) is type(other) else NotImplemented
+
+    methods: dict[str, object] = {"__setattr__": set_once, "__delattr__": keep, "__repr__": text}
     if eq:
-        compared = _values(tuple(entry.name for entry in every if entry.compare))
-
-        def equal(self: object, other: object) -> bool:
-            return compared(self) == compared(other) if type(self) is type(other) else NotImplemented
-
-        methods.setdefault("__eq__", equal)
-        methods.setdefault("__hash__", lambda self: hash(compared(self)))
+        methods |= {"__eq__": equal, "__hash__": lambda self: hash(values(self))}
     for name, method in methods.items():
-        setattr(kind, name, method)
+        if name not in kind.__dict__:
+            setattr(kind, name, method)
 
 
 if not TYPE_CHECKING:

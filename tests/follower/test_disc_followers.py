@@ -18,8 +18,8 @@ from camgeo.curve.moving_frame import Translating as Stem
 from camgeo.curve.parallel import Parallel
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
-from kin.follower.follower import ContactError
 from kin.follower.guide import METRE, Arm, Line
+from kin.follower.motion_error import ContactError
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant

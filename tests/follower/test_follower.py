@@ -11,8 +11,8 @@ from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
-from kin.follower.follower import ContactError
 from kin.follower.guide import Arm
+from kin.follower.motion_error import ContactError
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux

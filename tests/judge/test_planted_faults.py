@@ -21,7 +21,7 @@ from support.cases import few
 from support.heavy import ezdxf
 from support.intent import gauge_of, part_of
 
-from kin.follower.follower import Yoke
+from kin.follower.flat import Yoke
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier

@@ -12,7 +12,7 @@ from kin.read.nesting import Chain
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.follower.follower import Follower
+    from kin.follower.base import Follower
     from kin.judge.intent import Limits
     from kin.numeric.arrays import Array
 
