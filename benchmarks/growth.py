@@ -105,9 +105,7 @@ def growth(rows: list[Row], *, small: bool) -> None:
 
 def polygons(name: str) -> Callable[[float], Callable[[], object]]:
     """Fit polygons of a shipped cam within a tolerance; the size is the number of edges."""
-    contour = designed(load(RECIPES / f"{name}.yaml")).contour
-    if contour is None:
-        raise TypeError(f"{name} has no contour")
+    ((_, contour),) = designed(load(RECIPES / f"{name}.yaml")).contours
     return lambda tolerance: lambda: len(fit_polygon(contour, tolerance).vertices)
 
 
@@ -130,13 +128,14 @@ def judged(name: str) -> Callable[[float], Callable[[], object]]:
     recipe = load(RECIPES / f"{name}.yaml")
     design = designed(recipe)
     phi = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
-    limits, intent = permitted(recipe, MICROMETRE), intended(recipe, design)
+    (surface,) = intended(recipe, design).surfaces
+    ((_, contour),), limits = design.contours, permitted(recipe, MICROMETRE)
 
     def prepare(count: float) -> Callable[[], object]:
-        run = design.only_surface.contour.runs[0]
+        run = contour.runs[0]
         t = np.linspace(run.low, run.high, int(count), endpoint=False)
-        points = design.only_surface.contour.sample(t).point
-        return lambda: judge_contour(Contour.from_vertices(points), intent, phi, limits).judged and None
+        points = contour.sample(t).point
+        return lambda: judge_contour(Contour.from_vertices(points), surface, phi, limits).judged and None
 
     return prepare
 
@@ -194,11 +193,8 @@ def made(make: Callable[[float], Recipe], form: str = "") -> Callable[[float], C
             return lambda: exported(recipe)
         if not form:
             return lambda: designed(recipe).checks and None
-        contour = designed(recipe).contour
-        if contour is None:
-            raise TypeError(f"{recipe.name} of {size:g} has no contour")
-        job = Job.of(recipe, designed(recipe))
-        return lambda: replace(job, outlines=replace(job.outlines, made={})).outline(form, MICROMETRE) and None
+        design = designed(recipe)
+        return lambda: Job.of(recipe, design).outlines(form, MICROMETRE) and None
 
     return prepare
 
@@ -242,10 +238,10 @@ def exported(recipe: Recipe) -> None:
 def in_memory(recipe: Recipe) -> None:
     """Design, arcs at 0.001 mm, verdict at 3600 angles."""
     design = designed(recipe)
-    arcs = Job.of(recipe, design).outlines.within("arcs", MICROMETRE)
-    phi = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
-    contour = Contour.from_bulges(arcs.points, arcs.bulges)
-    judge_contour(contour, intended(recipe, design), phi, permitted(recipe, MICROMETRE))
+    phi, limits = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False), permitted(recipe, MICROMETRE)
+    for fit, surface in zip(Job.of(recipe, design).fits, intended(recipe, design).surfaces, strict=True):
+        arcs = fit.within("arcs", MICROMETRE)
+        judge_contour(Contour.from_bulges(arcs.points, arcs.bulges), surface, phi, limits)
 
 
 def warm(pattern: str, *, small: bool) -> None:

@@ -10,7 +10,6 @@ in the recipe's units, as in its report.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.api.loading import recipe_of
@@ -30,6 +29,7 @@ from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.keys import MOST_ANGLES
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
-    from kin.read.files import AnySolid, Drawing
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.files import AnySolid
 
     AnyPath: TypeAlias = str | PathLike[str]
 
@@ -343,7 +344,8 @@ def _contour(path: Path, mm: float | None) -> Contour:
 
 def _drawing(path: Path, gap: float) -> Drawing:
     __tracebackhide__ = True
-    from kin.read.files import ReadError, read_drawing
+    from kin.read.errors import ReadError
+    from kin.read.files import read_drawing
 
     try:
         return read_drawing(path, gap)
@@ -353,7 +355,8 @@ def _drawing(path: Path, gap: float) -> Drawing:
 
 def _solid(path: Path) -> AnySolid:
     __tracebackhide__ = True
-    from kin.read.files import ReadError, read_solid
+    from kin.read.errors import ReadError
+    from kin.read.files import read_solid
 
     try:
         return read_solid(path)

@@ -15,7 +15,7 @@ from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.response import Samples
 from kin.dynamics.separation import float_speed
 from kin.dynamics.train import Steady, Train, steady
-from kin.follower.follower import FlatFace
+from kin.follower.flat import FlatFace
 from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.support_function import lift_constant_breadth

@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from kin.follower.follower import Follower
+    from kin.follower.base import Follower
     from kin.read.drawing.dxf import Drawing
 
 ROOT = Path(__file__).parents[1]
@@ -44,7 +44,8 @@ def main() -> None:
             drawing = read_dxf(path)
         follower = design.exact.gauge
         phi = np.linspace(0.0, 2.0 * np.pi, 3601)
-        error = np.atleast_2d(follower.contact(drawing.contour, phi) - follower.intended(phi))
+        error = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(drawing.contour)])
+        error -= follower.intended(phi)
         draw_mechanism(axes[0, column], drawing, follower, phi[300])
         axes[0, column].set_title(title, color=INK, fontsize=11)
         draw_error(axes[1, column], np.degrees(phi), error, outcome.report)

@@ -50,7 +50,7 @@ FLOORS = {
     """,
 }
 WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}
-CIRCLES = {"camgeo.report.page", "camgeo.schema", "camgeo.synthesis"}  # rooms with circles of files, to be cleared
+CIRCLES = {"camgeo.schema"}  # rooms with circles of files, to be cleared
 # Modules of core rooms that stand for a wing, imported only when a recipe or a command asks for it.
 DOORS = {"camgeo.output.parts", "camgeo.output.mechanism", "camgeo.output.gcode", "camgeo.cli.study"}
 HEAVY = {

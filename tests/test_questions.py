@@ -202,20 +202,24 @@ def sources() -> Iterator[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class House:
-    """What all files say, each read once: lines that ask, by family and file; how often `Any`; who takes an intent."""
+    """What all files say, each read once: lines that ask, by family and file; `Any`; who takes intents, one surface."""
 
     asking: dict[str, dict[str, list[int]]]
     anys: int
     taking: dict[str, list[str]]
+    single: dict[str, list[int]]
 
 
 @pytest.fixture(scope="module")
 def house() -> House:
     asking: dict[str, dict[str, list[int]]] = {name: {} for name in NAMES}
-    every, taken = 0, {}
+    every, taken, ones = 0, {}, {}
     for path, text in sources():
         tree = ast.parse(text)
-        nodes = [node for node in code(tree) if isinstance(node, ASKING)]
+        spoken = list(code(tree))
+        if lines := single(spoken):
+            ones[path] = lines
+        nodes = [node for node in spoken if isinstance(node, ASKING)]
         for name, family in families().items():
             lines = [] if path.startswith(family.home) else asked(nodes, family)
             if lines:
@@ -224,7 +228,7 @@ def house() -> House:
         every += anys(said)
         if path.startswith("camgeo/") and (names := taking(said, {"intent"})):
             taken[path] = names
-    return House(asking, every, taken)
+    return House(asking, every, taken, ones)
 
 
 def test_the_families_have_their_names() -> None:
@@ -369,6 +373,108 @@ def test_members_and_parameters_are_found() -> None:
     source = f"class C:\n    x: int\n{inner}"
     assert members(source, "C") == {"x", "f", "h"}
     assert taking(ast.walk(ast.parse(source)), {"intent"}) == ["f"]
+
+
+# --- cams of one surface ----------------------------------------------------------------------------------------------
+
+MANY = {"surfaces", "contours", "fits", "discs", "outlines", "gauges", "running"}  # what a cam may have several of
+SINGLE = {"only_surface", "gauge"}  # what stands for one of them, wherever it is asked
+FIRST = {"contour", "surface", "motion", "play", "measured_error", "perimeter", "area"}  # of a file: the first's
+GONE = {"contour", "surface", "body"}  # of a design
+WHERE_ONE_IS_ALL = {
+    "camgeo/api/report.py": 1,
+    "camgeo/api/design.py": 2,  # `import camgeo` gives the contour of a cam that has one, and refuses others
+    "camgeo/assembly/build.py": 1,  # printed sets, dynamics and rests are of one disc and its first surface
+    "camgeo/measures/dynamics.py": 5,
+    "camgeo/output/mechanism.py": 1,
+    "camgeo/report/page/curves.py": 1,
+    "camgeo/report/page/content.py": 1,  # where the zero of the motion is marked
+    "camgeo/machining/compensation.py": 1,  # a chamfer runs along one
+    "camgeo/machining/milling.py": 3,  # programs, polar tables, solids and second opinions are taught one: SURFACES
+    "camgeo/output/gcode.py": 1,
+    "camgeo/output/job.py": 2,
+    "camgeo/output/second_opinion.py": 3,
+    "camgeo/output/table.py": 1,
+    "camgeo/synthesis/intent.py": 1,
+    "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
+    "camgeo/sweep/study/margins.py": 1,
+    "camgeo/sweep/search/cams.py": 1,  # support functions
+    "camgeo/report/document.py": 1,  # flat keys, where there is one
+}
+"""How often a file takes one surface for all; it goes down as forms of files are taught more."""
+
+
+def single(nodes: list[ast.AST]) -> list[int]:
+    """Lines that take one of what a cam may have several of: by index, by unpacking one, by a name for the only one."""
+    return sorted(node.lineno for node in nodes if _takes_one(node) and isinstance(node, LINED))
+
+
+def _takes_one(node: ast.AST) -> bool:
+    match node:
+        case ast.Subscript(value=of, slice=ast.Constant(value=int()) | ast.UnaryOp(operand=ast.Constant())):
+            return _is_of_many(of)
+        case ast.Assign(targets=[target], value=value):
+            pairs = [(target, value)]
+            if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+                pairs = list(zip(target.elts, value.elts, strict=False))
+            return any(isinstance(to, ast.Tuple) and len(to.elts) == 1 and _is_of_many(of) for to, of in pairs)
+        case ast.Attribute(value=of, attr=name):
+            owner = _name(of)
+            return (
+                name in SINGLE
+                or (name in GONE and owner in {"design", "exact"})
+                or (name in FIRST and owner in {"file", "verdict"})
+            )
+    return False
+
+
+def _is_of_many(node: ast.AST) -> bool:
+    named = node.func if isinstance(node, ast.Call) else node
+    return isinstance(named, ast.Attribute) and named.attr in MANY
+
+
+def test_a_surface_is_taken_for_all_only_where_that_is_said(house: House) -> None:
+    home = ("kin/", "camgeo/cams/", "camgeo/synthesis/design.py")
+    found = {path: len(lines) for path, lines in house.single.items() if not path.startswith(home)}
+    assert found == WHERE_ONE_IS_ALL
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        "design.only_surface.contour",
+        "self.exact.gauge.rests",
+        "curve = design.surfaces[0].contour",
+        "exact.surfaces[-1]",
+        "(fit,) = job.fits",
+        "(surface,), trim = exact.surfaces, True",
+        "(outline,) = job.outlines('arcs', 0.001)",
+        "design.contour",
+        "job.design.surface.side",
+        "exact.surface",
+        "design.body",
+        "file.measured_error",
+    ],
+)
+def test_one_taken_for_all_is_found(planted: str) -> None:
+    assert single(list(code(ast.parse(f"def f(design):\n    {planted}")))) == [2]
+
+
+@pytest.mark.parametrize(
+    "innocent",
+    [
+        "for surface, contour in design.contours: pass",
+        "one, two = exact.surfaces",
+        "made.surface.side, made.contour",
+        "surfaces = tuple(design.surfaces)",
+        "(check,) = checks",
+        "lows, fits = lows[:-1], fits[0]",
+        "file.surfaces, verdict.closures",
+        "design.motion.stroke(t), file.body == 'cam'",
+    ],
+)
+def test_what_takes_all_is_none(innocent: str) -> None:
+    assert single(list(code(ast.parse(innocent)))) == []
 
 
 # --- tables from class to maker ---------------------------------------------------------------------------------------

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
-from html import escape
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from camgeo.measures.units import in_units
 from camgeo.report.bound import sign, title, words
 from camgeo.report.document import BELOW, value_text
 from kin.judge import check as judge
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.measures.figures import Measured
@@ -65,6 +65,8 @@ class Check(judge.Check):
         return f"{text}: {self.detail}" if self.detail else text
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         return f'<p style="color:{"inherit" if self.ok else "#b00020"}">{escape(str(self))}</p>'
 
 

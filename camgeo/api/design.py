@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -19,6 +18,7 @@ from camgeo.common.clock import Clock
 from camgeo.schema.fields import MOST
 from camgeo.synthesis.design import Design as Exact
 from camgeo.synthesis.design import designed
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, overload
 
 import numpy as np
 
 from camgeo.curve.ring import centre_of, radius_of, steps_along
 from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

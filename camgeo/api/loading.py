@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from camgeo.common.arguments import is_a, path_of
 from camgeo.recipe.loading import announced, load_silent, load_text
 from camgeo.recipe.recipe import Recipe
-from camgeo.schema.change import written
 
 if TYPE_CHECKING:
     from camgeo.schema.change import Value
@@ -28,6 +27,8 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
+        from camgeo.schema.change import written
+
         return announced(load_text(written(source, NAME), NAME, NAME))
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return announced(load_text(source, NAME))

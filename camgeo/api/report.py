@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.api.check import Check
 from camgeo.api.errors import CallError
 from camgeo.common.arguments import is_a
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

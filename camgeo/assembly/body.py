@@ -6,10 +6,11 @@ All in mm and rad, z upward, drawn as for a shaft that turns clockwise: who writ
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline, Polygon

@@ -7,7 +7,6 @@ cam, as in W Figure 5, and no bracket has to reach over it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +18,7 @@ from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft
 from camgeo.assembly.shapes import bar, box, disc, eye, moved, pin, retainer
 from camgeo.assembly.sizes import THIN, BodyError
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

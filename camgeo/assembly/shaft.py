@@ -7,7 +7,6 @@ its knob; under the base it is held by a disc that turns in a sink.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +18,7 @@ from camgeo.assembly.sizes import THIN, BodyError, thick
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

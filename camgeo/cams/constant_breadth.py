@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
@@ -12,6 +11,7 @@ from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked

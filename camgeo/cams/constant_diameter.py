@@ -6,7 +6,6 @@ From the motion over one half turn (Shu and Wu 2012, reference 11): r(t) + r(t +
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -16,6 +15,7 @@ from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked

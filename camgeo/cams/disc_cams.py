@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,6 +12,7 @@ from camgeo.cams.groove import Groove, GrooveAdvice
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, GuidedCam, RoundAdvice
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.guided import Flank

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -15,6 +14,7 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.schema.fields import length
 from kin.law.contacts import Arrangement, Oscillating, Roller, on_one_arm
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Values

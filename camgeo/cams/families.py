@@ -1,22 +1,21 @@
-"""The families there are: a new one is its file and its line here."""
+"""The families there are: a new one is its file and its name here. One is imported when a recipe is of it."""
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
-from camgeo.cams import constant_breadth, constant_diameter, disc, double_roller, flat_pair, support
+from camgeo.common.on_demand import OnDemand
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Family
 
-FAMILIES: dict[str, Family] = {
-    module.FAMILY.kind: module.FAMILY
-    for module in (
-        support,
-        constant_breadth,
-        constant_diameter,
-        disc,
-        double_roller,
-        flat_pair,
-    )
-}
+KINDS = ("support", "constant-breadth", "constant-diameter", "disc", "double-roller", "flat-pair")
+
+
+def _family(kind: str) -> Family:
+    family: Family = import_module(f"camgeo.cams.{kind.replace('-', '_')}").FAMILY
+    return family
+
+
+FAMILIES = OnDemand(KINDS, _family)

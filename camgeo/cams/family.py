@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.follower.follower import Follower as Gauge
+    from kin.follower.base import Follower as Gauge
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -17,6 +16,7 @@ from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
 from kin.numeric.angles import degrees
 from kin.numeric.distinct import distinct
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

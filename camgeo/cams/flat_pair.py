@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
@@ -11,6 +10,7 @@ from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pa
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Values

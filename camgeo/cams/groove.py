@@ -6,7 +6,6 @@ roller by its clearance, all of it on the outer flank, whose gauge is a roller t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.cams.guided import Flank, RoundAdvice
@@ -14,6 +13,7 @@ from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.read_scalar import read_choice
 from camgeo.schema.yaml_source import Mapping
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values

@@ -6,7 +6,6 @@ The pitch curve is `camgeo.curve.moving_frame.CentreShape`, its parameter the sh
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +16,7 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Roller, Translating
 from kin.law.programme import IntentError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Follower

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
@@ -11,6 +10,7 @@ from camgeo.schema.fields import Form
 from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.scalars import MOST_TEXT, Complaint
 from camgeo.schema.yaml_source import Scalar, described
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.schema.fields import Field

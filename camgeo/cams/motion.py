@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
 
@@ -17,6 +16,7 @@ from camgeo.cams.segments import read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, described, join
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.segments import MotionSegment

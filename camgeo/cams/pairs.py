@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
@@ -18,6 +17,7 @@ from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat
 from kin.numeric.angles import degrees
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

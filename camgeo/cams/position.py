@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, TypeAlias
 
 import numpy as np
 
 from kin.law.contacts import Translating
 from kin.numeric.angles import degrees
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.law.contacts import Guide

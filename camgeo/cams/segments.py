@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Scalar, join
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     import kin.law.programme
@@ -54,7 +54,6 @@ class MotionSegment:
 
         Raises kin's IntentError where a split or an end does not go with the law, with its field.
         """
-        from kin.law.formula.formula import Formula
         from kin.law.programme import IntentError
         from kin.law.sources.laws import split
         from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State
@@ -64,6 +63,8 @@ class MotionSegment:
         if self.kind == "rise_fall":
             return RiseAndFall(self.over, self.stroke)
         if self.kind == "displacement":
+            from kin.law.formula.formula import Formula
+
             return Given(self.over, Formula(self.formula, ("u",)), self.scale)
         by = {"rise": self.stroke, "return": -self.stroke}.get(self.kind)
         to = self.stroke if self.kind == "to" else None

@@ -6,7 +6,6 @@ What is found is held against the exact figures before it is used (`camgeo.cams.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cams.disc_cams import DiscCam, ExactFaced
@@ -16,6 +15,7 @@ from camgeo.common.rounding import downward, upward
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.law.contacts import Flat, Oscillating, Translating
 from kin.numeric.angles import degrees
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam

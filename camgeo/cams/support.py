@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
@@ -13,6 +12,7 @@ from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve

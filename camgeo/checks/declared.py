@@ -8,7 +8,6 @@ declared here by the same names.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
@@ -26,6 +25,7 @@ from camgeo.recipe.figures import (
 )
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_WIDTH as WIDTH
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

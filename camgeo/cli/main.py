@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import gc
 import sys
-from contextlib import contextmanager
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.cli import laws as laws_command
-from camgeo.cli import report as page_command
-from camgeo.cli import study as study_command
-from camgeo.cli import sweep as sweep_command
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.batch import Task, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
@@ -24,24 +19,22 @@ from camgeo.recipe.export import KINDS
 from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
     from _typeshed import SupportsWrite
 
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
 
-COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status (0 every check holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
     open_streams()
     try:
-        arguments = _parser().parse_args(argv)
+        words = sys.argv[1:] if argv is None else argv
+        arguments = _parser(words).parse_args(words)
         command: Callable[[argparse.Namespace], int] = arguments.run
-        with _rare_collections():
-            status = command(arguments)
+        status = command(arguments)
         sys.stdout.flush()
     except KeyboardInterrupt:
         _complain("interrupted")
@@ -56,20 +49,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-@contextmanager
-def _rare_collections() -> Iterator[None]:
-    """Let Python's search for cycles wait until there is something to find.
-
-    By default it goes again and again over what the imports make, ezdxf's above all: a tenth of a short run.
-    """
-    usual = gc.get_threshold()
-    gc.set_threshold(COLLECT_AFTER)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*usual)
-
-
 class _Parser(argparse.ArgumentParser):
     """A parser whose help and complaints go the way of all others."""
 
@@ -80,7 +59,8 @@ class _Parser(argparse.ArgumentParser):
             say(message.removesuffix("\n"))
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """Make the parser of a call in these words; commands that are not among them have no arguments yet."""
     from camgeo.version import __version__
 
     parser = _Parser(
@@ -97,6 +77,14 @@ def _parser() -> argparse.ArgumentParser:
         added = commands.add_parser(name, help=text, description=text)
         added.set_defaults(run=run)
         return added
+
+    def wing(name: str, text: str) -> None:
+        """Add a command that has a module of its own, which is imported where it is called."""
+        added = commands.add_parser(name, help=text, description=text)
+        if name in words:
+            module = import_module(f"camgeo.cli.{name}")
+            module.add_arguments(added)
+            added.set_defaults(run=module.run)
 
     export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
     _add_recipes(export)
@@ -117,17 +105,13 @@ def _parser() -> argparse.ArgumentParser:
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
     verify.add_argument("--second-opinion", action="store_true", help=text)
-    sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
-    sweep_command.add_arguments(sweep)
+    wing("sweep", "Many designs of one recipe, ranked; the best become recipes.")
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE")
-    study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
-    study_command.add_arguments(study)
-    report = command("report", page_command.run, "An HTML page: the animated mechanism, its curves, its checks.")
-    page_command.add_arguments(report)
-    laws = command("laws", laws_command.run, "The motion laws with their peak velocity, acceleration and jerk.")
-    laws_command.add_arguments(laws)
+    wing("study", "Error against run time of each output form; a recipe's margins.")
+    wing("report", "An HTML page: the animated mechanism, its curves, its checks.")
+    wing("laws", "The motion laws with their peak velocity, acceleration and jerk.")
     command("schema", _schema, "The recipe's JSON schema.")
     return parser
 

@@ -96,7 +96,7 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
     found: list[Rung | Ended] = []
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         for form in forms:
-            found += climb(recipe, design, form, Path(folder), patience=arguments.patience, told=progress)
+            found += climb(recipe, design, form, Path(folder), patience=arguments.patience, listener=progress)
     return found
 
 

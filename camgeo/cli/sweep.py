@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from camgeo.checks.remedies import Entry
     from camgeo.sweep.search.ask import Ask
-    from camgeo.sweep.search.run import Told
+    from camgeo.sweep.search.run import Listener
     from camgeo.sweep.search.search import Means, Outcome
 
 _EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
@@ -85,7 +85,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     how = How(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:
-        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
+        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, listener=_teller(progress))
     except KeyboardInterrupt:
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
@@ -116,7 +116,7 @@ def _complain(ask: Ask, text: str) -> None:
     complain(f"camgeo: {ask.recipe.name}: {text}")
 
 
-def _teller(progress: Progress) -> Told:
+def _teller(progress: Progress) -> Listener:
     """Progress with the time left, from the speed so far."""
 
     def tell(what: str, done: int, wanted: int, seconds: float) -> None:

@@ -13,7 +13,8 @@ from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING
 
-from camgeo.report.page.page import LOCAL, RELOAD, asset
+from camgeo.report.page.asset import asset
+from camgeo.report.page.page import LOCAL, RELOAD
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Bounds, Curve, Frame, Run, Shape
 from camgeo.curve.parallel import Parallel
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,13 +9,13 @@ are divided until that decides.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camgeo.curve.curve import SHIFT, CurveError
 from kin.numeric.distinct import distinct
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,12 +8,12 @@ interval: at the top itself nothing is left. Intervals that may still hold more 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.numeric.elementary import BallJet, Jet
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
@@ -26,6 +26,7 @@ LEVELS = 24
 MOST = 20_000  # undecided intervals; then the rest is given as room
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
 NEWTON = 5
+NOISE = 1e-9  # of a figure, or of 1: by less nothing surpasses it but rounding
 ROUNDING = 1e-14  # of the figure and its slope: to this a slope is known
 ORDER = 4  # of the variable: a figure may use up two derivatives and still tell two
 
@@ -45,6 +46,11 @@ class Extreme:
     value: float
     at: float
     room: float
+
+    @property
+    def slack(self) -> float:
+        """By how much it may be surpassed, where that is more than rounding."""
+        return self.room if self.room > NOISE * max(abs(self.value), 1.0) else 0.0
 
 
 def least(figure: Figure, stretches: Array) -> Extreme:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import OfLaw, Source, bounds_of, cut, series_of
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side

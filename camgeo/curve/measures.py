@@ -12,7 +12,6 @@ Intervals that may still hold more than the best value found are divided: no ext
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +20,7 @@ from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
 from camgeo.curve.support import is_sharp
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

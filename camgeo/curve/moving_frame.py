@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, cast
 
@@ -29,6 +28,7 @@ from kin.law.segment import Affine, Constant
 from kin.numeric import elementary
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, Shape
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from camgeo.curve.curve import Bounds
 from kin.numeric.elementary import BallJet, Jet
 from kin.numeric.interval import Ball
+from kin.numeric.records import dataclass
 from kin.numeric.taylor import factorials
 
 if TYPE_CHECKING:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Curve, Frame, Run, columns
+from kin.numeric.records import dataclass
 from kin.numeric.taylor import factorials
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ flat pair's cam.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.curve.moving_frame import FramedShape
 from camgeo.curve.rates import cut
 from kin.law.transmission_law import Transmission
 from kin.numeric import elementary
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side

@@ -9,12 +9,12 @@ digits as give back the same double. Nothing in the file depends on when, where 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.fit.pieces import BSpline, Outline, Polygon, RationalSpline
+from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.files.triangulate import RegionError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.files.precision import Precision

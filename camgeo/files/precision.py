@@ -8,13 +8,13 @@ allows it, that is kept back too.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,6 @@ are new ones rounded. manifold3d computes in double precision. What it returns i
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,7 +6,6 @@ The archive has no dates and a fixed order, so that the same meshes give the sam
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
@@ -15,6 +14,7 @@ import numpy as np
 from camgeo.common.units import INCH
 from camgeo.files.markup import number, one_line
 from camgeo.files.precision import DECIMALS
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -8,7 +8,6 @@ where a stretch is so short beside the tolerance that two arcs do. Nodes of biar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -22,6 +21,7 @@ from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
 from camgeo.fit.pieces import ArcSpline, Bound
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 Box = tuple[float, float, float, float]
 

@@ -14,13 +14,13 @@ No spline with a continuous tangent does better (docs/theory.md 3).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.fit.nodes import Density
 from kin.numeric.elementary import Jet
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve

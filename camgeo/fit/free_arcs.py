@@ -13,7 +13,6 @@ That is as many equations as unknowns. They are solved by Newton's method, for a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ import numpy as np
 from camgeo.fit.deviation import Chain, chain_deviation, radial
 from camgeo.fit.parts import ENDS, refined
 from camgeo.fit.staircase import solve_chains
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

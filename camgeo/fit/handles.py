@@ -5,13 +5,13 @@ Points and directions are complex numbers here, x + iy.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.fit.cubic import contact
 from camgeo.fit.spans import plane
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,12 +8,12 @@ That is ``sqrt(24)/6 = 0.8165`` shares of the density of a straddling polygon.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.fit.nodes import rounding
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

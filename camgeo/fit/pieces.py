@@ -8,7 +8,6 @@ carries the bound that its fit has proved.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from camgeo.curve.ring import ArcChain
 from camgeo.fit.bound import Bound
 from camgeo.fit.rational import RationalSpline
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

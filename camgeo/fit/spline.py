@@ -11,7 +11,6 @@ that the spline is C1 in its own parameter.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +20,7 @@ from camgeo.fit.handles import handled
 from camgeo.fit.nodes import ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, BSpline
 from camgeo.fit.spans import plane, spans_deviation
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

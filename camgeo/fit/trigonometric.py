@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
@@ -19,6 +18,7 @@ from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import FormError
 from kin.law.formula.expression import Expression
 from kin.law.segment import Harmonics, Round
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,7 +7,6 @@ other way, as exact parallels. So what kin is given differs from the nominal par
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from itertools import starmap
 from typing import TYPE_CHECKING
 
@@ -20,6 +19,7 @@ from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation

@@ -8,7 +8,6 @@ stretches and of the gaps between far-apart ones.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +20,7 @@ from camgeo.curve.undercut.causes import UndercutError, causes, in_ring
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,12 +7,12 @@ point and as many places as `places` says; centres are worked out from the ends 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.curve.ring import centre_of
+from kin.numeric.records import dataclass
 from kin.read.gcode import ARC_MM
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from camgeo.curve.ring import radius_of
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from kin.contour.contour import Contour
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Manufacture

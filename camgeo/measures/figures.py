@@ -36,7 +36,7 @@ from camgeo.recipe.figures import (
     ROLLER_SPEED,
     SIZE,
 )
-from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width, slack
+from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width
 from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
 
@@ -167,7 +167,7 @@ def _size(_: Recipe, design: Design) -> Measured:
 
     def reach(surface: Surface, contour: Curve) -> Measured:
         far = farthest(contour)
-        return Measured(far.value + slack(far), "mm", design.motion.shaft_deg(far.at), surface=surface.name)
+        return Measured(far.value + far.slack, "mm", design.motion.shaft_deg(far.at), surface=surface.name)
 
     return _greatest(starmap(reach, design.contours))
 
@@ -178,7 +178,7 @@ def _pivot_clearance(_: Recipe, design: Design) -> Measured:
 
     def beside(surface: Surface, contour: Curve) -> Measured:
         end = farthest(contour) if surface.side > 0 else nearest(contour)
-        value = surface.side * (design.follower.pivot - end.value) - slack(end)
+        value = surface.side * (design.follower.pivot - end.value) - end.slack
         return Measured(value, "mm", design.motion.shaft_deg(end.at), surface=surface.name)
 
     return _least(starmap(beside, design.contours))
@@ -194,7 +194,7 @@ def _extremes(surface: Surface, name: str) -> tuple[Extreme, Extreme]:
 def _on_rise(_: Recipe, design: Design) -> Measured:
     def rising(surface: Surface) -> Measured:
         most = _extremes(surface, "slope")[1]
-        value = math.degrees(math.atan(most.value + slack(most)))
+        value = math.degrees(math.atan(most.value + most.slack))
         return Measured(value, "deg", degrees(most.at), surface=surface.name)
 
     return _greatest(map(rising, design.exact.surfaces))
@@ -203,7 +203,7 @@ def _on_rise(_: Recipe, design: Design) -> Measured:
 def _on_return(_: Recipe, design: Design) -> Measured:
     def falling(surface: Surface) -> Measured:
         least = _extremes(surface, "slope")[0]
-        value = math.degrees(math.atan(slack(least) - least.value))
+        value = math.degrees(math.atan(least.slack - least.value))
         return Measured(value, "deg", degrees(least.at), surface=surface.name)
 
     return _greatest(map(falling, design.exact.surfaces))
@@ -212,7 +212,7 @@ def _on_return(_: Recipe, design: Design) -> Measured:
 def _roller_speed(_: Recipe, design: Design) -> Measured:
     def spin(surface: Surface) -> Measured:
         fastest = max(_extremes(surface, "spin"), key=lambda one: abs(one.value))
-        return Measured(abs(fastest.value) + slack(fastest), "", degrees(fastest.at), surface=surface.name)
+        return Measured(abs(fastest.value) + fastest.slack, "", degrees(fastest.at), surface=surface.name)
 
     return _greatest(map(spin, design.exact.surfaces))
 
@@ -263,7 +263,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 
 def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
-    from kin.numeric.monotone import RoughError, between, cells, extremes
+    from kin.numeric.monotone import RoughError, between, cells, pieces
 
     position = design.motion
     unit, scale = position.unit, position.shown(1.0)
@@ -277,7 +277,8 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
-        low, high = extremes(made, _ORDERS[name])
+        row = pieces(made, _ORDERS[name])
+        low, high = row.least(), row.greatest()
         if name == "swing":
             found[name] = Measured(scale * (high[0] - low[0]), unit)
             continue

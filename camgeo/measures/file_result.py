@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.export import NO_PART
 from kin.judge.verdict import OfSurfaces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from kin.contour.contour import Contour
-    from kin.judge.closure import ClosureVerdict
-    from kin.judge.verdict import SurfaceVerdict, Verdict
+    from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 
 
 @dataclass(frozen=True)

@@ -33,13 +33,13 @@ import os
 import re
 import stat
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from camgeo.common import system
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.common.system import locked, patient, unlock
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,7 +7,6 @@ place only when every check holds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.clock import Clock
@@ -16,6 +15,7 @@ from camgeo.output.file_intent import intent_of_file
 from camgeo.report.document import Findings, document, encoded
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from camgeo.schema.fields import length
+from kin.numeric.records import dataclass
 
 
 @dataclass(frozen=True)

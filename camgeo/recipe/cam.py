@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
+from camgeo.common.on_demand import OnDemand
 from camgeo.schema.readers import form_of_kinds
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from camgeo.cams.family import Cam
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
 
-CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
+CAMS: Mapping[str, Table] = OnDemand(tuple(FAMILIES), lambda kind: FAMILIES[kind].table)
 MADE = (
     "cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an arm "
     "(disc), for a yoke of two parallel faces (constant-breadth, support) or two opposite rollers (constant-diameter), "

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import collections.abc
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from camgeo.common.arguments import is_a, number_of, path_of
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.keys import RECIPE
-from camgeo.schema.change import changed
-from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import present
 from camgeo.schema.yaml_source import Source, as_written
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -84,6 +82,8 @@ class Document:
 
         Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
         """
+        from camgeo.schema.edit import with_values
+
         is_a("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
         for path in values:
             is_a("values: a path", path, str, "a str")
@@ -96,6 +96,8 @@ class Document:
 
     def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
         """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
+        from camgeo.schema.change import changed
+
         text, given = self.text, dict[str, str]()
         for path, value in values.items():
             is_a("path", path, str, "a str")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
@@ -11,6 +10,7 @@ from camgeo.schema.errors import shown
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     import collections.abc

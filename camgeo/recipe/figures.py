@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, described, entries, join, keys, scalars
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     import collections.abc

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.schema.fields import Field, Kind, Table, either, length
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.common.rounding import NOISE, upward
@@ -14,6 +13,7 @@ from camgeo.schema.fields import Field, Form, Kind, Table, length, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Scalar
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

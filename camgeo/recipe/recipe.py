@@ -8,7 +8,6 @@ one: its keys, how they are read and published, what they are checked for and wh
 from __future__ import annotations
 
 import collections.abc
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -24,12 +23,12 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
-from camgeo.schema.change import changed, exchanged
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
 from camgeo.schema.yaml_source import read_source
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -100,6 +99,8 @@ class Recipe(Document):
 
     def sized(self) -> Recipe:
         """Give the recipe with the sizes that its cam found in the place of `sizing`; itself where there are none."""
+        from camgeo.schema.change import changed, exchanged
+
         document: Document = self
         for path, size in self.cam.sizes.items():
             source, value = document.source(), size / self.mm

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.cams.families import FAMILIES
@@ -12,6 +11,7 @@ from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.track import OF_A_DISC
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import Field, Kind, Table, either
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

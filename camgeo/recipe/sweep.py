@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES as EVERY
@@ -24,6 +23,7 @@ from camgeo.schema.fields import (
 )
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, scalars
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.schema.fields import Schema

@@ -62,6 +62,8 @@ def _check_groove(values: Values, reader: Reader) -> None:
         reader.fault_at(depth, "not below the thickness", None, "give a depth below part.thickness")
     if values.get("manufacture", {}).get("layer"):
         reader.fault_at("manufacture.layer", "no cutter's path is made for a groove", None, "leave it out")
+    if "dynamics" in values:
+        reader.fault_at("dynamics", "forces on the two flanks of a groove are not found", None, "leave it out")
     for file in values.get("export", {}).get("files", []):
         kind, path = file["kind"], file["path"]
         for name in ("kerf", "clearance", "shrinkage"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import (
     BENT,
@@ -16,6 +16,9 @@ from camgeo.checks.declared import (
     REVERSAL,
     WALL,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 STRICT: dict[str, float | None] = {
     **dict.fromkeys(BENT),
@@ -32,7 +35,7 @@ STRICT: dict[str, float | None] = {
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
 
 
-def title(check: dict[str, Any]) -> str:
+def title(check: Mapping[str, object]) -> str:
     """Give the name of a check, with the surface that it is of where a cam has several: `motion, outer`."""
     return f"{check['name']}, {check['surface']}" if check.get("surface") else str(check["name"])
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY
@@ -15,6 +14,7 @@ from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
-    from kin.judge.closure import ClosureVerdict
-    from kin.judge.verdict import SurfaceVerdict
+    from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
     from kin.law.joints import Joint
 
 BELOW = "below rounding"
@@ -294,11 +293,11 @@ def table(report: dict[str, Any]) -> str:
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
-    for file in report["files"]:
+    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
         motion = file.get("motion") or {}
         rows.append(
             (
-                escaped(file["path"]),
+                f"{escaped(file['path'])} {file.get('name', '')}".rstrip(),
                 str(file.get("bytes", "stale")),
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),

@@ -9,9 +9,10 @@ name for one version, with a notice: `formerly` of its field is all that says so
 from __future__ import annotations
 
 import re
-from dataclasses import KW_ONLY, dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from kin.numeric.records import KW_ONLY, dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

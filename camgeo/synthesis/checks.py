@@ -19,14 +19,11 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import ExactCam, Proof, Surface
     from camgeo.curve.curve import Curve
-    from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import SurfaceDesign
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
 ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
-EXACT = 1e-9  # of the arm: to this the closing equation must hold
 SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 
@@ -66,7 +63,7 @@ def _pressure_angle(exact: ExactCam, surface: Surface) -> Check:
     """
     if (proved := surface.extremes("slope")) is not None:
         worst = max(proved, key=lambda one: abs(one.value))
-        value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
+        value, at = math.degrees(math.atan(abs(worst.value) + worst.slack)), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
     ((value, at),) = _greatest(
         lambda t: np.degrees(np.abs(surface.pressure(t)))[None], spread(exact.breaks, 2.0 * math.pi)
@@ -98,7 +95,7 @@ def needed_width(surface: Surface) -> tuple[float, float]:
     if proved is None:
         raise TypeError("no contact travels along a face")
     worst = max(proved, key=lambda one: abs(one.value))
-    return 2.0 * (abs(worst.value) + slack(worst)), degrees(worst.at)
+    return 2.0 * (abs(worst.value) + worst.slack), degrees(worst.at)
 
 
 def jam_angle(exact: ExactCam) -> tuple[float, float]:
@@ -109,12 +106,12 @@ def jam_angle(exact: ExactCam) -> tuple[float, float]:
     proved = [slope[1] for surface in exact.surfaces if (slope := surface.extremes("slope")) is not None]
     if not proved:
         raise TypeError("no stem is led in a guide")
-    most = max(proved, key=lambda one: one.value + slack(one))
-    steepest = max(most.value + slack(most), exact.follower.lean)
+    most = max(proved, key=lambda one: one.value + one.slack)
+    steepest = max(most.value + most.slack, exact.follower.lean)
     return math.degrees(math.atan(steepest)), degrees(most.at)
 
 
-def guide_checks(recipe: Recipe, exact: ExactCam, surfaces: Iterable[SurfaceDesign]) -> list[Check]:
+def guide_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
     """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
     found, train, made = [], recipe.dynamics, recipe.manufacture
     if train is not None and train.guide is not None:
@@ -124,12 +121,10 @@ def guide_checks(recipe: Recipe, exact: ExactCam, surfaces: Iterable[SurfaceDesi
     if made is None or made.wheel is None:
         return found
     wheel = 0.5 * made.wheel
-    for surface in surfaces:
-        if surface.contour is None:
-            continue
-        radius, place = hollow_radius(surface.surface.side, surface.contour)
+    for surface, contour in contours:
+        radius, place = hollow_radius(surface.side, contour)
         at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)
-        told, name = "the contour has no hollow" if math.isinf(radius) else "", surface.surface.name
+        told, name = "the contour has no hollow" if math.isinf(radius) else "", surface.name
         check = Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told, surface=name)
         found.append(check)
     return found
@@ -141,11 +136,6 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
     from camgeo.curve.curvature import least_radius
 
     return least_hollow(contour) if side > 0 else least_radius(contour)
-
-
-def slack(extreme: Extreme) -> float:
-    """By how much more the extreme may be, where that is more than rounding."""
-    return extreme.room if extreme.room > EXACT * max(abs(extreme.value), 1.0) else 0.0
 
 
 def _greatest(of: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:

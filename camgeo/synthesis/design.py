@@ -6,7 +6,6 @@ Nothing here writes or fits: `designed` is the part of a run that needs no file.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 from kin.judge.check import Check
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -148,7 +148,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         from camgeo.synthesis.checks import guide_checks, motion_checks
 
         checks = [check for surface in sounded for check in surface.checks]
-        checks += motion_checks(exact) + guide_checks(recipe, exact, sounded)
+        contours = [(made.surface, made.contour) for made in sounded if made.contour is not None]
+        checks += motion_checks(exact) + guide_checks(recipe, exact, contours)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

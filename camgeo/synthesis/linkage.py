@@ -7,7 +7,6 @@ everywhere; where the linkage binds, the shaft has no angle, and the relative an
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -19,6 +18,7 @@ from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

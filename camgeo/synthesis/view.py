@@ -6,7 +6,6 @@ arms alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
@@ -26,6 +25,7 @@ from kin.law.contacts import (
     Translating,
 )
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,7 +16,6 @@ splines; how far a sampled motion may be from the true one is given beside it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, product
 from typing import TYPE_CHECKING, NamedTuple
@@ -28,6 +27,7 @@ from kin.clearance.pose import alike
 from kin.contour.arcs import turned
 from kin.contour.region import Region
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -185,9 +185,9 @@ class _Cells(NamedTuple):
 class _Search:
     """The least of D of two bodies: what has been found and proved so far, over one pair of slabs after another."""
 
-    def __init__(self, one: Mover, other: Mover, accuracy: float) -> None:
-        self.one, self.other, self.accuracy = one, other, accuracy
-        self.slack = one.slack + other.slack
+    def __init__(self, home: Mover, other: Mover, accuracy: float) -> None:
+        self.home, self.other, self.accuracy = home, other, accuracy
+        self.slack = home.slack + other.slack
         self.least, self.at, self.place = math.inf, 0.0, (math.nan, math.nan)
         self.proved = math.inf
         self.evaluations = 0
@@ -215,7 +215,7 @@ class _Search:
 
     def _begin(self, regions: tuple[Region, Region]) -> list[_Cells]:
         """Intervals to begin with, the most promising ones apart; a single angle if the bodies move as one."""
-        count = 1 if alike(self.one.motion, self.other.motion) else CELLS
+        count = 1 if alike(self.home.motion, self.other.motion) else CELLS
         half = np.full(count, TURN / (2 * count) if count > 1 else 0.0)
         phi = (2 * np.arange(count) + 1) * half
         cells = _Cells(phi, half, np.full(count, -math.inf), regions)
@@ -225,7 +225,7 @@ class _Search:
         return [cells.within(~chosen), cells.within(chosen)]
 
     def _meeting(self, cells: _Cells) -> Encounter:
-        home, body = (mover.motion.over(cells.phi, cells.half) for mover in (self.one, self.other))
+        home, body = (mover.motion.over(cells.phi, cells.half) for mover in (self.home, self.other))
         return Encounter.of(cells.regions, home, body, cells.half)
 
     def _open(self, lower: Array) -> Mask:
@@ -275,14 +275,14 @@ class _Search:
         k = int(np.argmin(seen.value))
         if seen.value[k] < self.least:
             self.least, self.at = float(seen.value[k]), float(phi[k])
-            pose = self.one.motion.over(phi[k : k + 1], np.zeros(1)).pose
+            pose = self.home.motion.over(phi[k : k + 1], np.zeros(1)).pose
             x, y = (turned(seen.place[k : k + 1], pose[:, 2]) + pose[:, :2])[0].tolist()
             self.place = (x, y)
 
     def clearance(self) -> Clearance:
         """Sum up."""
         return Clearance(
-            a=self.one.name,
+            a=self.home.name,
             b=self.other.name,
             least=self.least,
             at_deg=degrees(self.at),

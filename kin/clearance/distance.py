@@ -18,7 +18,6 @@ A pair may be the nearest only if its distance at the middle exceeds |D| by no m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,6 +25,7 @@ import numpy as np
 
 from kin.contour.arcs import dot, left, turned
 from kin.contour.region import gaps, moved
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.clearance.pose import Course

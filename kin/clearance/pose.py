@@ -9,13 +9,13 @@ may be from it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
@@ -174,13 +174,13 @@ class Sampled:
         return Course(pose, rate, half[:, None] * self._bend(u - half / width, u + half / width))
 
 
-def alike(one: Motion, other: Motion) -> bool:
+def alike(first: Motion, other: Motion) -> bool:
     """Whether two bodies move as one, or both stand still."""
-    if one is other or (isinstance(one, Still) and isinstance(other, Still)):
+    if first is other or (isinstance(first, Still) and isinstance(other, Still)):
         return True
-    if isinstance(one, Turning) and isinstance(other, Turning):
-        return (one.rate, one.x, one.y) == (other.rate, other.x, other.y)
-    if isinstance(one, Sampled) and isinstance(other, Sampled):
-        known = one.rate is None and other.rate is None
-        return known and np.array_equal(one.pose, other.pose)
+    if isinstance(first, Turning) and isinstance(other, Turning):
+        return (first.rate, first.x, first.y) == (other.rate, other.x, other.y)
+    if isinstance(first, Sampled) and isinstance(other, Sampled):
+        known = first.rate is None and other.rate is None
+        return known and np.array_equal(first.pose, other.pose)
     return False

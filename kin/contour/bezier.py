@@ -6,7 +6,6 @@ weights it is polynomial. Splines and ellipses become such pieces exactly (up to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.numeric.bernstein import bernstein_product, restrict, rising_root, roots, values
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,7 +6,6 @@ the contour, also of a dented or spoilt one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +17,7 @@ from kin.contour.hull import convex_hull, is_convex_polygon
 from kin.contour.nearest import nearest
 from kin.contour.pieces import ARC, BEZIER, LINE, NormalRanges, Pieces, wrapped
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass, fields, replace
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices

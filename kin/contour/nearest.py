@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from kin.contour.arcs import dot, nearest_on, radial, right
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

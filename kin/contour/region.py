@@ -5,7 +5,6 @@ Distances between lines and arcs are exact. The distance from a point to a regio
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +13,7 @@ import numpy as np
 from kin.contour.arcs import Arcs, dot, left, nearest_on, radial, right, turned
 from kin.contour.intersections import common_points
 from kin.contour.nearest import nearest
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

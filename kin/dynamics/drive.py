@@ -8,7 +8,6 @@ velocity jumps, at the corners of a polygon, the jump is that of the two limits.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,12 +6,12 @@ has two: the one that pushes it up, and the one that keeps it below, see `kin.dy
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour

@@ -13,7 +13,6 @@ Meeting a face at speed v with damping c, the force begins at c v: Kelvin's and 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,6 +25,7 @@ from kin.dynamics.response import Response, Samples, response
 from kin.dynamics.train import DynamicsError, Running, Train
 from kin.numeric.arrays import Array
 from kin.numeric.chebyshev import DERIVATIVE, evaluated
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.dynamics.drive import Drive

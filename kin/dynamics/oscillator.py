@@ -8,12 +8,12 @@ resonance. Time and rates may be in any unit; the dynamics of a cam take radians
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array

@@ -16,7 +16,6 @@ Neither has a time step: their number is that of the drive's stretches, times a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,6 +24,7 @@ import numpy as np
 from kin.dynamics.oscillator import Free
 from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -155,15 +155,12 @@ class Response:
             state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
         return state
 
-    def particular(self, at: Samples) -> Array:
-        """Values of p and p' (2, n)."""
-        x = at.time / self.half[at.stretch] - 1.0
-        return np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
-
     def states(self, starts: Array, at: Samples) -> Array:
         """Values z and z' (2, n), from the states (2, m) at all starts."""
-        found: Array = self.particular(at) + self.rung(starts, at)
-        return found
+        x = at.time / self.half[at.stretch] - 1.0
+        driven = np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
+        states: Array = driven + self.rung(starts, at)
+        return states
 
     def rung(self, starts: Array, at: Samples) -> Array:
         """The free part of z and z' (2, n), as `states`."""

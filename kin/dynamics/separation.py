@@ -8,7 +8,6 @@ So no dip of the least force over the speed is passed over, however narrow, and 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -18,6 +17,7 @@ from kin.dynamics.events import SpentError, Work, crossing
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.dynamics.drive import Drive

@@ -16,7 +16,6 @@ with the third). Near critical damping and beyond there is no resonance, and all
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -26,6 +25,7 @@ from kin.dynamics.response import Samples
 from kin.dynamics.train import periodic
 from kin.numeric.angles import TURN
 from kin.numeric.chebyshev import AT_START, DERIVATIVE, ORDERS, evaluated
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.dynamics.drive import Drive

@@ -16,7 +16,6 @@ found event by event (`kin.dynamics.impacts`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -26,6 +25,7 @@ from kin.dynamics.peaks import Figure, Peaks
 from kin.dynamics.response import Forcing, Response, response
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

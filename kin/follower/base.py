@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
@@ -19,6 +18,7 @@ from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
 from kin.follower.laws import ByLaw, Swing
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

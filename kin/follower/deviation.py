@@ -10,7 +10,6 @@ itself within the tube.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from kin.contour.arcs import Arcs, dot, left
 from kin.contour.nearest import nearest
 from kin.numeric.extrema import extremes, resolution
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,7 +9,6 @@ global, so they hold for a trimmed undercut as well. Nothing but the intent is u
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
@@ -18,6 +17,7 @@ import numpy as np
 from kin.contour.arcs import cross, dot, left, right, unit
 from kin.follower.projection import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise

@@ -10,7 +10,6 @@ support function and those of the intent.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -27,6 +26,7 @@ from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -225,24 +225,26 @@ class _OnArm(Moved):
         breaks = np.mod(self.motion.breaks, TURN)
         nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks]))
 
-        def error(phi: Array, of: Indices) -> Array:
-            return self._rows(bearing, i, phi, middle[of]) - self.course.rows(phi)
+        def error(phi: Array, interval: Indices) -> Array:
+            return self._rows(bearing, i, phi, middle[interval]) - self.course.rows(phi)
 
-        def error_at(phi: Array, side: Side) -> Array:
-            intended, at = self.course.rows(phi), np.isin(phi, (*breaks, 0.0, TURN))
-            intended[:, at] = self.motion.derivatives(phi[at], 2, side)
-            return self._rows(bearing, i, phi, middle) - intended
+        intended, jumps = self.course.rows(nodes), np.isin(nodes, (*breaks, 0.0, TURN))
 
-        low, high = nodes[:-1], nodes[1:]
-        return extremes(low, high, error_at(low, 1), error_at(high, -1), error, resolution=self.resolution)
+        def error_at(ends: slice, side: Side) -> Array:
+            rows, phi, at = intended[:, ends].copy(), nodes[ends], jumps[ends]
+            rows[:, at] = self.motion.derivatives(phi[at], 2, side)
+            return self._rows(bearing, i, phi, middle) - rows
+
+        at_low, at_high = error_at(slice(None, -1), 1), error_at(slice(1, None), -1)
+        return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=self.resolution)
 
     def _play(self, bearing: Bearing) -> Play:
         """How much farther face B would swing than face A, at rest on the contour."""
         starts = [face.starts(bearing) for face in self.faces]
         nodes, middle = _stretches(np.concatenate(starts))
 
-        def play(phi: Array, of: Indices) -> Array:
-            a, b = (self._rows(bearing, i, phi, middle[of]) for i in (0, 1))
+        def play(phi: Array, interval: Indices) -> Array:
+            a, b = (self._rows(bearing, i, phi, middle[interval]) for i in (0, 1))
             return a - b
 
         every, low, high = np.arange(len(middle)), nodes[:-1], nodes[1:]

@@ -6,7 +6,6 @@ angles, found stretch by stretch between the breaks of the contour's support fun
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -21,6 +20,7 @@ from kin.follower.support import Bearing, bearing_of
 from kin.law.contacts import Flat
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -121,8 +121,8 @@ class FlatFace(Follower):
             at = np.where(at == 0, len(nodes) - 1, at)
             at_high[:, at - 1] += intended[:, at] - share * lift.derivatives(nodes[at], 2, -1)
 
-        def error(phi: Array, of: Indices) -> Array:
-            return bearing.derivatives(phi + ahead, stretch[of]) - share * lift.derivatives(phi, 2)
+        def error(phi: Array, interval: Indices) -> Array:
+            return bearing.derivatives(phi + ahead, stretch[interval]) - share * lift.derivatives(phi, 2)
 
         fine = resolution(bearing.contour.vertices) + 4.0 * lift.rounding
         return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=fine)
@@ -172,7 +172,7 @@ def lift_range(bearing: Bearing, begin: float, end: float) -> float:
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)
 
-    def lift(theta: Array, of: Indices) -> Array:
-        return bearing.derivatives(theta, stretch[of])
+    def lift(theta: Array, interval: Indices) -> Array:
+        return bearing.derivatives(theta, stretch[interval])
 
     return extremes(nodes[:-1], nodes[1:], at_low, at_high, lift, resolution=resolution(bearing.contour.vertices)).span

@@ -6,38 +6,17 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kin.follower.base import Closure, Follower
-from kin.follower.faces_on_arm import FlatPair, SwingingFace
 from kin.follower.flat import FlatFace, Yoke
-from kin.follower.motion_error import ContactError, Judged, MotionError, Play
-from kin.follower.roller import DoubleRoller, Roller, RollerYoke
 from kin.law.contacts import Flat, Oscillating, Translating
+from kin.law.piecewise import Piecewise
 from kin.law.support_function import Lift
-from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kin.follower.base import Follower
     from kin.law.contacts import Contact, Guide, Side, Touch
-    from kin.law.piecewise import Piecewise
-
-__all__ = [
-    "Closure",
-    "ContactError",
-    "DoubleRoller",
-    "FlatFace",
-    "FlatPair",
-    "Follower",
-    "Judged",
-    "MotionError",
-    "Play",
-    "Roller",
-    "RollerYoke",
-    "SwingingFace",
-    "Yoke",
-    "follower_of",
-    "followers_of",
-]
+    from kin.law.transmission_law import Transmission
 
 
 def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, side: Side = 1) -> Follower:
@@ -49,7 +28,10 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     first, *others = contacts
     flat, arm = isinstance(first.touch, Flat), isinstance(first.guide, Oscillating)
     _demand(side > 0 or not (flat or others), "a ring is followed by one roller")
-    if isinstance(law, Transmission):
+    if not isinstance(law, Piecewise):
+        from kin.follower.faces_on_arm import FlatPair
+        from kin.follower.roller import DoubleRoller
+
         _demand(arm and len(others) == 1 and _share_arm(first, others[0]), "a transmission has two contacts on one arm")
         if not flat:
             return DoubleRoller(tuple(contacts), side, law)
@@ -63,10 +45,20 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     raised = law.raised(first.zero)
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
-        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, side, raised)
+        if flat:
+            return Yoke(held, Lift(raised))
+        from kin.follower.roller import RollerYoke
+
+        return RollerYoke(held, side, raised)
     if not flat:
+        from kin.follower.roller import Roller
+
         return Roller(held, side, raised)
-    return SwingingFace(held, raised) if arm else FlatFace(held, Lift(raised))
+    if arm:
+        from kin.follower.faces_on_arm import SwingingFace
+
+        return SwingingFace(held, raised)
+    return FlatFace(held, Lift(raised))
 
 
 def followers_of(

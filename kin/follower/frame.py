@@ -9,7 +9,6 @@ nothing but the zero of the shaft angle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -26,6 +25,7 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.longest_window import dwells
 from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -231,8 +231,8 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
     at_low = intended.error(low, way.low, rows[:, :, :-1])
     at_high = intended.error(high, way.high, rows[:, :, 1:])
 
-    def error(theta: Array, of: Indices) -> Array:
-        return intended.error(theta, way.rows(theta, of), intended.rows(theta))
+    def error(theta: Array, interval: Indices) -> Array:
+        return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
 
     resolution = _resolution(intended.mechanism, rows[1, 0], at_low[0])
     worst, at = extremes(low, high, at_low, at_high, error, resolution=resolution).worst

@@ -8,7 +8,6 @@ The intended lift is not used here, but for the zero of the shaft angle, which a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -20,6 +19,7 @@ from kin.numeric.angles import TURN, degrees
 from kin.numeric.elementary import Jet
 from kin.numeric.errors import KinError
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.follower.support import Bearing

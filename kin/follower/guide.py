@@ -14,13 +14,13 @@ S^2 = 4 (u - e^2), m = e.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, right, unit
 from kin.law.contacts import TRAILING, Oscillating
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

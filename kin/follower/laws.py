@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from kin.follower.motion_error import ContactError
 from kin.follower.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
 from kin.numeric.angles import TURN
 from kin.numeric.jet import Jet, derivatives_by
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
 from kin.numeric.angles import degrees
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.law.contacts import Unit

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -173,10 +173,10 @@ def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[
     return feet
 
 
-def better(one: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
+def better(first: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
     """For each point the foot of the greater score (n,), by default of the greater excess."""
-    wins = (one.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
-    pairs = zip(one.rows, two.rows, strict=True)
+    wins = (first.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
+    pairs = zip(first.rows, two.rows, strict=True)
     return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))
 
 

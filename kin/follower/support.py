@@ -7,7 +7,6 @@ radius of curvature at it, 0 for a corner.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.bernstein import values
 from kin.numeric.distinct import distinct
 from kin.numeric.extrema import extremes
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.bezier import Beziers
@@ -74,8 +74,8 @@ class Bearing:
         near, near_low, near_high = self.between(nodes)
         far, far_low, far_high = self.between(nodes, np.pi)
 
-        def breadth(theta: Array, of: Indices) -> Array:
-            return self.derivatives(theta, near[of]) + self.derivatives(theta + np.pi, far[of])
+        def breadth(theta: Array, interval: Indices) -> Array:
+            return self.derivatives(theta, near[interval]) + self.derivatives(theta + np.pi, far[interval])
 
         return extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, breadth, resolution=resolution)
 

@@ -17,7 +17,6 @@ error found so far are cut in four. The roller's position is the greatest that a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -27,6 +26,7 @@ from kin.contour.arcs import Arcs, cross, dot, nearest_on
 from kin.follower.contact import angles_of, extent, first_contact, meet, within_reach
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from kin.numeric.angles import degrees
+from kin.numeric.records import dataclass, replace
 
 Sense = Literal["at_least", "at_most"]
 ROUNDING = 1e-12  # of the judge itself, as a share of the extent; a value this far above its limit still holds

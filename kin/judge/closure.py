@@ -7,15 +7,16 @@ itself has its clearance besides. Both positions are smooth between breaks, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.follower.base import Closure
 from kin.follower.drive import Shifted
-from kin.follower.follower import Closure, ContactError, Play
+from kin.follower.motion_error import ContactError, Play
 from kin.judge.check import Check, failed
 from kin.judge.contour_checks import fine, play_checks
+from kin.judge.verdict import ClosureVerdict
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
@@ -25,26 +26,17 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.contour import Contour
+    from kin.follower.base import Follower
     from kin.follower.drive import Excitation
-    from kin.follower.follower import Follower
     from kin.judge.intent import ClosureIntent, Limits, SurfaceIntent
     from kin.numeric.arrays import Array, Indices
 
 Surface = tuple["SurfaceIntent", "Contour"]
 INSET = 1e-6  # of a stretch between two breaks: so far within it is looked at, and reckoned back from there
+ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))  # of a stretch, and where that is looked at
 LEAST = 12  # stretches
 RESOLUTION = 1e-11  # of the extent, or of a radian
 CLOSE = 1e-9  # rad: breaks that are closer are one
-
-
-@dataclass(frozen=True)
-class ClosureVerdict:
-    """What is left between two surfaces: to the gauges, which is meant to be nothing, and to the follower itself."""
-
-    pushes: str
-    stops: str
-    gauges: Play
-    play: Play
 
 
 def judge_closures(
@@ -124,9 +116,6 @@ def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float)
     scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
     least, most = (scale * found.least, degrees(found.least_at)), (scale * found.greatest, degrees(found.greatest_at))
     return Play(*least, *most, gauge.unit)
-
-
-ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))
 
 
 def _carried(rows: Array, step: Array) -> Array:

@@ -2,38 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.contour.contour import ARC_SHARE
 from kin.follower.deviation import Deviation, convex_deviation, deviation
-from kin.follower.follower import Closure, ContactError, Follower, Judged, MotionError, Play
-from kin.follower.motion_error import ALLOWANCE
+from kin.follower.motion_error import ALLOWANCE, ContactError, Judged, MotionError, Play
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, limit_of, stroke_of, unlimited
+from kin.judge.verdict import SurfaceVerdict
 from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.follower.frame import LinkageVerdict
+    from kin.follower.base import Closure, Follower
     from kin.judge.intent import Limits, LinkageIntent, SurfaceIntent
     from kin.numeric.arrays import Array
-
-
-@dataclass(frozen=True)
-class Findings:
-    """What was found on a contour; motion is None where the follower finds no contact.
-
-    `deviation` is None where it could not be found.
-    `linkage` is None without a mechanism, or where the contour does not drive it all round.
-    """
-
-    judged: Judged | None
-    deviation: Deviation | None
-    checks: tuple[Check, ...]
-    linkage: LinkageVerdict | None = None
+    from kin.read.nesting import Chain
 
 
 class Fine(NamedTuple):
@@ -45,7 +32,7 @@ class Fine(NamedTuple):
 
 
 def judge_contour(
-    contour: Contour,
+    chain: Chain,
     surface: SurfaceIntent,
     phi: Array,
     limits: Limits,
@@ -53,42 +40,42 @@ def judge_contour(
     *,
     standing: float = 0.0,
     linkage: LinkageIntent | None = None,
-) -> Findings:
-    """Judge a contour at shaft angles phi (n,): the checks from contour and motion to linkage-error and dwell.
+) -> tuple[SurfaceVerdict, list[Check]]:
+    """Judge the chain of a surface at shaft angles phi (n,): checks from contour and motion to linkage-error and dwell.
 
     With a linkage phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's.
     `uneven` is how far a solid's other sections may be off this one, mm; what that can do is counted into everything.
     `standing` is how far metal may stand outside it, mm, where a cutter does not reach.
     """
-    contour, spline, slack = fine(contour, limits.tolerance)
+    contour, spline, slack = fine(chain.contour, limits.tolerance)
     judged, checks, gauge = None, [], surface.gauge
     try:
         judged = _less_sure(gauge.judge(contour, phi), gauge, uneven)
         checks = _motion_checks(judged, surface, limits, slack)
     except (ContactError, UnsettledError) as error:
         checks = [failed("motion", str(error), unit=gauge.unit)]
+    found = SurfaceVerdict(
+        surface.name, chain.contour, judged and judged.motion, judged and judged.play, pieces=chain.pieces
+    )
     envelope = gauge.envelope
     if judged and judged.reach and contour.is_convex and envelope.regular:
-        found = convex_deviation(judged.reach)
+        strayed = convex_deviation(judged.reach)
     else:
         try:
-            found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
+            strayed = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
         except UnsettledError as error:
             unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
-            return Findings(judged, None, (unsettled, *checks))
+            return found, [unsettled, *checks]
     if uneven:
-        away = (found.outside + uneven, found.inside + uneven, found.bare + uneven)
-        found = replace(found, outside=away[0], inside=away[1], bare=away[2])
-    verdict = None
+        away = (strayed.outside + uneven, strayed.inside + uneven, strayed.bare + uneven)
+        strayed = replace(strayed, outside=away[0], inside=away[1], bare=away[2])
+    found = replace(found, measured_error=strayed.worst[0])
     if linkage is not None:
         from kin.judge.linkage_checks import judge_linkage  # a plain follower does without
 
-        verdict, more = judge_linkage(
-            contour, linkage, phi, limits, trimmed=surface.trimmed, slack=slack, uneven=uneven
-        )
-        checks += more
-    judged_contour = _contour_check(found, surface, limits.tolerance, slack, standing)
-    return Findings(judged, found, (judged_contour, *checks), verdict)
+        driven, more = judge_linkage(contour, linkage, phi, limits, trimmed=surface.trimmed, slack=slack, uneven=uneven)
+        found, checks = replace(found, linkage=driven), [*checks, *more]
+    return found, [_contour_check(strayed, surface, limits.tolerance, slack, standing), *checks]
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:

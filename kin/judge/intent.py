@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from kin.numeric.records import dataclass
+
 if TYPE_CHECKING:
-    from kin.follower.follower import Follower
+    from kin.follower.base import Follower
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.judge.milling import Milling

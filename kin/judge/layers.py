@@ -6,13 +6,13 @@ runs along a radius through layers with an outline of their own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.contour.arcs import cross
 from kin.contour.contour import Contour
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,7 @@ from kin.follower.projection import grid
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kin.follower.follower import Closure, Follower
+    from kin.follower.base import Closure, Follower
     from kin.judge.check import Check
 
 # Splines are judged as arcs within this share of the tolerance, and no coarser than SPLINE_ERROR, mm, as far as

@@ -8,7 +8,6 @@ all others is milled from outside, the others are holes. Of stock that comes wit
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from kin.contour.offset import TightError, parallel
 from kin.contour.region import gaps
 from kin.judge.check import Check, at_most, failed
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
 from kin.read.nesting import Chain, Nest, counter_clockwise

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
-    from kin.judge.closure import ClosureVerdict
     from kin.read.files import Kind
 
 
@@ -46,6 +46,16 @@ class SurfaceVerdict:
 
 
 UNREAD = SurfaceVerdict()
+
+
+@dataclass(frozen=True)
+class ClosureVerdict:
+    """What is left between two surfaces: to the gauges, which is meant to be nothing, and to the follower itself."""
+
+    pushes: str
+    stops: str
+    gauges: Play
+    play: Play
 
 
 class OfSurfaces:

@@ -17,7 +17,7 @@ from kin.judge.bore import bore_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
 from kin.judge.surfaces import SIZED, Parted, deepest, parted
-from kin.judge.verdict import SurfaceVerdict, Verdict
+from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
 from kin.numeric.places import place_text
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour.contour import Contour
-    from kin.judge.closure import ClosureVerdict
     from kin.judge.intent import Limits, PartIntent
     from kin.read.drawing.drawing import Drawing
     from kin.read.files import AnySolid
@@ -76,20 +75,9 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     checks, surfaces = list(file.checks), list[SurfaceVerdict]()
     standing = part.milling.standing if part.milling is not None else 0.0
     for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
-        found = judge_contour(chain.contour, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
-        checks += [replace(check, surface=surface.name) for check in found.checks]
-        judged, away = found.judged, found.deviation
-        surfaces.append(
-            SurfaceVerdict(
-                surface.name,
-                chain.contour,
-                judged and judged.motion,
-                judged and judged.play,
-                away.worst[0] if away else None,
-                chain.pieces,
-                found.linkage,
-            )
-        )
+        found, more = judge_contour(chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
+        checks += [replace(check, surface=surface.name) for check in more]
+        surfaces.append(found)
     closures: tuple[ClosureVerdict, ...] = ()
     if part.closures:
         from kin.judge.closure import judge_closures  # most cams have one surface

@@ -9,8 +9,9 @@ and the arm, which of a flat face is its own parallel through the pivot.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Generic, Literal, TypeAlias, TypeVar
+
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array

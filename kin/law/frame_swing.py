@@ -18,7 +18,6 @@ theta and phi rise with phi where psi' < 1 and psi' (1 + cos psi/cos psi*) < 1: 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -36,6 +35,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.elementary import Ball, BallJet, DomainError, Jet, asin, cos, sin
 from kin.numeric.jet import derivatives_by
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass
 from kin.numeric.taylor import compose, compose_balls, factorials
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ knot, and belongs to the side asked for. So a jump of a derivative is given as i
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,6 +17,7 @@ from kin.numeric.arrays import Array, Indices
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
 from kin.numeric.interval import Ball, hull
 from kin.numeric.jet import finite
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -124,19 +124,19 @@ def _demand_within(
 
 
 def _polar(
-    of: tuple[int, int, float], found: Sequence[FromExpression], places: Sequence[float], field: str
+    ratio: tuple[int, int, float], stretches: Sequence[FromExpression], places: Sequence[float], field: str
 ) -> Transmission:
     """Make the law of a ratio and an arm, of stretches over t that reach from 0 to delta, or on to 2 delta."""
-    lam, mu, arm = of
+    lam, mu, arm = ratio
     alpha, delta = math.pi * mu / lam, math.pi / lam
     whole = places[-1] > 1.5 * delta
-    if whole and len(found) == 1 and _runs_on(found[0], 2 * delta):
-        one = [_at_rest(found[0], 0.0)]
+    if whole and len(stretches) == 1 and _runs_on(stretches[0], 2 * delta):
+        one = [_at_rest(stretches[0], 0.0)]
         over = Piecewise(np.array(places), tuple(one), 2 * delta, smooth_seam=True)
         return checked(Transmission(lam, mu, arm, over, (0.5,), alpha / 2), [0.0, delta], one, field)
     count = sum(place < delta * (1 - _CLEAR) for place in places)
     knots = [*places[:count], delta]
-    functions: list[Stretch] = [_at_rest(f, low) for f, low in zip(found[:count], knots, strict=False)]
+    functions: list[Stretch] = [_at_rest(f, low) for f, low in zip(stretches[:count], knots, strict=False)]
     psi, lean = over_period(delta, knots, functions, (0.5, 0.5))
     return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2), knots, functions, field)
 

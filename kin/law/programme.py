@@ -8,7 +8,6 @@ and 3. The constants of the "modified" laws follow here from their accelerations
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -18,6 +17,7 @@ from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

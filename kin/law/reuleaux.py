@@ -30,30 +30,30 @@ _DIGITS = 3  # after the point, degrees, of angles that an error suggests
 _ROOM = 1e-9
 
 
-def closed_angles(sides: int, given: Sequence[float]) -> tuple[float, ...]:
+def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
     """All angles of a star of odd `sides`, rad, in the order of its points, of which the first `sides` - 3 are given.
 
     Raises IntentError where no star has them, with some that one has, towards those of the regular one.
     """
-    if len(given) != sides - FREE:
+    if len(chosen) != sides - FREE:
         raise IntentError(
-            f"{sides} sides take {sides - FREE} angles, the last three of them follow; here are {len(given)}",
+            f"{sides} sides take {sides - FREE} angles, the last three of them follow; here are {len(chosen)}",
             "reuleaux.angles",
         )
-    found = _last_three(given)
-    if min(*given, *found, math.inf) >= LEAST:
-        return (*given, *found)
+    found = _last_three(chosen)
+    if min(*chosen, *found, math.inf) >= LEAST:
+        return (*chosen, *found)
     equal = math.pi / sides
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (low + high)
-        tried = [equal + share * (one - equal) for one in given]
+        tried = [equal + share * (one - equal) for one in chosen]
         low, high = (share, high) if min(*tried, *_last_three(tried)) >= LEAST else (low, share)
-    near = [round(math.degrees(equal + low * 0.99 * (one - equal)), _DIGITS) for one in given]
-    total = math.degrees(sum(given))
+    near = [round(math.degrees(equal + low * 0.99 * (one - equal)), _DIGITS) for one in chosen]
+    total = math.degrees(sum(chosen))
     why = (
         f"they add up to {total:.6g} degrees, and all {sides} to 180"
-        if sum(given) >= math.pi - FREE * LEAST
+        if sum(chosen) >= math.pi - FREE * LEAST
         else "three arcs more do not close it"
     )
     raise IntentError(
@@ -63,10 +63,10 @@ def closed_angles(sides: int, given: Sequence[float]) -> tuple[float, ...]:
     )
 
 
-def _last_three(given: Sequence[float]) -> tuple[float, float, float]:
+def _last_three(chosen: Sequence[float]) -> tuple[float, float, float]:
     """The three angles that close the star, rad; some are not above 0 where there is none."""
     direction, total = 0.0, 1.0 + 0.0j
-    for i, angle in enumerate(given, 1):
+    for i, angle in enumerate(chosen, 1):
         direction += angle
         total += (-1) ** i * cmath.rect(1.0, direction)
     apart, size = -total, abs(total)

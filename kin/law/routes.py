@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from kin.law.segment import Harmonics, Series
 from kin.numeric import interval
 from kin.numeric.elementary import BallJet, Jet, acos, asin, cos, sin, sqrt
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

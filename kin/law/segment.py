@@ -7,12 +7,12 @@ One function object serves points (`kin.numeric.elementary.Jet`: exact derivativ
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 import numpy as np
 
 from kin.numeric.elementary import BallJet, Jet, cos, sin
+from kin.numeric.records import dataclass
 
 Series = TypeVar("Series", Jet, BallJet)
 

@@ -8,7 +8,6 @@ has p and p' continuous all round; p'' may jump, and does so at declared breaks 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from typing import TYPE_CHECKING
@@ -18,11 +17,11 @@ import numpy as np
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, first_harmonic
-from kin.law.reuleaux import closed_angles, corners
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
 from kin.numeric.interval import Ball
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -133,10 +132,6 @@ class Lift:
     def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
         """Give p and its derivatives at theta (n,), (order + 1, n); at a break the right-hand limit, or left (-1)."""
         return self.law.derivatives(theta, order, side)
-
-    def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Enclose p and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each; see `Piecewise`."""
-        return self.law.enclosure(lower, upper, order)
 
     def radius_enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
         """Enclose rho = p + p'' and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each.
@@ -316,6 +311,8 @@ def lift_reuleaux(
         )
     half, size = math.pi / (2 * sides), breadth - 2 * rounding
     if angles:
+        from kin.law.reuleaux import closed_angles, corners
+
         own = closed_angles(sides, angles)
         centres = [(size * one.real, size * one.imag) for one in corners(own)]
         centres += centres

@@ -14,7 +14,6 @@ Polar routes: tau is the polar angle t of roller A, w = 1/2, c = alpha/2 (W 4.4)
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -27,6 +26,7 @@ from kin.law.segment import Affine, Constant, Series
 from kin.numeric.elementary import Ball, BallJet, Jet, cos
 from kin.numeric.jet import derivatives_by
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,7 +13,6 @@ once round the path: there must be none.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -34,6 +33,7 @@ from kin.linkage.loop import (
     with_value,
 )
 from kin.numeric.elementary import Jet, sqrt
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array

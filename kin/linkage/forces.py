@@ -35,9 +35,9 @@ def angle(lever: Array, along: Array, side: Array) -> tuple[Array, Array]:
     return lever / size, along / size
 
 
-def pushing(at: tuple[Array, Array], along: tuple[Array, Array], way: tuple[Array, Array], rate: Array) -> ForceLine:
-    """Line of force through `at`, along or against `along`: as the link has to be pushed that moves at `rate` `way`."""
+def pushing(place: tuple[Array, Array], along: tuple[Array, Array], way: tuple[Array, Array], rate: Array) -> ForceLine:
+    """Line of force through `place`, along or against `along`: as a link is to be pushed that moves at `rate` `way`."""
     size = np.hypot(*along)
     fx, fy = (np.divide(part, size, out=np.zeros_like(part), where=size > 0.0) for part in along)
     side = np.where((fx * way[0] + fy * way[1]) * rate < 0.0, -1.0, 1.0)
-    return ForceLine(*at, side * fx, side * fy)
+    return ForceLine(*place, side * fx, side * fy)

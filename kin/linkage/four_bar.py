@@ -20,7 +20,6 @@ line of force. `force_line` is that line.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -44,6 +43,7 @@ from kin.linkage.loop import (
     with_value,
 )
 from kin.numeric.elementary import Jet, sqrt
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -122,31 +122,31 @@ class FourBar:
         frame = abd.beside * side - ad.bearing()
         return Positions(frame, abd.between * side, joint, ad.x)
 
-    def output_link(self, at: Positions) -> Link:
+    def output_link(self, positions: Positions) -> Link:
         """Return the rocker: origin B, x towards D."""
-        return _rocker(self.ground, at)
+        return _rocker(self.ground, positions)
 
-    def joints(self, at: Positions) -> dict[str, Joint]:
+    def joints(self, positions: Positions) -> dict[str, Joint]:
         """B and D."""
-        return {"B": pivot((self.ground, 0.0), at.output), "D": Joint("pin", Link(at.joint, None))}
+        return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("pin", Link(positions.joint, None))}
 
-    def transmission(self, at: Positions) -> tuple[Array, Array]:
+    def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and rocker."""
-        frame, output = at.frame.c[0], at.output.c[0]
+        frame, output = positions.frame.c[0], positions.output.c[0]
         return np.sin(frame + output), -np.cos(frame + output)
 
-    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Between DP and DB."""
-        ax, ay = at.from_instant_centre(slope, slope1)
-        dx, dy = (row.c[0] for row in at.joint)
+        ax, ay = positions.from_instant_centre(slope, slope1)
+        dx, dy = (row.c[0] for row in positions.joint)
         bx, by = dx - self.ground, dy
         return angle(ax * by - ay * bx, ax * bx + ay * by, dy)
 
-    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+    def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Along DP, in the sense in which it pushes the rocker on; the positions to first order."""
-        dx, dy = (row.c[0] for row in at.joint)
-        along = at.from_instant_centre(slope, slope1)
-        return pushing((dx, dy), along, (-dy, dx - self.ground), -at.output.c[1])
+        dx, dy = (row.c[0] for row in positions.joint)
+        along = positions.from_instant_centre(slope, slope1)
+        return pushing((dx, dy), along, (-dy, dx - self.ground), -positions.output.c[1])
 
 
 @dataclass(frozen=True)
@@ -200,35 +200,35 @@ class InvertedSliderCrank:
         joint = near * (r4 / r1) + (r1 - r4), slide * (r4 / r1)
         return Positions(math.pi / 2 - output, output, joint, slide)
 
-    def output_link(self, at: Positions) -> Link:
+    def output_link(self, positions: Positions) -> Link:
         """Return the rocker: origin B, x towards D."""
-        return _rocker(self.ground, at)
+        return _rocker(self.ground, positions)
 
-    def joints(self, at: Positions) -> dict[str, Joint]:
+    def joints(self, positions: Positions) -> dict[str, Joint]:
         """B, and D in a slot of the frame along u."""
-        return {"B": pivot((self.ground, 0.0), at.output), "D": Joint("slot", at.coupler)}
+        return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("slot", positions.coupler)}
 
-    def transmission(self, at: Positions) -> tuple[Array, Array]:
+    def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """A right angle throughout: the block presses across the frame's line."""
-        frame = at.frame.c[0]
+        frame = positions.frame.c[0]
         return np.ones_like(frame), np.zeros_like(frame)
 
-    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Between BP and the force, which passes through P across the frame's line."""
-        frame = at.frame.c[0]
+        frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
-        px, py = at.instant_centre(slope, slope1)
+        px, py = positions.instant_centre(slope, slope1)
         ax, ay = self.ground - px, -py
-        return angle(ax * c + ay * s, ay * c - ax * s, at.slide.c[0])
+        return angle(ax * c + ay * s, ay * c - ax * s, positions.slide.c[0])
 
-    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+    def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Across the frame's line, where P stands along it; the positions to first order."""
-        frame = at.frame.c[0]
+        frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
-        fx, fy = at.from_instant_centre(slope, slope1)
+        fx, fy = positions.from_instant_centre(slope, slope1)
         back = fx * c + fy * s
-        x, y = at.joint[0].c[0] - back * c, at.joint[1].c[0] - back * s
-        return pushing((x, y), (-s, c), (-y, x - self.ground), -at.output.c[1])
+        x, y = positions.joint[0].c[0] - back * c, positions.joint[1].c[0] - back * s
+        return pushing((x, y), (-s, c), (-y, x - self.ground), -positions.output.c[1])
 
 
 @dataclass(frozen=True)
@@ -270,35 +270,35 @@ class SliderCrank:
         height = output.constant(offset)
         return Positions(bearing(output, height, q) - ad.bearing(), output, (output, height), ad.x)
 
-    def output_link(self, at: Positions) -> Link:
+    def output_link(self, positions: Positions) -> Link:
         """Return the slide: origin D, its axes fixed."""
-        return Link(at.joint, None)
+        return Link(positions.joint, None)
 
-    def joints(self, at: Positions) -> dict[str, Joint]:
+    def joints(self, positions: Positions) -> dict[str, Joint]:
         """D, on the fixed line."""
-        return {"D": Joint("slide", Link(at.joint, at.output.constant(0.0)))}
+        return {"D": Joint("slide", Link(positions.joint, positions.output.constant(0.0)))}
 
-    def transmission(self, at: Positions) -> tuple[Array, Array]:
+    def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and the slide's normal."""
-        frame = at.frame.c[0]
+        frame = positions.frame.c[0]
         return np.cos(frame), np.sin(frame)
 
-    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Between DP and the slide's normal."""
-        return angle(*at.from_instant_centre(slope, slope1), at.joint[0].c[0])
+        return angle(*positions.from_instant_centre(slope, slope1), positions.joint[0].c[0])
 
-    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+    def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Along DP, in the sense in which it pushes the slide on; the positions to first order."""
-        dx, dy = (row.c[0] for row in at.joint)
+        dx, dy = (row.c[0] for row in positions.joint)
         way = np.ones_like(dx), np.zeros_like(dx)
-        return pushing((dx, dy), at.from_instant_centre(slope, slope1), way, at.output.c[1])
+        return pushing((dx, dy), positions.from_instant_centre(slope, slope1), way, positions.output.c[1])
 
 
 Linkage = FourBar | InvertedSliderCrank | SliderCrank
 
 
-def _rocker(ground: float, at: Positions) -> Link:
-    return rocker((ground, 0.0), math.pi - at.output)
+def _rocker(ground: float, positions: Positions) -> Link:
+    return rocker((ground, 0.0), math.pi - positions.output)
 
 
 def _frame_terms(

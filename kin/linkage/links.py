@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from kin.numeric.elementary import Jet, atan2, cos, sin
+from kin.numeric.records import dataclass
 
 __all__ = ["Joint", "Link", "Place", "bar", "pivot", "rocker"]
 

@@ -8,7 +8,6 @@ rate of the given length, so that nothing is divided by the difference of two ro
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -18,6 +17,7 @@ import numpy as np
 from kin.numeric.arrays import Array
 from kin.numeric.elementary import Jet, sqrt
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

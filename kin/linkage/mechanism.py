@@ -9,7 +9,6 @@ either angle. Derivatives are exact (`kin.numeric.elementary`), extremes and roo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -27,6 +26,7 @@ from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Dwell, dwells
 from kin.numeric.monotone import between, cells, pieces
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ frame turns faster than any bound, one way or the other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from kin.numeric.angles import TURN
 from kin.numeric.monotone import SAME, Pieces, RoughError, between, cells, pieces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

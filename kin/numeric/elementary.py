@@ -11,7 +11,6 @@ tie, so a function with switches is better taken apart first: `kin.law.formula.f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar, overload
 
 import numpy as np
@@ -20,6 +19,7 @@ from kin.numeric import interval
 from kin.numeric.arrays import Array
 from kin.numeric.interval import Ball
 from kin.numeric.jet import BallJet, DomainError, Jet, demand, finite
+from kin.numeric.records import dataclass
 from kin.numeric.taylor import (
     asin_rows,
     atan_rows,

@@ -47,9 +47,9 @@ class Ball:
     __array_ufunc__: ClassVar[None] = None  # numpy arrays leave mixed operators to this class
 
     @staticmethod
-    def exact(value: float | Array, shape: tuple[int, ...] | None = None) -> Ball:
+    def exact(value: float | Array) -> Ball:
         """Return the numbers themselves, radius 0."""
-        mid = np.array(value, dtype=float) if shape is None else np.full(shape, value, dtype=float)
+        mid = np.array(value, dtype=float)
         return _ball(mid, np.where(np.isfinite(mid), 0.0, np.inf))
 
     @staticmethod
@@ -235,16 +235,6 @@ def sin_cos(x: Ball) -> tuple[Ball, Ball]:
         least = np.where(holds[1::2], -1.0, least)
         both = Ball.between(least, greatest)
     return both[0], both[1]
-
-
-def sin(x: Ball) -> Ball:
-    """Image under sin."""
-    return sin_cos(x)[0]
-
-
-def cos(x: Ball) -> Ball:
-    """Image under cos."""
-    return sin_cos(x)[1]
 
 
 def tan(x: Ball) -> Ball:

@@ -14,7 +14,6 @@ either excluded by their ranges or bracketed.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,6 +22,7 @@ import numpy as np
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.monotone import Pieces, between, cells, pieces
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -11,7 +11,6 @@ Points of a cell are inside it, so one-sided values at a break are never asked f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import comb
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,13 +20,14 @@ import numpy as np
 from kin.numeric.bernstein import halves, restrict, rising_root, values
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "extremes", "pieces"]
+__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "pieces"]
 
 DEGREE = 10
 FIRST_CELLS = 32
@@ -206,28 +206,8 @@ class Pieces:
 
 def pieces(of: Cells, row: int = 0) -> Pieces:
     """Cut one of the functions into pieces."""
-    low, high, c, noise = _monotone(of, row, np.ones(len(of.low), dtype=np.bool_))
-    return Pieces(np.append(low, high[-1]), c, noise)
-
-
-def extremes(of: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and greatest value of one of the functions, each with where it is: those of its pieces.
-
-    A polynomial lies between its least and greatest coefficients: cells that these keep off need not be cut.
-    """
-    c = of.coefficients[row]
-    ends, found = c[:, [0, -1]], []
-    for sign in (-1.0, 1.0):
-        low, high, pieces, _ = _monotone(of, row, (sign * c).max(axis=1) >= (sign * ends).max())
-        k, end = divmod(int((sign * pieces[:, [0, -1]]).argmax()), 2)
-        found.append((float(pieces[k, -end]), float((low, high)[end][k])))
-    return found[0], found[1]
-
-
-def _monotone(of: Cells, row: int, chosen: Mask) -> tuple[Array, Array, Array, Array]:
-    """Cut the chosen cells (m,) of one function: ends, coefficients and noise of the pieces, rising."""
-    least = LEAST_CELL * (of.high[-1] - of.low[0])
-    low, high, c, noise = of.low[chosen], of.high[chosen], of.coefficients[row][chosen], of.noise[row][chosen]
+    low, high, c, noise = of.low, of.high, of.coefficients[row], of.noise[row]
+    least = LEAST_CELL * (high[-1] - low[0])
     done = []
     while len(low):
         single = (_changes(c, 1, noise) <= 1) & (_changes(c, 2, noise) <= 1) | (high - low <= least)
@@ -240,7 +220,7 @@ def _monotone(of: Cells, row: int, chosen: Mask) -> tuple[Array, Array, Array, A
     for order in (1, 2):
         low, high, c, noise = _cut(low, high, c, noise, order)
     rank = np.argsort(low)
-    return low[rank], high[rank], c[rank], noise[rank]
+    return Pieces(np.append(low[rank], high.max()), c[rank], noise[rank])
 
 
 def _differences(c: Array, order: int, noise: Array) -> Array:

@@ -6,34 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
-from kin.read.drawing.drawing import Aside, Drawing, Fault
-from kin.read.drawing.dxf import read_dxf
-from kin.read.errors import ReadError
-from kin.read.mesh.stl import Section, Solid, read_stl
-from kin.read.nesting import scaled
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.mesh.stl import Solid
     from kin.read.step.step import StepSolid
-
-__all__ = [
-    "KINDS",
-    "SOLIDS",
-    "SUFFIXES",
-    "AnySolid",
-    "Aside",
-    "Drawing",
-    "Fault",
-    "Kind",
-    "ReadError",
-    "Solid",
-    "kind_of",
-    "read_drawing",
-    "read_dxf",
-    "read_solid",
-    "read_stl",
-]
 
 Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -60,6 +38,8 @@ def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool =
         from kin.read.drawing.svg import read_svg
 
         return read_svg(path, gap, engraved=engraved, deepest=deepest)
+    from kin.read.drawing.dxf import read_dxf
+
     return read_dxf(path, gap, engraved=engraved, deepest=deepest)
 
 
@@ -78,6 +58,9 @@ def read_solid(
         from kin.read.mesh.threemf import read_3mf
 
         return read_3mf(path, heights, deepest)
+    from kin.read.mesh.stl import Section, read_stl
+    from kin.read.nesting import scaled
+
     if units is None or units == 1.0:
         return read_stl(path, heights, deepest)
     found = read_stl(path, [z / units for z in heights], deepest)

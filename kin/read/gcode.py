@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from kin.contour.arcs import Arcs
+from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.size import contents
 

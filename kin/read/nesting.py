@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.contour.nearest import signed_distance
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:

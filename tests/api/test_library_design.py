@@ -42,6 +42,7 @@ def test_the_motion_is_that_of_the_table(design: camgeo.Design, tmp_path: Path) 
         assert np.abs(at - shown).max() <= 1e-6 * max(1.0, np.abs(shown).max())
 
 
+@pytest.mark.thin(2)
 def test_derivatives_are_those_of_the_motion(design: camgeo.Design) -> None:
     theta, step = np.array([0.31, 1.7, 2.9, 4.4]), 1e-5
     for order in range(2):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,6 +41,18 @@ def test_a_family_is_told_of(kind: str) -> None:
     assert FAMILIES[kind].kind == kind
     assert f"({kind}" in SAID or f", {kind})" in SAID
     assert f"`{kind}`" in (ROOT / "docs" / "which-cam.md").read_text(encoding="utf-8")
+
+
+def test_the_list_of_families_imports_none_of_them() -> None:
+    code = (
+        "import sys; from camgeo.cams.families import FAMILIES; from camgeo.recipe.cam import CAMS\n"
+        "assert list(CAMS) == list(FAMILIES) and 'disc' in CAMS and 'groove' not in CAMS\n"
+        "assert not {f'camgeo.cams.{kind}'.replace('-', '_') for kind in FAMILIES} & set(sys.modules)\n"
+        "assert CAMS['disc'] is FAMILIES['disc'].table and CAMS.get('groove') is None\n"
+        "print({f'camgeo.cams.{kind}'.replace('-', '_') for kind in FAMILIES} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "{'camgeo.cams.disc'}\n"
 
 
 EACH = "as-figure-1 print-constant-diameter disc-arm-flat disc-flat disc-ring disc-roller w-ellipse w-booth shu-wu"

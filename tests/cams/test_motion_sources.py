@@ -478,7 +478,7 @@ def test_what_no_plate_can_do_is_refused_at_its_field(motion, path, message, men
     recipe(mended, tmp_path).cam.exact()
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("stroke", [1e-7, 1e-3, 2.0])
 def test_a_rise_over_a_hundredth_of_a_degree_is_exact_or_fails_its_check(stroke, tmp_path):
     form = f"{stroke}*max(0, min(1, (t - 1)/{math.radians(0.01)!r}))"

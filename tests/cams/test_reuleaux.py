@@ -235,6 +235,7 @@ def test_the_polygon_by_hand_passes(text):
     assert all(check.ok for check in checks.values()), checks
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 @pytest.mark.parametrize("which", [0, 1, 2])
 @pytest.mark.parametrize("fault", ["shaved", "moved", "turned", "rounded"])

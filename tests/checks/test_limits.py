@@ -151,7 +151,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -319,7 +319,7 @@ SLIGHT = ROLLER.replace("625", "20")
 FINE = "export: {tolerance: 0.0001, "
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [

@@ -492,7 +492,7 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
 ]
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize(("text", "pattern", "follow"), WITH_FILES, ids=[pattern for _, pattern, _ in WITH_FILES])
 def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str, follow: Follow) -> None:
     assert not said_of_files(follow(figure(said_of_files(text), pattern)))

@@ -163,6 +163,7 @@ def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch
     assert method != "spawn" or made[0][1] == "spawn"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("pays", "started"), [(math.inf, []), (0.0, [2])])
 def test_recipes_are_made_here_until_more_processes_pay(
     pays: float, started: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -205,7 +206,7 @@ def test_work_under_spawn(monkeypatch: pytest.MonkeyPatch) -> None:
     assert dict(workers.at_once(double, range(5), 150)) == {number: 2 * number for number in range(5)}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize("ended", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.parametrize("fork", ["True", "False"])

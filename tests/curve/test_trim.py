@@ -271,6 +271,7 @@ def test_what_is_lost_in_rounding_is_trimmed_all_the_same(margin):
     )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("curve", "message"),
     [

@@ -111,7 +111,8 @@ def parsed(words):
     from camgeo.cli.main import _parser
 
     plain = [word.rstrip(".]").lstrip("[") if word.rstrip(".]").lstrip("[").isupper() else word for word in words]
-    return _parser().parse_args([PLACES.get(word, word) for word in plain])
+    call = [PLACES.get(word, word) for word in plain]
+    return _parser(call).parse_args(call)
 
 
 def spoken():

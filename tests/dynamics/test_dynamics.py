@@ -282,7 +282,7 @@ def test_a_rate_of_the_preload_spring_adds_its_force_and_its_stiffness():
     assert force.least == pytest.approx((150.0 - 3e3 * 1e-2) * 2e5 / 2.03e5, rel=1e-9)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("r", [5.3, 60.3, 2000.3, 1e5 + 0.3])
 @pytest.mark.parametrize("zeta", [0.0, 0.02, 1.5])
 def test_extremes_are_those_of_a_dense_sampling(r, zeta):

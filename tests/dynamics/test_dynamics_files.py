@@ -14,9 +14,8 @@ from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
 from kin.follower.flat import OfFace
-from kin.follower.follower import DoubleRoller
 from kin.follower.guide import Arm, Line
-from kin.follower.roller import OfRoller
+from kin.follower.roller import DoubleRoller, OfRoller
 from kin.follower.support import bearing_of
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux

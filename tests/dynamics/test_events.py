@@ -21,7 +21,7 @@ from kin.dynamics.separation import float_speed
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.follower.drive import Shifted
-from kin.follower.follower import DoubleRoller
+from kin.follower.roller import DoubleRoller
 
 TURN = 2.0 * math.pi
 

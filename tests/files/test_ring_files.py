@@ -42,7 +42,7 @@ def volume(design):
     return 8 * (math.pi * 65**2 - area - HOLES)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("form", ["arcs", "spline", "polyline"])
 def test_a_drawing_shows_outline_opening_and_holes(tmp_path, form, rotation):
@@ -141,6 +141,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")

@@ -26,7 +26,8 @@ from kin.contour.contour import Contour
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.read.drawing.svg import read_svg
-from kin.read.files import ReadError, read_drawing
+from kin.read.errors import ReadError
+from kin.read.files import read_drawing
 
 EXACT = Bound(0.0, 0.0)
 PART = "{bore: 12, keyway: {standard: din6885, at: 180}, bolts: {count: 3, circle: 31, hole: 3.2, start: 60}, %s}"

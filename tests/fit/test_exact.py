@@ -286,6 +286,7 @@ def test_what_is_no_trigonometric_polynomial_is_refused_with_the_reason(cam: str
     assert error.line == 6
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["shu-wu", "w-ellipse", "w-figure-9"])
 def test_other_cams_are_refused(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES / f"{name}.yaml")
@@ -348,7 +349,7 @@ def test_a_harmonic_below_rounding_is_left_out_and_counted() -> None:
     assert polynomial(f"25 + {many}").order > 10
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("small", "told"),
     [

@@ -44,7 +44,7 @@ def outward(curve: Curve, points: np.ndarray) -> np.ndarray:
     return across
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("fit", FITS)
 @pytest.mark.parametrize("name", CONTOURS)
 @pytest.mark.parametrize("tolerance", few((1e-3, 1e-5, 1e-1), 3))

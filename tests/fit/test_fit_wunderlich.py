@@ -170,7 +170,7 @@ def some(count: int) -> int:
     return max(5, min(200, 3_000 // count))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -182,7 +182,7 @@ def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     assert polygon.count <= math.ceil(1.01 * least_vertices(curve, tolerance)) + 1 + case.breaks
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -193,7 +193,7 @@ def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (case.breaks + case.extrema)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(case: Case, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(case.shape), tolerance)

@@ -18,8 +18,8 @@ from camgeo.curve.moving_frame import Translating as Stem
 from camgeo.curve.parallel import Parallel
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
-from kin.follower.follower import ContactError
 from kin.follower.guide import METRE, Arm, Line
+from kin.follower.motion_error import ContactError
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
@@ -90,7 +90,7 @@ GUIDES = {
 }
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
@@ -162,7 +162,7 @@ def spoilt(follower, seed, count=160, size=2e-3):
     return points + size * rng.uniform(-1.0, 1.0, points.shape)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", [name for name in FOLLOWERS if name != "shoe, trailing arm"])
 def test_the_greatest_error_is_proved_over_all_angles(name, seed):
@@ -181,7 +181,7 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("distance", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
@@ -257,6 +257,7 @@ def test_an_eccentricity_near_the_prime_radius_is_proved(offset):
     proved(on_stem(M02, 45.0, offset, 9.0), made, 1e-5)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("prime", [17.0, 15.2])
 def test_an_arm_that_comes_near_to_pointing_at_the_shaft_is_proved(prime, side):
@@ -265,6 +266,7 @@ def test_an_arm_that_comes_near_to_pointing_at_the_shaft_is_proved(prime, side):
     proved(on_arm(M07, sized, 3.0), fitted(Parallel(CentreShape(M07, sized), 3.0), 1e-5), 1e-5)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
     inside = Oscillating.on(42.0, 30.0, 65.0, side)
@@ -273,6 +275,7 @@ def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
     proved(on_arm(M07, stretched, 3.0), fitted(Parallel(CentreShape(M07, stretched), 3.0), 1e-5), 1e-5)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("gap", [1e-3, 1e-9])
 def test_a_roller_a_hair_above_undercut(gap):
     shape = CentreShape(M15, Stem.on(26.0))
@@ -292,7 +295,7 @@ def proved(follower, made, tolerance):
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""

@@ -11,8 +11,8 @@ from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
-from kin.follower.follower import ContactError
 from kin.follower.guide import Arm
+from kin.follower.motion_error import ContactError
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
@@ -344,6 +344,7 @@ DOUBLES = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few(DOUBLES, 2))
 def test_double_roller_follows_ever_finer_polygons_ever_better(name):
     transmission, formula = DOUBLES[name]
@@ -410,6 +411,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     assert 0.95 * play < gap < 1.001 * play
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05

@@ -239,7 +239,7 @@ def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     assert implied_limit(mechanism, tolerance) == pytest.approx(first_order, rel=max(0.2 * tolerance, 1e-6))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few([1e-3, 0.1], 2))
 def test_a_parallel_cam_uses_the_whole_limit_and_no_more(pair, tolerance):
     """All round outside by the tolerance: the four ways of resting are the four combinations of signs."""

@@ -134,7 +134,7 @@ def dense(follower, contour, count):
 NAMES = ["cycloidal", "polynomial-345", "polynomial-4567", "modified-sine", "harmonic"]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("seed", range(16))
 def test_random_double_rollers_against_dense_contacts(seed):
     rng = np.random.default_rng(seed)
@@ -314,7 +314,7 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     assert flat == pytest.approx(range_, rel=0.02)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("vertex", [0, 1, 1500, 1999])
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):

@@ -134,6 +134,7 @@ def mark_cut_through(space):
     on(space, "ENGRAVE")[0].dxf.layer = "MARK"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("spoil", "caught"),
     [
@@ -172,6 +173,7 @@ def test_faults_are_told_with_name_and_place(drawing, tmp_path):
     assert "an opening of 3.14159 mm^2 about (-14, 8), where none is expected" in detail
 
 
+@pytest.mark.slow
 def test_cut_mark_turned_by_a_fifth_of_a_degree(tmp_path):
     recipe = recipe_of(PRISM.replace("AS", "cut"))
     design, files = files_of(recipe, tmp_path)
@@ -216,7 +218,7 @@ VARIANTS = {
 }
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(7)
 @pytest.mark.parametrize("name", VARIANTS)
 def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid

@@ -21,7 +21,7 @@ from support.cases import few
 from support.heavy import ezdxf
 from support.intent import gauge_of, part_of
 
-from kin.follower.follower import Yoke
+from kin.follower.flat import Yoke
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
@@ -106,7 +106,7 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
 # --- drawings ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 @pytest.mark.parametrize("k", [0, EDGES - 1])
 def test_a_vertex_moved(tmp_path, cam, depth, k):
@@ -127,7 +127,7 @@ def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "cam.dxf", spoilt), intent) & {"contour", "closed"}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("factor", [-1.0, 0.0, 2.0])
 @pytest.mark.parametrize("rank", [0, 10])
 def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, cam, factor, rank):
@@ -186,7 +186,7 @@ def test_scale(tmp_path, cam, scale):
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", scale * points(EDGES)), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("degrees", [0.2, -0.2, 45.0])
 def test_a_turn(tmp_path, cam, degrees):
     intent, points = cam
@@ -269,7 +269,7 @@ def test_a_mirrored_cam(tmp_path, cam):
         assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "straight.dxf", points(EDGES)), meant)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     "bores",
     [

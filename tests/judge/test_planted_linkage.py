@@ -228,6 +228,7 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
     assert found >= {"contour", "motion", "linkage-error"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_dwell_spoilt_by_a_bump_within_it(tmp_path, form):

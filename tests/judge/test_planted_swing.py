@@ -124,6 +124,7 @@ def test_a_lift_that_is_not_the_laws_is_caught_by_the_swing_alone(tmp_path, inte
     assert failures(path, meant) == {"linkage-error"}
 
 
+@pytest.mark.slow
 def test_the_judge_holds_the_file_against_the_law_over_the_shaft_angle(tmp_path):
     """The reported error is that of the polygon in the file, turned in a rigid square by plain geometry."""
     recipe = load_text(TEXT, "a.yaml")

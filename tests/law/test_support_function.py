@@ -442,7 +442,7 @@ def test_enclosures_hold(i):
     t = lower + rng.uniform(0.001, 0.999, 400) * (upper - lower)
     p = lift.derivatives(t, 4)
     noise = 1e-14 * np.abs(p).max(axis=1, keepdims=True)
-    mid, rad = lift.enclosure(lower, upper, 4)
+    mid, rad = lift.law.enclosure(lower, upper, 4)
     assert (np.abs(p - mid) <= rad + noise).all()
     mid, rad = lift.radius_enclosure(lower, upper, 2)
     assert (np.abs(p[:3] + p[2:] - mid) <= rad + noise[2:] + noise[:3]).all()

@@ -123,6 +123,7 @@ class Polygon:
         return 0.5 * (low + high)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "four-bar, joint off", "slider-crank, joint off"])
 def test_a_polygon_in_a_rigid_frame(kind):
     """At given shaft angles, where only the direction of the frame is unknown."""
@@ -369,7 +370,7 @@ def test_mobility_close_to_a_limit_position(gap, limit):
 # Figures
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 def test_figures_against_dense_samples(driven):
     figures = driven.figures()
     theta = np.linspace(0, TURN, 20001)

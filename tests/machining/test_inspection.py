@@ -12,7 +12,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.follower import FlatPair
+from kin.follower.faces_on_arm import FlatPair
 
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 3, arm: 40, delta: {cos: {1: 200}}}\n"

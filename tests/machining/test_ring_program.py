@@ -104,6 +104,7 @@ def test_the_track_alone_is_cut_and_what_is_not_is_named(tmp_path):
     assert farthest == pytest.approx(72.0 - 3.0, abs=1e-3), "the cutter stays in the opening"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("direction", "sense"), [("climb", 1.0), ("conventional", -1.0)])
 def test_a_cutter_that_climbs_goes_counter_clockwise_in_a_ring(tmp_path, direction, sense):
     _, _, path = made(tmp_path, more=f", direction: {direction}")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kin.numeric.monotone import RoughError, between, cells, extremes, pieces
+from kin.numeric.monotone import RoughError, between, cells, pieces
 
 TURN = 2 * math.pi
 
@@ -71,16 +71,6 @@ def test_extremes_at_ends_inside_and_at_a_corner_nobody_declared():
     value, place = cut(lambda x: -np.abs(x - 1.234)).greatest()
     assert value == pytest.approx(0, abs=1e-9)
     assert place == pytest.approx(1.234, abs=1e-8)
-
-
-@given(st.lists(st.floats(-1, 1), min_size=2, max_size=14), st.floats(0.1, 6.0))
-def test_extremes_are_those_of_all_pieces(waves, corner):
-    def f(x):
-        return np.stack([sum(a * np.sin((k + 1) * x + a) for k, a in enumerate(waves)), np.abs(x - corner)])
-
-    of = cells(f, np.array([0.0, corner, TURN]), 1e-12)
-    for row in (0, 1):
-        assert extremes(of, row) == (pieces(of, row).least(), pieces(of, row).greatest())
 
 
 def test_what_has_no_smooth_stretch_is_refused():

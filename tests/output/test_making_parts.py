@@ -182,6 +182,7 @@ def wider(mesh):
     return replace(mesh, points=mesh.points * np.array([1.001, 1.0, 1.0]))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "fault",
     [

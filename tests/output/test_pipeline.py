@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 from unittest import mock
 
@@ -47,7 +50,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(18)
 @pytest.mark.parametrize("path", few(RECIPES, 3), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)
@@ -95,6 +98,7 @@ def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> Non
     assert motion["value"] <= 2.0 * motion["limit"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("arc", "tolerance"),
     [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
@@ -196,11 +200,9 @@ def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(
     assert not (tmp_path / "shu-wu").exists()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["stl", "dxf"])
 def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp_path: Path) -> None:
-    import subprocess
-    import sys
-
     code = (
         "import sys; from pathlib import Path; from dataclasses import replace\n"
         "from camgeo.output import pipeline; from camgeo.recipe.loading import load\n"
@@ -220,6 +222,32 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+UNUSED = {
+    "camgeo": "assembly cli.laws cli.report cli.study cli.sweep cli.watch machining report.page schema.edit sweep",
+    "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
+    "camgeo.synthesis": "linkage motion_table part.lightening view",
+    "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",
+    "kin.law": "formula.formula frame_swing reuleaux routes transmission_law",
+    "kin.read": "drawing.svg gcode mesh.threemf step",
+}
+OF_DXF = "camgeo.files.dxf camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
+OF_STL = "camgeo.files.stl camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize(("kind", "own", "other"), [("stl", OF_STL, OF_DXF), ("dxf", OF_DXF, OF_STL)])
+def test_a_command_imports_its_scene_alone(kind: str, own: str, other: str, tmp_path: Path) -> None:
+    recipe = RECIPES[0].with_name("shu-wu.yaml")
+    words = ["export", str(recipe), "--only", kind, "--out", str(tmp_path)]
+    code = f"import sys; from camgeo.cli.main import main; assert main({words!r}) == 0; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    modules = set(done.stdout.split())
+    unused = {f"{room}.{name}" for room, names in UNUSED.items() for name in names.split()}
+    assert all(find_spec(name) for name in unused)
+    assert {*own.split(), "camgeo.cams.constant_breadth"} <= modules
+    assert not modules & {*unused, *other.split()}
 
 
 def test_no_second_counts_twice() -> None:
@@ -270,7 +298,7 @@ def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
     assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", ["reuleaux", "reuleaux-nine", "as-figure-13-1", "w-figure-9"])
 def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].parent / f"{name}.yaml")
@@ -298,6 +326,7 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("clearance", "rounding", "breadth", "told"),
     [

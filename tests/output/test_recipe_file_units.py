@@ -92,6 +92,7 @@ def found_for(kind: str, request: pytest.FixtureRequest) -> Made:
     return found
 
 
+@pytest.mark.slow
 def test_each_file_is_named_with_its_unit(made: Made) -> None:
     _, folder, report = made
     for kind in PLAIN:
@@ -103,6 +104,7 @@ def test_each_file_is_named_with_its_unit(made: Made) -> None:
     assert report["units"] == "mm"
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", DRAWN)
 def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest.FixtureRequest) -> None:
@@ -276,7 +278,8 @@ def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: 
     assert main(["verify", str(text), str(inches), "--tolerance", "0.00001in"]) == 1
     shown = page_outline.read(recipe, inches)
     assert shown is not None
-    assert np.abs(shown.arcs.start).max() > 35.0
+    (arcs,) = shown.arcs
+    assert np.abs(arcs.start).max() > 35.0
 
 
 def test_an_inch_recipe_with_files_in_mm(tmp_path: Path) -> None:

@@ -128,6 +128,7 @@ def crossed() -> Any:
     return spoilt
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("vertices", "caught"),
     [

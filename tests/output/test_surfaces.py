@@ -11,6 +11,7 @@ from support.heavy import ezdxf
 from camgeo.output import pipeline
 from camgeo.output.dispatch import SURFACES
 from camgeo.recipe.export import FILES
+from camgeo.report import document
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
@@ -111,3 +112,21 @@ def test_a_contact_knows_its_surface_and_one_roller_is_one() -> None:
     assert [contact.surface for contact in design.follower.contacts] == ["inner", "outer"]
     with pytest.raises(ValueError, match="too many values"):
         _ = design.only_surface
+
+
+def test_a_page_draws_every_surface() -> None:
+    recipe = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [dxf]}}\n")
+    outcome, found = pipeline.shown(recipe)
+    assert outcome.ok
+    (cam,) = (body for body in found.scene.bodies if body.name == "cam")
+    assert len(cam.shapes[0].rings) == 3  # both flanks, and the bore
+    assert {"contact, inner", "contact, outer"} <= {body.name for body in found.scene.bodies}
+    titles = [plot.title for plot in found.plots]
+    assert titles[-4:-2] == ["Curvature of the pitch curve, inner", "Curvature of the pitch curve, outer"]
+    assert titles[-2:] == ["Error of groove.dxf, inner", "Error of groove.dxf, outer"]
+    for plot in found.plots[-2:]:
+        least, greatest = (series.values for series in plot.series)
+        assert -0.001 <= least.min() < -0.0003
+        assert 0.0003 < greatest.max() <= 0.001
+    rows = [row for row in document.table(outcome.report).splitlines() if row.startswith("groove.dxf")]
+    assert [row.split()[1] for row in rows] == ["inner", "outer"]

@@ -11,7 +11,9 @@ from support.meshfiles import HEIGHT, binary, in_3mf, ring, text
 from support.stepfiles import washer
 
 from kin.contour.arcs import unit
-from kin.read.files import ReadError, read_drawing, read_solid, read_stl
+from kin.read.errors import ReadError
+from kin.read.files import read_drawing, read_solid
+from kin.read.mesh.stl import read_stl
 
 T = np.arange(24) * 2.0 * np.pi / 24
 PLACES = {

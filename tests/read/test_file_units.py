@@ -7,8 +7,9 @@ from ezdxf.math import Matrix44
 from support.heavy import ezdxf
 
 from camgeo.cli.main import main
+from kin.read.drawing.dxf import read_dxf
 from kin.read.drawing.svg import read_svg
-from kin.read.files import read_dxf, read_solid
+from kin.read.files import read_solid
 
 RECIPE = """\
 name: cam

@@ -24,9 +24,9 @@ from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 from kin.linkage.four_bar import FourBar
 from kin.linkage.mechanism import Mechanism
-from kin.read.files import read_stl
 from kin.read.mesh.mesh import weld
 from kin.read.mesh.prism import evened, rounding, upright
+from kin.read.mesh.stl import read_stl
 
 THICK, EDGES = 8.0, 400
 HOLLOW = (4, 3, 60.0, {1: 625.0})
@@ -241,17 +241,17 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     verdict = verify(path, YOKE, 120, LIMITS)
     phi = 2.0 * np.pi / 120 * np.arange(120)
     alone = findings(solid.contour, YOKE, phi, LIMITS)
-    assert verdict.motion.max == pytest.approx(alone.judged.motion.max + solid.uneven, rel=1e-9)
-    assert verdict.motion.increment == pytest.approx(alone.judged.motion.increment + 2.0 * solid.uneven, rel=1e-9)
-    assert verdict.play.least == pytest.approx(alone.judged.play.least - 2.0 * solid.uneven, rel=1e-9)
-    assert verdict.measured_error == pytest.approx(alone.deviation.worst[0] + solid.uneven, rel=1e-9)
+    assert verdict.motion.max == pytest.approx(alone.motion.max + solid.uneven, rel=1e-9)
+    assert verdict.motion.increment == pytest.approx(alone.motion.increment + 2.0 * solid.uneven, rel=1e-9)
+    assert verdict.play.least == pytest.approx(alone.play.least - 2.0 * solid.uneven, rel=1e-9)
+    assert verdict.measured_error == pytest.approx(alone.measured_error + solid.uneven, rel=1e-9)
     told = {check.name: check.value for check in verdict.checks}
     assert told["thickness"] >= solid.uneven
     detail = next(check.detail for check in verdict.checks if check.name == "thickness")
     assert detail.endswith(f"; heights differ by up to {solid.uneven:.3g} mm through rounding")
     assert told["bore"] > solid.uneven
     # a limit just above the figure of the one section does not hold for all of them
-    tight = Limits(LIMITS.tolerance, motion=alone.judged.motion.max + 0.5 * solid.uneven)
+    tight = Limits(LIMITS.tolerance, motion=alone.motion.max + 0.5 * solid.uneven)
     assert set(failures(path, limits=tight)) == {"motion"}
     assert all(check.ok for check in findings(solid.contour, YOKE, phi, tight).checks)
 

@@ -17,7 +17,8 @@ from support.heavy import ezdxf
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.read.drawing.chaining import close_pairs
-from kin.read.files import ReadError, read_dxf
+from kin.read.drawing.dxf import read_dxf
+from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,8 +13,9 @@ from support.meshfiles import BORE, HEIGHT, OUTER, N, binary, quads, ring, text
 from support.solids import sound
 
 from kin.contour.contour import Contour
-from kin.read.files import ReadError, Solid, read_stl
+from kin.read.errors import ReadError
 from kin.read.mesh.mesh import weld, welded
+from kin.read.mesh.stl import Solid, read_stl
 
 if TYPE_CHECKING:
     from pathlib import Path

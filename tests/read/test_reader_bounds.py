@@ -12,7 +12,8 @@ from camgeo.cli.main import main
 from kin.contour import intersections
 from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
-from kin.read.files import SUFFIXES, ReadError, kind_of, read_drawing, read_solid
+from kin.read.errors import ReadError
+from kin.read.files import SUFFIXES, kind_of, read_drawing, read_solid
 from kin.read.gcode import read_gcode
 from kin.read.mesh import threemf
 from kin.read.mesh.mesh import Mesh

@@ -25,7 +25,8 @@ from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.output.pipeline import judged
 from camgeo.schema.errors import RecipeErrors
-from kin.read.files import ReadError, read_solid
+from kin.read.errors import ReadError
+from kin.read.files import read_solid
 from kin.read.mesh.threemf import read_3mf, read_placed
 
 MODEL = "3D/3dmodel.model"
@@ -252,6 +253,7 @@ def test_fault_of_a_plain_part(plain, fault):
     assert caught <= failures(rewritten(path, change), recipe, design)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", ["a triangle flipped", "a triangle removed", "inches", "stretched upward", "scaled"])
 def test_fault_of_a_part_with_everything(full, fault):
     recipe, design, path, _ = full

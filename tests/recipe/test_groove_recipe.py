@@ -76,6 +76,10 @@ REFUSED = {
         "export:", "manufacture: {cutter: 6, layer: true}\nexport:", "manufacture.layer",
         "no cutter's path is made for a groove",
     ),
+    "train": (
+        "export:", "dynamics: {mass: 1.2, stiffness: 2.0e6, preload: 200, rpm: 300}\nexport:", "dynamics",
+        "forces on the two flanks of a groove are not found",
+    ),
     "word": ("{groove: {clearance: 0.03, depth: 6}}", "groove", "cam.track", "not one of the choices"),
     "other": ("groove:", "grove:", "cam.track.grove", "unknown key"),
 }  # fmt: skip

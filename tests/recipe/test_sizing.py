@@ -129,7 +129,7 @@ cam:
 """
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("side", ["leading", "trailing"])
 @pytest.mark.parametrize(("face", "radius"), [(5.0, 10.0), (0.0, 3.0), (-10.0, 12.0), (40.0, 60.0)])
 def test_a_face_on_an_arm_is_sized_by_its_radius(face: float, radius: float, side: str) -> None:
@@ -230,6 +230,7 @@ def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -
     assert camgeo.design(given).sized is given
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [BOUND.replace("radius: 8, offset: 0", "radius: 30"), RING])
 def test_undercut_of_a_sized_cam_says_which_key_of_sizing_frees_it(text: str) -> None:
     told = failure(text)

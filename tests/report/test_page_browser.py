@@ -192,8 +192,9 @@ def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -
     assert all(y.endswith(unit) for (y, _), unit in zip(axes, units, strict=False))
 
 
+@pytest.mark.slow
 def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: Path) -> None:
-    page_ = opened(browser, of("shu-wu"), tmp_path)
+    page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
     page_.ask("""(() => {
       window.saved = [];
       const made = URL.createObjectURL;
@@ -203,7 +204,7 @@ def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: P
     })()""")
     pictures = page_.ask("Promise.all(window.saved.map((blob) => blob.text()))")
     assert len(pictures) == page_.ask("document.querySelectorAll('.plot').length")
-    assert page_.ask("window.named")[1] == "shu-wu-velocity.svg"
+    assert page_.ask("window.named")[1] == "as-figure-9-2a-velocity.svg"
     for picture in pictures:
         root = ET.fromstring(picture)
         assert not re.search(r"var\(|class=|<style", picture)
@@ -223,6 +224,7 @@ def test_the_address_leads_to_an_angle_and_follows_it(browser: Browser, tmp_path
     assert page_.problems == []
 
 
+@pytest.mark.slow
 def test_on_a_phone_the_drawing_stays_in_sight(browser: Browser, tmp_path: Path) -> None:
     browser.size(390, 844, mobile=True)
     try:

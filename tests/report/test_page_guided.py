@@ -98,7 +98,7 @@ def plotted(found: Content, title: str) -> np.ndarray:
     return plot.series[0].values
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @BOTH
 @pytest.mark.parametrize("name", ROUND)
 def test_a_centre_stays_its_radius_from_the_cam_and_the_contact_lies_between(name: str, rotation: str) -> None:
@@ -114,7 +114,7 @@ def test_a_centre_stays_its_radius_from_the_cam_and_the_contact_lies_between(nam
     assert (within == (name == "ring")).all()
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @BOTH
 @pytest.mark.parametrize("name", ROUND)
 def test_the_pressure_angle_is_that_between_the_arrow_and_the_way_of_the_centre(name: str, rotation: str) -> None:
@@ -136,7 +136,7 @@ def test_the_pressure_angle_is_that_between_the_arrow_and_the_way_of_the_centre(
         assert angles[np.argmax(velocity)] > angles[np.argmin(velocity)]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @BOTH
 @pytest.mark.parametrize("name", FLAT)
 def test_a_face_is_tangent_to_the_cam_where_it_is_touched(name: str, rotation: str) -> None:

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 def resting(follower: Any, contour: Contour, phi: Array) -> Any:
     """Position, mm or radians, on a contour: (n,), or (2, n) with each of two contacts resting."""
-    each = zip(follower.contacts, follower.drives(contour), strict=True)
-    found = np.stack([one.position(drive.rows(phi)[0] / follower.si) for one, drive in each])
+    found = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(contour)])
     return found if len(found) > 1 else found[0]
 
 

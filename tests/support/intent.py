@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from kin.judge.contour_checks import judge_contour
 from kin.judge.intent import LinkageIntent, PartIntent, SurfaceIntent
+from kin.judge.verdict import Verdict
+from kin.read.nesting import Chain
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.follower.follower import Follower
-    from kin.judge.contour_checks import Findings
+    from kin.follower.base import Follower
     from kin.judge.intent import Limits
     from kin.numeric.arrays import Array
 
@@ -41,7 +42,8 @@ def gauge_of(part: PartIntent) -> Follower:
     return surface.gauge
 
 
-def findings(contour: Contour, part: PartIntent, phi: Array, limits: Limits, uneven: float = 0.0) -> Findings:
+def findings(contour: Contour, part: PartIntent, phi: Array, limits: Limits, uneven: float = 0.0) -> Verdict:
     """What is found on the contour of a part of one surface."""
     (surface,) = part.surfaces
-    return judge_contour(contour, surface, phi, limits, uneven, linkage=part.linkage)
+    found, checks = judge_contour(Chain(contour), surface, phi, limits, uneven, linkage=part.linkage)
+    return Verdict("dxf", tuple(checks), (found,))

@@ -119,6 +119,21 @@ def test_margins_of_a_four_bar() -> None:
     assert found["output-condition"].grows
 
 
+def test_margins_of_a_ring_are_those_of_its_hollows() -> None:
+    """A hollow of the pitch curve must be wider than the roller; without one nothing undercuts."""
+    text = "cam: {kind: disc, base_radius: 36, track: internal, follower: {kind: roller, radius: 9}, motion: "
+    text += "[{rise: %s, over: 60, law: cycloidal}, {return: %s, over: 60, law: cycloidal}, {dwell: 240}]}\n"
+    text += "part: {outer: 160}\n"
+    recipe = read((text % (20, 20)).encode(), Path("ring.yaml"))
+    bent = next(check for check in designed(recipe).checks if check.name == "pitch-radius")
+    assert bent.value is not None
+    assert math.isfinite(bent.value)
+    (margin,) = (margin for margin in margins(recipe, designed(recipe)) if margin.name == "undercut")
+    assert margin.value == pytest.approx(bent.value - 9.0, rel=1e-12)
+    recipe = read((text % (0.5, 0.5)).encode(), Path("ring.yaml"))
+    assert not any(margin.name.startswith("undercut") for margin in margins(recipe, designed(recipe)))
+
+
 def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
     # lambda = 2: D = m^2 cos 2t, sin psi = D/l^2, so the square root's edge is acos(m^2/l^2) away
     found = named("w-ellipse")

@@ -233,6 +233,7 @@ def slowly(seconds: float) -> float:
     return seconds
 
 
+@pytest.mark.slow
 def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
     begun = time.monotonic()
     results = engines.at_once(slowly, [0.0, 60.0, 60.0], 2)

@@ -83,7 +83,7 @@ def assert_like(figures, wanted, row=0, tolerance=3e-6):
         assert figures[name][row] == pytest.approx(value, rel=tolerance, abs=tolerance), name
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("assembly", few(["open", "crossed"], 3))
 @pytest.mark.parametrize("shape", [CAM_2A, FOURIER, "hypocycloid: {cusps: 3, size: 2, breadth: 50}"])
 @pytest.mark.parametrize("linkage", list(PATHS))
@@ -166,7 +166,7 @@ def test_a_design_depends_on_no_other_to_the_last_bit():
         assert np.array_equal(column, np.concatenate([part.figures[name] for part in parts]), equal_nan=True), name
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("shape", "given"),
     [

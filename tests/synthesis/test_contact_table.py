@@ -125,6 +125,7 @@ def test_inches(tmp_path: Path) -> None:
     assert tables["polar"]["radius_in"].max() == pytest.approx(2.0)
 
 
+@pytest.mark.slow
 def test_a_trimmed_cam_is_not_touched_everywhere(tmp_path: Path) -> None:
     cut = "cam: {kind: disc, base_radius: 8, follower: {kind: roller, radius: 18}, undercut: trim, motion: "
     cut += "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60, law: cycloidal}, "

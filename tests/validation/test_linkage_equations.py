@@ -25,7 +25,7 @@ FOUR_BARS = [name for name, figure in FIGURES.items() if figure.coupler is not N
 INVERTED = [name for name, figure in FIGURES.items() if figure.coupler is None]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equations_11_to_13_hold_for_our_positions(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -105,7 +105,7 @@ def test_equation_34_of_appendix_1(name):
     assert apart(top[clear] / bottom[clear], w4[clear]) < 1e-9
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does_not(name):
     figure, scene = FIGURES[name], Scene.of(name)
@@ -131,7 +131,7 @@ def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does
         assert apart(at.output[1:, 0], [loop.output[k, i] for k in (1, 2)]) < 1e-3
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", INVERTED)
 def test_equations_23_27_29_and_31(name):
     figure = FIGURES[name]
@@ -168,7 +168,7 @@ def test_dead_centres_lie_where_y_vanishes():
     assert np.abs(off[:, None] - [0, 180, 360]).min() > 30  # not theta_3, nor theta_3 + 180 deg
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("name", [*FIGURES, *linkage_page.OURS])
 def test_no_dead_centre_is_where_the_paper_has_it(name):
     mechanism = Scene.of(name).mechanism

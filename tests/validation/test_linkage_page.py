@@ -12,8 +12,9 @@ def page():
     return linkage_page.PAGE.read_text(encoding="utf-8")
 
 
-@pytest.mark.thin(3)
-@pytest.mark.parametrize("mark", linkage_page.TABLES)
+@pytest.mark.parametrize(
+    "mark", [pytest.param(mark, marks=pytest.mark.slow if mark == "files" else []) for mark in linkage_page.TABLES]
+)
 def test_every_table_of_the_page_is_measured_anew(workshop, page, mark):
     """Cells are the same, numbers within one unit of the last digit shown."""
     shown = linkage_page.cells(page, mark)

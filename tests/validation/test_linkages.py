@@ -117,6 +117,7 @@ def simulated_rows():
     return found
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("name", "wrong"), [("as-figure-9-2a", 5.0), ("as-figure-13-2a", 2.6)])
 def test_theta_is_not_the_shaft_angle(name, wrong):
     """The paper's theta_4 read over the simulated shaft's angle, degrees."""
@@ -130,7 +131,7 @@ def drawn(request):
     return Scene.of(request.param), FIGURES[request.param].loop(FINE)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)
@@ -140,6 +141,7 @@ def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     assert apart(motion.shaft[1], 1 - loop.frame[1]) < 1e-11
 
 
+@pytest.mark.thin(2)
 def test_velocity_and_acceleration_over_the_shaft_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)

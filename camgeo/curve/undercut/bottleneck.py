@@ -17,7 +17,6 @@ radius of curvature, or half of the narrowest double normal, whichever is less. 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +24,7 @@ import numpy as np
 from camgeo.curve.curve import SHIFT, CurveError
 from camgeo.curve.undercut.pairs import Boxes, Pairs, Pitch
 from camgeo.curve.undercut.tangents import Turning
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

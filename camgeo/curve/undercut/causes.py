@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius, reversals
-from camgeo.curve.moving_frame import CentreShape
 from camgeo.curve.parallel import Parallel
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal
@@ -59,10 +58,10 @@ def follower_radius(curve: Curve) -> float:
 
     Raises ValueError for an outer parallel.
     """
-    if isinstance(curve.shape, CentreShape):
-        return 0.0
     if not isinstance(curve.shape, Parallel):
-        return math.inf
+        from camgeo.curve.moving_frame import CentreShape
+
+        return 0.0 if isinstance(curve.shape, CentreShape) else math.inf
     if not curve.shape.distance >= 0.0:
         raise ValueError(f"a roller's contour lies inside its pitch curve, not {-curve.shape.distance:g} mm outside")
     return curve.shape.distance

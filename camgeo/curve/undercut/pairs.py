@@ -5,7 +5,6 @@ Over a box, a pair of parameter intervals, all is stated about its centre, with 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from camgeo.curve.curvature import ROUNDING
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,7 +12,6 @@ stands is bounded by stretches of the contour and by corners in which the contou
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +21,7 @@ from camgeo.curve.curvature import ROUNDING, roots
 from camgeo.curve.curve import SHIFT, Curve, Run
 from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius, in_ring
 from camgeo.curve.undercut.self_intersection import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,15 +8,14 @@ there is any is proved (`reversals`, `narrowest_necks`); the extent and depth ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.curve.backwards import backwards
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve, Run
 from camgeo.curve.undercut.causes import Causes, UndercutError, causes, follower_radius, in_ring
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal
@@ -76,6 +75,8 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
 
 def _of_ring(curve: Curve) -> tuple[Undercut, ...]:
     """Undercut of a ring in its own parameter."""
+    from camgeo.curve.backwards import backwards
+
     try:
         inside = undercuts(backwards(curve))
     except UndercutError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -14,6 +13,7 @@ from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,8 +64,15 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
     plots += [curves.curvature(recipe, design, *each) for each in zip(design.surfaces, exacts, strict=True)]
-    exact, *others = exacts
-    errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files if not others]
+    measured = [
+        (file.name, made.surface.name, each.error(arcs))
+        for file in files
+        for made, each, arcs in zip(design.surfaces, exacts, file.arcs, strict=True)
+    ]
+    # round the contour errors are drawn of a cam that has one, of others over the turn alone
+    plots += [curves.off(recipe, f"{name}, {surface}", error) for name, surface, error in measured if surface]
+    errors = [FileError(name, *(row / recipe.mm for row in error)) for name, surface, error in measured if not surface]
+    exact = exacts[0]
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
     point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]

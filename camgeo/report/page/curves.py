@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,6 +11,7 @@ from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -172,6 +172,14 @@ def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact)
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     series = (Series("radius of curvature", values),)
     return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""),), note=margin)
+
+
+def off(recipe: Recipe, name: str, error: tuple[Array, Array]) -> Plot:
+    """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm."""
+    rows = zip(("least", "greatest"), error, strict=True)
+    series = tuple(Series(word, closed(row) / recipe.mm) for word, row in rows)
+    note = "distance outside the exact contour, negative inside"
+    return Plot(f"Error of {name}", length_unit(recipe), series, limits=((0.0, ""),), note=note)
 
 
 def closed(values: Array) -> Array:

@@ -7,7 +7,6 @@ flat face meets the axis that leads it. What leads it is one body, what touches 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.report.page.followers import SHAFT, contact, guide
 from camgeo.report.page.scene import Body, Shape, pin, pivot, poses
 from kin.law.contacts import Roller, Shoe
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Surface

@@ -6,7 +6,6 @@ u(theta_3) along the coupler and n across; the face of lift S has the normal n, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.report.page.scene import Body, Label, Shape, arrow, block, pin, pivo
 from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

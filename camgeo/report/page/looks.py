@@ -6,6 +6,8 @@ import re
 from functools import cache
 from typing import NamedTuple
 
+from camgeo.report.page.asset import asset
+
 
 class Look(NamedTuple):
     """Names of the colours of fill and edge, empty without; width of the edge in px, opacity of the fill."""
@@ -56,8 +58,6 @@ def _variable(name: str) -> str:
 @cache
 def colours() -> dict[str, str]:
     """Return the light colours of the style by their names, `#rrggbb`."""
-    from camgeo.report.page.page import asset
-
     return dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{6})", asset("drawing.css").partition("@media")[0]))
 
 

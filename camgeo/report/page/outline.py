@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from camgeo.curve.ring import Ring
 from camgeo.report.page.scene import STEPS
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,26 +46,29 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 
 @dataclass(frozen=True, eq=False)
 class Read:
-    """A file's contour as it was read, mm and as if the shaft turned clockwise: `arcs` throughout, `pieces` in number.
+    """A file's contours as they were read, mm and as if the shaft turned clockwise.
+
+    `arcs` are those of each surface, `pieces` of all in number.
 
     `rings` are for drawing: the outline and its holes, of a ring the contour among them.
     """
 
     name: str
-    arcs: Arcs
+    arcs: tuple[Arcs, ...]
     pieces: int
     rings: tuple[Ring, ...]
 
 
 def read(recipe: Recipe, file: FileResult) -> Read | None:
     """What the judge has read of a drawing or a solid; None where that is no contour, which a check of it says."""
-    contour = file.contour
-    if contour is None:
+    contours = [surface.contour for surface in file.surfaces if surface.contour is not None]
+    if not contours:
         return None
-    size = float(np.abs(contour.vertices).max())
-    arcs, _ = contour.as_arcs(max(MEASURED * recipe.export.tolerance, ROUNDING * size))
+    size = max(float(np.abs(contour.vertices).max()) for contour in contours)
+    fine = max(MEASURED * recipe.export.tolerance, ROUNDING * size)
+    arcs = tuple(contour.as_arcs(fine)[0] for contour in contours)
     rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in file.chains)
-    return Read(file.path.name, arcs, len(contour), rings)
+    return Read(file.path.name, arcs, sum(map(len, contours)), rings)
 
 
 def _drawn(arcs: Arcs) -> Ring:
@@ -111,15 +114,15 @@ class Exact:
         pieces = max((file.pieces for file in files), default=0)
         return min(MOST_LOOKS, max(1, math.ceil(PER_PIECE * pieces / STEPS)))
 
-    def error(self, file: Read) -> tuple[Array, Array]:
-        """Least and greatest distance of a file outside the exact contour in each step, mm, (STEPS,) each.
+    def error(self, arcs: Arcs) -> tuple[Array, Array]:
+        """Least and greatest distance of a file's contour outside the exact contour in each step, mm, (STEPS,) each.
 
         Measured from the exact contour, so negative where the file lies inside; nan where the contour is cut away.
         """
         from kin.contour.nearest import signed_distance
 
         off = np.full(len(self.point), np.nan)
-        off[self.kept] = -signed_distance(file.arcs, self.point[self.kept])
+        off[self.kept] = -signed_distance(arcs, self.point[self.kept])
         off[np.abs(off) < ROUNDING * np.abs(self.point).max()] = 0.0
         by_step = off.reshape(STEPS, self.per)
         empty = np.isnan(by_step).all(axis=1)

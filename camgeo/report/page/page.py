@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 from html import escape
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camgeo.report.document import finite
 from camgeo.report.page import looks, svg, tables
+from camgeo.report.page.asset import asset
 from camgeo.report.page.pack import packed
 from camgeo.report.page.scene import STEPS
 
@@ -52,11 +52,6 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         name, _, after = piece.partition("}}")
         text += [parts[name], after]
     return "".join(text)
-
-
-def asset(name: str) -> str:
-    """Return a file of this folder."""
-    return (files("camgeo.report.page") / name).read_text("utf-8")
 
 
 def encoded(values: object) -> str:

@@ -6,13 +6,13 @@ Nothing here knows cams or followers. A page moves the bodies, a picture draws t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, box, disc
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.report.page.looks import colours, literal
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.report.page.scene import Body, Label, Scene, Shape

@@ -88,7 +88,7 @@ def _is_in_frame(check: dict[str, Any]) -> bool:
 def written(report: dict[str, Any]) -> str:
     """Return the table of files."""
     rows = []
-    for file in report["files"]:
+    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
         if file.get("stale"):
             cells = ["left as it was", *[NONE] * 6]
         else:
@@ -105,7 +105,8 @@ def written(report: dict[str, Any]) -> str:
             ]
         body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
         link = f'<a href="{quote(file["path"])}">{escape(file["path"])}</a>'
-        rows.append(f'<tr><th scope="row">{link}</th>{body}</tr>')
+        surface = f" {escape(file['name'])}" if "name" in file else ""
+        rows.append(f'<tr><th scope="row">{link}{surface}</th>{body}</tr>')
     if not rows:
         return "<p>No files were made.</p>"
     unit = "in" if report["units"] == "inch" else "mm"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,6 +28,7 @@ from camgeo.schema.fields import Kind, field_at
 from camgeo.sweep.search.figures import Evaluator, Scene, asked_of
 from camgeo.sweep.search.gather import Ranking
 from camgeo.sweep.search.plan import Axis, Plan, steps
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -13,6 +12,7 @@ from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search.ends import least
 from camgeo.sweep.search.linkages import Support, angles
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,7 +9,6 @@ the recipe's `angles`, a multiple of 4, and rounded so that it does not depend o
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
@@ -26,6 +25,7 @@ from camgeo.sweep.search.gather import REASON
 from camgeo.sweep.search.linkages import Lengths, angles, engine
 from camgeo.sweep.search.windows import Samples, longest
 from kin.linkage.loop import side_of
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

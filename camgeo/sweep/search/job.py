@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from camgeo.sweep.search.store import encode
 from camgeo.version import __version__
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

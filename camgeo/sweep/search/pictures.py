@@ -9,12 +9,12 @@ from __future__ import annotations
 import io
 import textwrap
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from camgeo.sweep.search.gather import KEPT, NONE, OUTSIDE, STUCK
+from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -13,6 +12,7 @@ from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.sweep.search.linkages import angles
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, Source, scalars
 from camgeo.sweep.search.pictures import Curve
 from camgeo.sweep.search.rebuilt import mechanism_in
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     import collections.abc

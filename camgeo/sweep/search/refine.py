@@ -11,7 +11,6 @@ are sought within a band less twice that error: a file's dwell is at least as lo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -21,6 +20,7 @@ from camgeo.common.rounding import downward
 from camgeo.sweep.search.figures import DWELLS, Evaluator, asked_of
 from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

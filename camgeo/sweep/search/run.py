@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from contextlib import closing
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.common import workers
@@ -16,6 +15,7 @@ from camgeo.sweep.search import engines
 from camgeo.sweep.search.gather import gather
 from camgeo.sweep.search.job import Job, result
 from camgeo.sweep.search.store import ChunkError, Chunks
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from camgeo.sweep.search.gather import Gathered, Ranking
 
 # hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
-Told: TypeAlias = "Callable[[str, int, int, float], None]"
+Listener: TypeAlias = "Callable[[str, int, int, float], None]"
 
 FOLDER = "sweep"  # of a recipe's output folder, with a folder for each job in it
 _SHORT = 16  # digits of the key that name the folder
@@ -79,7 +79,7 @@ def chunks_of(job: Job, folder: Path) -> Chunks:
     return Chunks(folder / FOLDER / key[:_SHORT], key, job.plan)
 
 
-def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, told: Told | None = None) -> Work:
+def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, listener: Listener | None = None) -> Work:
     """Compute every chunk that is not on disk, each written as it lands.
 
     Raises what the engine raises, and OSError; what has landed by then stays.
@@ -94,8 +94,8 @@ def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, told: To
             for number, data in results:
                 chunks.write(number, data)
                 done += sizes[number]
-                if told is not None:
-                    told("designs", done, wanted, time.perf_counter() - started)
+                if listener is not None:
+                    listener("designs", done, wanted, time.perf_counter() - started)
     return Work(done, job.plan.count - wanted, damaged, time.perf_counter() - started)
 
 

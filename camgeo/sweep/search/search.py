@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -19,6 +18,7 @@ from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.sweep.search.recipes import Best, recipe_text
 from camgeo.sweep.search.refine import PolishError
 from camgeo.sweep.search.run import chunks_of, compute, gathered
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.gather import Floats, Gathered
     from camgeo.sweep.search.job import Compute
-    from camgeo.sweep.search.run import How, Told, Work
+    from camgeo.sweep.search.run import How, Listener, Work
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
@@ -62,7 +62,9 @@ class Outcome:
     work: Work
 
 
-def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, told: Told | None = None) -> Outcome:
+def search(
+    ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, listener: Listener | None = None
+) -> Outcome:
     """Run the sweep of a recipe.
 
     Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
@@ -74,9 +76,9 @@ def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, 
     demand_room(ask, out)
     job = Job(ask.plan, ask.scene(ask.figures), means.compute)
     chunks = chunks_of(job, out / ask.recipe.name)
-    work = compute(job, chunks, how, fresh=fresh, told=told)
+    work = compute(job, chunks, how, fresh=fresh, listener=listener)
     found = gathered(job, chunks, ask.ranking)
-    best = best_of(ask, found, means, how, told)
+    best = best_of(ask, found, means, how, listener)
     run = {
         "engine": str(how),
         "key": job.key,
@@ -120,7 +122,7 @@ def demand_room(ask: Ask, out: Path) -> None:
             raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
 
 
-def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
+def best_of(ask: Ask, found: Gathered, means: Means, how: How, listener: Listener | None = None) -> list[Best]:
     """The best designs with all their figures.
 
     If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
@@ -138,7 +140,7 @@ def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None
     ]
     if not ask.sweep.refine:
         return _measured(ask, plain, means.measure)
-    polished = _measured(ask, _polished(ask, plain, means.polish, how, told), means.measure)
+    polished = _measured(ask, _polished(ask, plain, means.polish, how, listener), means.measure)
     polished.sort(key=lambda design: _order(ask, design))
     best: list[Best] = []
     for design in polished:
@@ -175,19 +177,19 @@ def _apart(ask: Ask, found: Gathered) -> list[int]:
     return places
 
 
-def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, told: Told | None) -> list[Best]:
+def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: Listener | None) -> list[Best]:
     """Each design polished, several at once where there are processes for it; in the same order."""
     started = time.perf_counter()
-    if told is not None:
-        told("polished", 0, len(plain), 0.0)
+    if listener is not None:
+        listener("polished", 0, len(plain), 0.0)
     workers = min(how.processes, len(plain))
     work = partial(_polish, polish, ask)
     results = at_once(work, plain, workers) if workers > 1 else ((design, work(design)) for design in plain)
     done: dict[int, Best] = {}
     for design, result in results:
         done[design.place] = result
-        if told is not None:
-            told("polished", len(done), len(plain), time.perf_counter() - started)
+        if listener is not None:
+            listener("polished", len(done), len(plain), time.perf_counter() - started)
     return [done[design.place] for design in plain]
 
 

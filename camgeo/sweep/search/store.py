@@ -15,7 +15,6 @@ import re
 import stat
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ import numpy as np
 from camgeo.common.errors import SurroundingsError
 from camgeo.common.system import patient
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.checks.declared import PRESSURE, REVERSAL, WALL
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -50,9 +50,9 @@ def _undercut(design: Design) -> list[Margin]:
     found = []
     for made in design.surfaces:
         surface, value = made.surface, made.bent.value
-        if value is None:
+        if value is None or math.isinf(value):  # of a ring without a hollow nothing undercuts
             continue
-        roller = surface.side * surface.radius
+        roller = surface.radius
         what = f"{surface.name} {'the roller undercuts' if roller else 'the flat face loses contact'}".strip()
         found.append(Margin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
         base = roller or surface.curve.size

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.output.dispatch import make
@@ -20,6 +19,7 @@ from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.study.least_pieces import least_pieces
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -91,19 +91,19 @@ def climb(
     folder: Path,
     *,
     patience: float,
-    told: Callable[[str], None] | None = None,
+    listener: Callable[[str], None] | None = None,
 ) -> Iterator[Rung | Ended]:
     """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended.
 
-    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `told` hears of
-    every rung before it begins. ValueError for a form there is not.
+    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `listener` hears
+    of every rung before it begins. ValueError for a form there is not.
     """
     exact = form == "exact"
     first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
     for exponent in range(first, last - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
-        if told is not None:
-            told(f"{form} within {10.0**exponent:.0e}")
+        if listener is not None:
+            listener(f"{form} within {10.0**exponent:.0e}")
         try:
             rung = _rung(recipe, design, form, tolerance, folder)
         except RecipeErrors as errors:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius
-from camgeo.synthesis.part.lightening import Placed, lightened
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
 from camgeo.synthesis.part.walls import contour_gap, distance_inside
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.part import Hub, Mark, Part, SetScrew
+    from camgeo.synthesis.part.lightening import Placed
     from camgeo.synthesis.part.shapes import Layer
     from camgeo.synthesis.part.walls import Looks
 
@@ -116,6 +116,8 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
         openings.append(mark)
     placed = None
     if part.lightening is not None:
+        from camgeo.synthesis.part.lightening import lightened
+
         there = openings if hub is None else [*openings, hub]
         found, placed = lightened(part.lightening, looks, there, edge)
         openings += found

@@ -14,7 +14,6 @@ from camgeo.common.rounding import downward, upward
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.measures import farthest
 from camgeo.curve.support import is_sharp
-from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
 from kin.judge.check import Check
@@ -224,7 +223,7 @@ def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     for looks in surfaces:
         far = farthest(looks.contour)
         x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
-        gap = Gap(radius - far.value - slack(far), (x, y), far.at)
+        gap = Gap(radius - far.value - far.slack, (x, y), far.at)
         yield _sure(f"{looks.name} {OPENING}".strip(), OUTLINE, gap)
     for opening in body.openings:
         yield _sure(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))

@@ -8,7 +8,6 @@ a hole's diameter then follows from the exact distances of its centre, rounded d
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from camgeo.synthesis.part.shapes import Opening, disc
 from camgeo.synthesis.part.walls import distance_inside
 from kin.contour.arcs import Arcs
 from kin.contour.nearest import signed_distance
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.recipe.part import Lightening

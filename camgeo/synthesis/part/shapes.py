@@ -6,7 +6,6 @@ In the cam's axes, mm, counter-clockwise. A circle is two halves; `centre` and `
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -15,6 +14,7 @@ import numpy as np
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from kin.contour.contour import Contour
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs

@@ -7,7 +7,6 @@ one-sided derivatives at a break, which rounding would smear in the formula itse
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ import numpy as np
 from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
 from kin.law.formula.parser import parse
 from kin.law.formula.switches import branches, innermost
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from kin.law.formula.expression import Series

@@ -9,7 +9,6 @@ one point. Odd ones are changes of sign, even ones are not.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from kin.numeric.errors import UnsettledError
 from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kin.law.formula.expression import ANGLE, Builder, Expression, FormulaError, Instruction
 from kin.law.formula.roots import Signs, signs, snap
 from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

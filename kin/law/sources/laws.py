@@ -8,7 +8,6 @@ H. A. Rothbart, Cam Design Handbook, chapters 2 and 3. Polynomials by boundary v
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
@@ -20,6 +19,7 @@ from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symm
 from kin.law.segment import Affine, Stretch
 from kin.law.sources.functions import Cosines, Sines, TwoPoint
 from kin.law.sources.peaks import peaks
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +13,7 @@ from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError
 from kin.law.segment import Affine, Constant
 from kin.law.sources.peaks import extremes
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

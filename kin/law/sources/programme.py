@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from kin.law.programme import IntentError, Law
 from kin.law.segment import Affine, Constant, Stretch
 from kin.law.sources.functions import RiseFall, TwoPoint
 from kin.law.sources.motion import Motion, joined
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +85,7 @@ class Given:
 Step = Dwell | Move | RiseAndFall | Given
 
 
-@dataclass
+@dataclass()
 class _Part:
     """A segment in the making, over [begin, end], from `level` to `level + by`; its stretches, once they are known."""
 

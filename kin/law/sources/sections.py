@@ -9,13 +9,13 @@ the derivative below does not jump, until nothing is left that the reading error
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.law.sources.spline import DEGREE, Basis, Ends, Fitting
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.law.sources.ring import Samples

@@ -76,6 +76,12 @@ class Task(NamedTuple):
         """A displacement in the table's own unit, as a message has it."""
         return f"{value / self.rows.unit:.{digits}g}{_UNITS.get(self.rows.unit, '')}"
 
+    def tell_above(self, value: float) -> str:
+        """A displacement above the reading, with as many digits, three at least, as show that it is."""
+        unit, shown = self.rows.unit, float(f"{self.reading / self.rows.unit:.6g}")
+        digits = next((k for k in range(3, 17) if float(f"{value / unit:.{k}g}") > shown), 17)
+        return self.tell(value, digits)
+
     def keeps(self, motion: Motion) -> bool:
         """Whether the motion that is made of this one stays within the reading of every row."""
         base = motion.range[0] if self.around == 1 else 0.0
@@ -352,16 +358,19 @@ class Bounded:
         """The spline of fewest spans, of counts that grow by a fifth, that keeps every row within the reading."""
         smooth = Sections.of(between, ends, None if ends is None else _feet(rows, ends))
         most = max(1, min(len(inside.s) // 2, _MOST_SPANS))
+        suspect = any(fault.line in inside.lines for fault in self.faults)  # so many spans could follow that row
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
             raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
-        for spacing in _SPACINGS:
-            if (between, spacing) not in self._sections:
-                self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
-            sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
-            found = self._counted(inside, sections, most * 2 // 3)
-            if found is not None:
-                return found
+        # three rows a span at every spacing before two: jumps are looked for as joints before spans follow them
+        for share in (2.0 / 3.0,) if suspect else (2.0 / 3.0, 1.0, 2.0):
+            for spacing in _SPACINGS:
+                if (between, spacing) not in self._sections:
+                    self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
+                sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
+                found = self._counted(inside, sections, int(most * share))
+                if found is not None:
+                    return found
         found = self._counted(inside, smooth, most)
         if found is not None:
             return found
@@ -439,15 +448,15 @@ class Bounded:
     def _unmet(self, rows: Samples, off: Array) -> UnmetError:
         """Say how near the rows a spline of a span for two rows comes, and which of them is least like a motion's."""
         i = int(np.argmax(np.abs(off)))
-        worst, reached = int(rows.lines[i]), self.task.tell(float(abs(off[i])), 3)
+        worst, reached = int(rows.lines[i]), float(abs(off[i]))
         line = min((fault.line for fault in self.faults if fault.line in rows.lines), default=worst)
         where, least = ("here", "") if line == worst else (f"at line {worst}", "; this row fits its neighbours least")
-        return UnmetError(
-            f"the rows scatter about any smooth curve: the closest one is {reached} off {where}, the reading error is "
-            f"{self.task.tell(self.task.reading)}{least}",
-            self.field,
-            line,
-        )
+        nearest = f"the closest one is {self.task.tell_above(reached)} off {where}"
+        if reached <= self.task.reading:
+            nearest = "only one that bends at every other row is near enough"
+        reading = self.task.tell(self.task.reading)
+        problem = f"the rows scatter about any smooth curve: {nearest}, the reading error is {reading}{least}"
+        return UnmetError(problem, self.field, line)
 
     def demand_supported(self, motion: Motion) -> None:
         """Refuse a motion that leaves the rows once its least value is off, or accelerates more than they allow."""
@@ -455,13 +464,14 @@ class Bounded:
         if not self.task.keeps(motion):
             problem = "no motion that begins at its least value keeps the reading of the rows; this row leaves it first"
             raise UnmetError(problem, self.field, self.line)
+        suspect = min((fault.line for fault in self.faults), default=self.line)
         h = np.diff(rows.theta)
         most = np.abs(np.diff(np.diff(rows.s) / h)) + 2.0 * self.task.reading * (1.0 / h[1:] + 1.0 / h[:-1])
         most = (most / (0.5 * (h[1:] + h[:-1]))).max()
         reached = np.abs(motion.derivatives(np.linspace(0.0, total, _LOOKS * len(rows.s)), 2)[2]).max()
         if reached > _WILD * most:
             problem = f"a motion near the rows has {reached / most:.3g} times the acceleration that they support"
-            raise UnmetError(problem, self.field, self.line)
+            raise UnmetError(problem, self.field, suspect)
 
 
 def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:

@@ -6,13 +6,13 @@ whose three first coefficients are one number has that value and S' = S'' = 0 at
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.law.segment import Affine, Power
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from kin.law.programme import IntentError
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, merged
 from kin.law.sources.smoothing import Bounded, EqualSpans, TableError, Task, UnmetError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

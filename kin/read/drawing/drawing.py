@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ from kin.contour.bezier import Beziers
 from kin.contour.contour import Box, Contour
 from kin.contour.intersections import first_meeting
 from kin.contour.pieces import ARC, Pieces
+from kin.numeric.records import dataclass, replace
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
 from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,6 +12,7 @@ from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass
 from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
 from kin.read.mesh.prism import Outline, evened, upright

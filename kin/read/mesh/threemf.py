@@ -182,23 +182,23 @@ class _Model:
         self.components = 0  # that have been put together
         self.room = 0  # for triangles, once the model has been read
 
-    def start(self, tag: str, given: dict[str, str]) -> None:
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
         if tag == f"{CORE}vertex":
-            self._open().points.extend([self._number(given, name) for name in ("x", "y", "z")])
+            self._open().points.extend([self._number(attributes, name) for name in ("x", "y", "z")])
         elif tag == f"{CORE}triangle":
-            self._open().corners.extend([self._whole(given, name) for name in ("v1", "v2", "v3")])
+            self._open().corners.extend([self._whole(attributes, name) for name in ("v1", "v2", "v3")])
         elif tag == f"{CORE}model":
-            self._begin(given)
+            self._begin(attributes)
         elif tag == f"{CORE}object":
-            name = given.get("id", "")
+            name = attributes.get("id", "")
             if name in self.objects:
                 raise self._fault(f"object {name!r} is there twice")
-            self.current = _Object(given.get("name", ""), given.get("type", "model") == "model")
+            self.current = _Object(attributes.get("name", ""), attributes.get("type", "model") == "model")
             self.objects[name] = self.current
         elif tag == f"{CORE}component":
-            self._open().components.append((given.get("objectid", ""), self._place(given)))
+            self._open().components.append((attributes.get("objectid", ""), self._place(attributes)))
         elif tag == f"{CORE}item":
-            self.items.append((given.get("objectid", ""), self._place(given)))
+            self.items.append((attributes.get("objectid", ""), self._place(attributes)))
 
     def end(self, tag: str) -> None:
         if tag == f"{CORE}object":
@@ -264,12 +264,12 @@ class _Model:
             message = f"{loose} of the {count} vertices of object {one.name!r} belong to no triangle; leave them out"
             raise ReadError("range", message, self.path)
 
-    def _begin(self, given: dict[str, str]) -> None:
-        unit = given.get("unit", "millimeter")
+    def _begin(self, attributes: dict[str, str]) -> None:
+        unit = attributes.get("unit", "millimeter")
         if unit not in UNIT_MM:
             raise ReadError("unsupported", f"the unit {unit!r}", self.path)
-        if given.get("requiredextensions", "").split():
-            message = f"it requires extensions, {given['requiredextensions']!r}: export it without"
+        if attributes.get("requiredextensions", "").split():
+            message = f"it requires extensions, {attributes['requiredextensions']!r}: export it without"
             raise ReadError("unsupported", message, self.path)
         self.mm = UNIT_MM[unit]
 
@@ -283,29 +283,29 @@ class _Model:
             raise self._fault(f"there is no object {name!r}")
         return self.objects[name]
 
-    def _number(self, given: dict[str, str], name: str) -> float:
-        text = given.get(name, "")
+    def _number(self, attributes: dict[str, str], name: str) -> float:
+        text = attributes.get(name, "")
         if not NUMBER.fullmatch(text):
             raise self._fault(f"{name}={text!r} is not a number")
         if not abs(float(text)) <= LARGEST:
             raise ReadError("range", f"{name}={text!r} is out of range", self.path)
         return float(text)
 
-    def _whole(self, given: dict[str, str], name: str) -> int:
-        text = given.get(name, "")
+    def _whole(self, attributes: dict[str, str], name: str) -> int:
+        text = attributes.get(name, "")
         if not (text.isascii() and text.isdecimal() and len(text) < 18):
             raise self._fault(f"{name}={text!r} is not the number of a vertex")
         return int(text)
 
-    def _place(self, given: dict[str, str]) -> Array:
-        words = given.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
+    def _place(self, attributes: dict[str, str]) -> Array:
+        words = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
         if len(words) != 12 or not all(NUMBER.fullmatch(word) for word in words):
-            raise self._fault(f"transform={given['transform']!r} is not twelve numbers")
+            raise self._fault(f"transform={attributes['transform']!r} is not twelve numbers")
         place = np.array(words, dtype=np.float64).reshape(4, 3)
         if not bool((np.abs(place) <= LARGEST).all()):
-            raise ReadError("range", f"transform={given['transform']!r} is out of range", self.path)
+            raise ReadError("range", f"transform={attributes['transform']!r} is out of range", self.path)
         if np.linalg.det(place[:3]) == 0.0:
-            raise self._fault(f"transform={given['transform']!r} is flat")
+            raise self._fault(f"transform={attributes['transform']!r} is flat")
         return place
 
     def _fault(self, message: str) -> ReadError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from kin.contour.bezier import Beziers
 from kin.numeric.angles import TURN
 from kin.numeric.bernstein import roots, values
+from kin.numeric.records import dataclass
 from kin.read.drawing.shapes import LARGEST
 from kin.read.step.part21 import Reference
 

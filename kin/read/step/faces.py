@@ -6,7 +6,6 @@ section begins, and it ends where a bound goes up, the solid on its left as seen
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
@@ -16,6 +15,7 @@ from kin.contour.biarc import arcs_along
 from kin.contour.nearest import nearest
 from kin.numeric.angles import TURN
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass
 from kin.read.drawing.shapes import Shape, shape
 from kin.read.step.curves import Spline, edge_of, spline_of
 

@@ -195,10 +195,10 @@ def _still(place: Frame | None) -> bool:
     return place is None or bool((np.abs(np.array(place) - np.array([np.zeros(3), *np.eye(3)])) <= SAME).all())
 
 
-def _agree(one: Frame | None, other: Frame | None) -> bool:
-    if one is None or other is None:
-        return _still(one) and _still(other)
-    return bool((np.abs(np.array(one) - np.array(other)) <= SAME).all())
+def _agree(first: Frame | None, other: Frame | None) -> bool:
+    if first is None or other is None:
+        return _still(first) and _still(other)
+    return bool((np.abs(np.array(first) - np.array(other)) <= SAME).all())
 
 
 def _after(outer: Frame, inner: Frame | None) -> Frame | None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.distinct import distinct
+from kin.numeric.records import dataclass, replace
 from kin.read.bodies import MOST_BODIES, beside
 from kin.read.drawing.drawing import Found, drawing_of
 from kin.read.errors import ReadError

@@ -1,0 +1,82 @@
+"""Records against the standard library's frozen dataclasses, which they stand for."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from typing import TYPE_CHECKING, ClassVar
+
+import pytest
+
+from kin.numeric.records import dataclass, field, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+@dataclass(frozen=True)
+class Point:
+    """Two fields, one of them with a default, and one that is found later."""
+
+    unit: ClassVar[str] = "mm"
+    x: float
+    y: float = 0.0
+    seen: list[float] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    @property
+    def doubled(self) -> float:
+        return 2 * self.x
+
+
+@dataclass(frozen=True)
+class Weighted(Point):
+    """A field more."""
+
+    weight: float = field(default=1.0, kw_only=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Single:
+    """Equal to itself alone, with a text of its own."""
+
+    x: float
+
+    def __repr__(self) -> str:
+        return "single"
+
+
+def test_values_are_compared_shown_and_hashed_by_their_fields() -> None:
+    point = Point(1.0, 2.0)
+    point.seen.append(3.0)
+    assert point == Point(1.0, 2.0)
+    assert point != Point(1.0, 2.5)
+    assert point != Weighted(1.0, 2.0)
+    assert len({point, Point(1.0, 2.0), Point(2.0, 1.0)}) == 2
+    assert repr(point) == "Point(x=1.0, y=2.0)"
+    assert repr(Weighted(1.0, weight=4.0)) == "Weighted(x=1.0, y=0.0, weight=4.0)"
+    assert dataclasses.asdict(replace(point, y=5.0)) == {"x": 1.0, "y": 5.0, "seen": []}
+    assert pickle.loads(pickle.dumps(point)) == point
+
+
+def test_the_standard_library_agrees() -> None:
+    standard = dataclasses.make_dataclass("Point", [("x", float), ("y", float, 0.0)], frozen=True)
+    ours, theirs = Point(1.0, 2.0), standard(1.0, 2.0)
+    assert repr(ours) == repr(theirs)
+    assert hash(ours) == hash(theirs)
+
+
+def test_without_equality_a_record_equals_itself_alone() -> None:
+    assert Single(1.0) != Single(1.0)
+    assert len({Single(1.0), Single(1.0)}) == 2
+    assert repr(Single(1.0)) == "single"
+
+
+@pytest.mark.parametrize("name", ["x", "seen", "other", "weight"])
+@pytest.mark.parametrize("make", [Point, Weighted])
+def test_no_field_is_set_twice_and_none_is_added(make: Callable[[float], Point], name: str) -> None:
+    record = make(1.0)
+    with pytest.raises(dataclasses.FrozenInstanceError, match=f"'{name}'"):
+        setattr(record, name, 2.0)
+    with pytest.raises(dataclasses.FrozenInstanceError, match=f"'{name}'"):
+        delattr(record, name)
+    assert record == make(1.0)
