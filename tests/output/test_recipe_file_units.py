@@ -23,9 +23,11 @@ from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load_text
-from camgeo.report.page import outline as page_outline
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 from kin.read.files import read_drawing, read_solid
 from kin.read.gcode import read_gcode
 
@@ -276,10 +278,11 @@ def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: 
     assert main(["verify", str(text), str(renamed), "--units", "inch"]) == 0
     assert main(["verify", str(text), str(inches), "--tolerance", "0.0001in"]) == 0
     assert main(["verify", str(text), str(inches), "--tolerance", "0.00001in"]) == 1
-    shown = page_outline.read(recipe, inches)
-    assert shown is not None
-    (arcs,) = shown.arcs
-    assert np.abs(arcs.start).max() > 35.0
+    # the page shows what the judge has read, in mm
+    verdict = verify(inches, intended(recipe, designed(recipe)), 360, Limits(TOLERANCE), INCH)
+    (surface,) = verdict.surfaces
+    assert surface.contour is not None
+    assert np.abs(surface.contour.vertices).max() > 35.0
 
 
 def test_an_inch_recipe_with_files_in_mm(tmp_path: Path) -> None:
