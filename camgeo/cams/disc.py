@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
-from camgeo.cams.groove import TRACK, Groove, is_groove
+from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -173,14 +173,15 @@ def _values(cam: Values) -> Values:
     else:
         side = TRAILING if arm.get("side", "trailing") == "trailing" else LEADING
         guide = Oscillating(arm["pivot"], side, arm.get("length"))
+    track = cam.get("track")
     return {
         "base_radius": cam["base_radius"],
         "guide": guide,
         "touch": _touch(follower, arm or {}),
         "motion": cam["motion"],
         "undercut": cam.get("undercut", "refuse"),
-        "side": -1 if cam.get("track") == "internal" else 1,
-        "groove": Groove(**cam["track"]["groove"]) if is_groove(cam) else None,
+        "side": -1 if track == "internal" else 1,
+        "groove": Groove(**track["groove"]) if isinstance(track, dict) else None,
     }
 
 

@@ -91,8 +91,3 @@ TRACK = Field(
         lambda field: {"anyOf": [{"enum": list(field.choices)}, table_schema(field.inner)]},
     ),
 )
-
-
-def is_groove(cam: Values) -> bool:
-    """Whether the values of a cam are of a groove."""
-    return isinstance(cam.get("track"), dict)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.cams.groove import is_groove
-
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
@@ -30,6 +28,11 @@ def check_track(values: Values, reader: Reader) -> None:
 def is_ring(values: Values) -> bool:
     """Whether the values of a recipe are of a ring."""
     return bool(values.get("cam", {}).get("track") == "internal")
+
+
+def is_groove(cam: Values) -> bool:
+    """Whether the values of a cam are of a groove."""
+    return isinstance(cam.get("track"), dict)
 
 
 def _check_ring(reader: Reader) -> None:
