@@ -40,6 +40,7 @@ from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, permitted
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
+from kin.read.nesting import Chain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -135,7 +136,7 @@ def judged(name: str) -> Callable[[float], Callable[[], object]]:
         run = contour.runs[0]
         t = np.linspace(run.low, run.high, int(count), endpoint=False)
         points = contour.sample(t).point
-        return lambda: judge_contour(Contour.from_vertices(points), surface, phi, limits).judged and None
+        return lambda: judge_contour(Chain(Contour.from_vertices(points)), surface, phi, limits)[0] and None
 
     return prepare
 
@@ -241,7 +242,7 @@ def in_memory(recipe: Recipe) -> None:
     phi, limits = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False), permitted(recipe, MICROMETRE)
     for fit, surface in zip(Job.of(recipe, design).fits, intended(recipe, design).surfaces, strict=True):
         arcs = fit.within("arcs", MICROMETRE)
-        judge_contour(Contour.from_bulges(arcs.points, arcs.bulges), surface, phi, limits)
+        judge_contour(Chain(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
 
 
 def warm(pattern: str, *, small: bool) -> None:

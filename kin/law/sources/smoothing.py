@@ -32,8 +32,9 @@ _PLAIN, _FEW = 4, 30  # rows a span, at least, and spans that are not many, wher
 _ZERO = 2.0  # readings within which the least displacement of a table is meant to be 0
 _PINNED = 0.01  # of the reading, within which the least value is then 0
 _SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows that err within the reading; of so many
+_CLOSE = 400  # rows of a stretch, which more than these tell well enough with three to a span
 _SPACINGS = (6, 4, 3)  # rows a span, where joints are looked for
-_MOST_CHECKED = 3000  # rows
+_MOST_CHECKED = 1200  # rows of a stretch in which faults are looked for: work grows with their cube
 _CHECKED = 3  # rows a span, of the spline with which faults are looked for
 _BESIDE, _JOINTS = 2.1, 4  # rows to each side; joints beside a fault
 _COLUMNS = 12  # jumps, steps and rows at most
@@ -363,7 +364,8 @@ class Bounded:
             raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
         # three rows a span at every spacing before two: jumps are looked for as joints before spans follow them
-        for share in (2.0 / 3.0,) if suspect else (2.0 / 3.0, 1.0, 2.0):
+        shares = (2.0 / 3.0,) if suspect or len(inside.s) > _CLOSE else (2.0 / 3.0, 1.0, 2.0)
+        for share in shares:
             for spacing in _SPACINGS:
                 if (between, spacing) not in self._sections:
                     self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
