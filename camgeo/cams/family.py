@@ -209,6 +209,11 @@ class Advice(ABC):
         """Say what else changes with the roller's radius, so that the pitch curve stays; empty where nothing does."""
         return ""
 
+    @property
+    def most_radius(self) -> float:
+        """Radius of a touch, mm, that leaves no base circle on the same pitch curve; infinite where any does."""
+        return math.inf
+
     def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
         """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
         return ""

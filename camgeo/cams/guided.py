@@ -5,6 +5,7 @@ The pitch curve is `camgeo.curve.moving_frame.CentreShape`, its parameter the sh
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -53,6 +54,11 @@ class RoundAdvice(Advice):
         """The base radius that leaves the prime circle as it is."""
         word = "less" if self.cam.side > 0 else "and"
         return f" with a base radius of {self.cam.led.prime / mm:.12g} {word} that radius"
+
+    @property
+    def most_radius(self) -> float:
+        """That of the prime circle, of a cam within it."""
+        return self.cam.led.prime if self.cam.side > 0 else math.inf
 
 
 class Flank(NamedTuple):

@@ -219,8 +219,9 @@ def _to_raise(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     elif figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = recipe.cam.touch.radius / recipe.mm, figure == HOLLOW_RADIUS
-        if recipe.cam.side > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
-            advice = recipe.cam.advice
+        advice = recipe.cam.advice
+        wider = recipe.cam.side > 0 and roller + by < advice.most_radius / recipe.mm
+        if wider if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
             own = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
             own += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:

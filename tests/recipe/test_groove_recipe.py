@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from camgeo.cams.groove import Groove
+from camgeo.output.pipeline import export
 from camgeo.recipe.loading import read
+from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 
 TRACK = "  track: {groove: {clearance: 0.03, depth: 6}}\n"
@@ -121,3 +123,12 @@ def test_a_groove_is_sized_as_the_disc_within_it():
 def test_a_linkage_is_refused():
     more = "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}\n"
     assert faults(GROOVE + more) == [("linkage", "cannot be combined with a cam of kind disc")]
+
+
+def test_no_roller_is_advised_that_leaves_no_base_circle(tmp_path):
+    """Hollows of the outer flank grow with the roller, on the same pitch curve; a base radius below 0 is no advice."""
+    for least, advised in ((200.0, False), (48.0, True)):
+        text = GROOVE + f"limits: {{hollow-radius: {{at_least: {least}}}}}\nname: groove\n"
+        report = export(recipe(text), tmp_path).report
+        (failed,) = [check for check in report["checks"] if not check["ok"]]
+        assert ("roller radius" in failure(failed, report, recipe(text))) is advised
