@@ -204,9 +204,9 @@ class Table:
         return next(item for item in self.fields if item.name == name)
 
 
-def not_yet(made: str) -> str:
+def not_yet(product: str) -> str:
     """Say that a key is known and refused: `grooves are not made yet`."""
-    return f"{made} are not made yet" if made else "not available in this version"
+    return f"{product} are not made yet" if product else "not available in this version"
 
 
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
@@ -265,7 +265,7 @@ def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | N
     return field, ".".join(parts)
 
 
-def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
+def elsewhere(root: Table, name: str, keys: tuple[str, ...]) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
     if name in root.keys:
         return "it belongs at the top level"
@@ -278,7 +278,7 @@ def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
         return f"it belongs under {', or under '.join(places)}"
-    return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
+    return f"the keys here are {either(keys, 'and')}" if keys else "there are no keys here"
 
 
 def of_other_kind(root: Table, path: str) -> bool:
