@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.output.job import Made
-from camgeo.recipe.export import SOLIDS
+from camgeo.recipe.export import BY_DISC, SOLIDS, name_of_disc
 from kin.judge.check import about
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
-    """Make the files of one request, the first at `path`, any others beside it.
+    """Make the files of one request, the first at `path` or of several discs each beside it, any others there too.
 
     Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
     or a missing extra stands in the way. A page is no such request: it reports on all other files.
@@ -28,15 +28,28 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
         from camgeo.output.mechanism import make_mechanism
 
         return make_mechanism(job, request, path)
+    discs = len(job.design.discs)
+    if discs > 1 and request.kind in BY_DISC:
+        paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(discs)]
+        made = [_make(job.of_disc(rank), request, there) for rank, there in enumerate(paths)]
+        return job.closed(request, made)
+    return _make(job, request, path)
+
+
+def _make(job: Job, request: FileRequest, path: Path) -> Made:
     match request.kind:
         case "dxf" | "svg":
             from camgeo.output.drawing import make_drawing
 
             return make_drawing(job, request, path)
-        case "stl" | "3mf":
-            from camgeo.output.solid import make_solid
+        case "stl":
+            from camgeo.output.solid import make_stl
 
-            return make_solid(job, request, path)
+            return make_stl(job, request, path)
+        case "3mf":
+            from camgeo.output.solid import make_3mf
+
+            return make_3mf(job, request, path)
         case "step":
             from camgeo.output.step import make_step
 

@@ -16,11 +16,11 @@ from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
-from camgeo.synthesis.intent import permitted
+from camgeo.synthesis.intent import permitted, shaft_intended
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from camgeo.assembly.assembly import Assembly
@@ -87,6 +87,13 @@ class Job:
         if request.units is not None:  # a file's title tells lengths as its numbers do
             job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
         return job, ()
+
+    def of_disc(self, rank: int) -> Job:
+        """The job for one of several discs, as its own file shows it."""
+        disc = self.design.discs[rank]
+        held = [made in disc.surfaces for made in self.design.surfaces]
+        fits = tuple(fit for fit, own in zip(self.fits, held, strict=True) if own)
+        return replace(self, design=replace(self.design, discs=(disc,)), fits=fits)
 
     @property
     def clock(self) -> Clock:
@@ -172,6 +179,32 @@ class Job:
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def judged_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read back a file of several discs, each in its place, and hold it against the recipe's motion."""
+        from kin.judge.together import DiscFile, verify_set
+
+        recipe, tolerance = self.recipe, self.tolerance(request)
+        meant = shaft_intended(recipe.told_for(request), self.design)
+        with self.clock.stage(f"judge {request.kind}"):
+            (verdict,) = verify_set([DiscFile(path, None)], meant, recipe.verify.angles, permitted(recipe, tolerance))
+        file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
+        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def closed(self, request: FileRequest, made: Sequence[Made]) -> Made:
+        """Put together what was made of each disc, and judge what is left between them."""
+        from kin.judge.together import DiscsRead, left_between
+
+        files = [replace(file, disc=rank) for rank, each in enumerate(made) for file in each.files]
+        checks = [check for each in made for check in each.checks]
+        if not files:
+            return Made((), tuple(checks))
+        limits = permitted(self.recipe, self.tolerance(request))
+        with self.clock.stage(f"judge {request.kind}"):
+            read = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
+            closures, more = left_between(read, shaft_intended(self.recipe, self.design), limits)
+        files[-1] = replace(files[-1], closures=closures)
+        return Made(tuple(files), (*checks, *more))
 
     def _why_lost(self, check: Check) -> Check:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""

@@ -82,7 +82,7 @@ RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "p
 PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
 
 
-BACKLASH_LEFT = "least-backlash"
+BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
 
 
 FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
@@ -204,7 +204,7 @@ FIGURES: dict[str, Figure] = {
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
-    "backlash": _of_file(
+    BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
