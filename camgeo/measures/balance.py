@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.curve.measures import Moments, moments, moments_of_chain
 from camgeo.synthesis.part.as_intent import layers_of
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -32,7 +32,7 @@ class Balance:
     """Of one disc: mass, kg; centre of mass (3,), mm, as the part is drawn; inertia about the shaft, kg mm^2.
 
     `unbalance` is mass times distance of that centre from the shaft, kg mm. `error` is the greatest of their errors by
-    the integrals, as shares. `without` names features that are left out, `surface` the first of the disc's surfaces.
+    the integrals, as shares. `without` names features that are left out, `surface` the disc's where there are several.
     """
 
     mass: float
@@ -61,11 +61,13 @@ def balances(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
     if density is None:
         return ()
     turned = -1.0 if recipe.rotation == "ccw" else 1.0
-    return tuple(
-        _balance(disc, disc.body, density * KG, turned)
-        for disc in design.discs
-        if disc.body is not None and disc.contours and not (len(disc.contours) > 1 and disc.body.pocket is None)
-    )
+    found = []
+    for disc in design.discs:
+        if disc.body is None or not disc.contours or (len(disc.contours) > 1 and disc.body.pocket is None):
+            continue
+        names = " and ".join(surface.name for surface, _ in disc.contours) if len(design.discs) > 1 else ""
+        found.append(replace(_balance(disc, disc.body, density * KG, turned), surface=names))
+    return tuple(found)
 
 
 def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
@@ -83,7 +85,7 @@ def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
     share = float((error / (volume[0] * np.array([1.0, size, size, size * size]))).max())
     without = () if body.screw is None else ("set screw",)
     centre = (x / mass, turned * y / mass, z / mass)
-    return Balance(mass, centre, inertia, math.hypot(x, y), share, without, disc.surfaces[0].surface.name)
+    return Balance(mass, centre, inertia, math.hypot(x, y), share, without)
 
 
 def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array, Array]:
