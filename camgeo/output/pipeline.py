@@ -223,6 +223,7 @@ def _findings(
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
+    from camgeo.measures.balance import balances
     from camgeo.measures.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
@@ -239,4 +240,5 @@ def _findings(
         remarks=remarks,
         joints=design.exact.joints,
         contours={surface.name: measures(contour) for surface, contour in design.contours},
+        balances=balances(recipe, design),
     )

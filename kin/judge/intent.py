@@ -87,6 +87,7 @@ class PartIntent:
     milling     how a program mills it
     linkage     that it drives; None for a plain follower
     closures    what is left between its surfaces
+    name        by which checks tell it from other discs on its shaft; empty where there is no other
     """
 
     surfaces: tuple[SurfaceIntent, ...]
@@ -101,11 +102,26 @@ class PartIntent:
     milling: Milling | None = None
     linkage: LinkageIntent | None = None
     closures: tuple[ClosureIntent, ...] = ()
+    name: str = ""
 
     @property
     def featured(self) -> bool:
         """Whether the part has more than a round bore."""
         return bool(self.holes or self.layers)
+
+
+@dataclass(frozen=True)
+class ShaftIntent:
+    """Discs on one shaft, in a file each or together in one.
+
+    parts     the discs, the lowest first; alone in a file each stands on z = 0
+    levels    height of the lower face of each in a file that holds all of them, mm
+    closures  what is left between surfaces of two of them
+    """
+
+    parts: tuple[PartIntent, ...]
+    levels: tuple[float, ...] = (0.0,)
+    closures: tuple[ClosureIntent, ...] = ()
 
 
 @dataclass(frozen=True)
