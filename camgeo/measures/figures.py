@@ -18,8 +18,8 @@ from camgeo.checks.declared import (
     WALL,
 )
 from camgeo.recipe.figures import (
-    BACKLASH,
     AT_SPEED,
+    BACKLASH,
     BASE_RADIUS,
     DWELL,
     ECCENTRICITY,

@@ -47,9 +47,7 @@ class FileResult(OfSurfaces):
         """Give what is known of a file by its verdict, and if it was `made` here number of pieces and proved bound."""
         pieces, bound = (verdict.pieces, None) if made is None else made
         read = verdict.surfaces, verdict.closures, verdict.chains
-        return FileResult(
-            path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven
-        )
+        return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)
 
     @property
     def shows_cam(self) -> bool:

@@ -30,12 +30,10 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
         from camgeo.output.mechanism import make_mechanism
 
         return make_mechanism(job, request, path)
-    discs = len(job.design.discs)
-    if discs > 1 and request.kind in BY_DISC:
-        paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(discs)]
-        made = [_make(job.of_disc(rank), request, there) for rank, there in enumerate(paths)]
-        return job.closed(request, made)
-    return _make(job, request, path)
+    if len(job.design.discs) == 1 or request.kind not in BY_DISC:
+        return _make(job, request, path)
+    paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(len(job.design.discs))]
+    return job.closed(request, [_make(one, request, there) for one, there in zip(job.single, paths, strict=True)])
 
 
 def _make(job: Job, request: FileRequest, path: Path) -> Made:
@@ -93,7 +91,22 @@ SURFACES: dict[tuple[str, str | None], int] = {
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 
-DISCS: dict[tuple[str, str | None], int] = {("csv", "motion"): 2, ("csv", "contacts"): 2}
+DISCS: dict[tuple[str, str | None], int] = {
+    ("dxf", "arcs"): 2,
+    ("dxf", "polyline"): 2,
+    ("dxf", "spline"): 2,
+    ("svg", "arcs"): 2,
+    ("svg", "polyline"): 2,
+    ("svg", "spline"): 2,
+    ("step", "arcs"): 2,
+    ("step", "spline"): 2,
+    ("stl", None): 2,
+    ("3mf", None): 2,
+    ("glb", None): 2,
+    ("gcode", None): 2,
+    ("csv", "motion"): 2,
+    ("csv", "contacts"): 2,
+}
 """How many discs on one shaft each form of a file is taught to hold, one where it does not stand here."""
 
 
@@ -123,4 +136,5 @@ def foresee(job: Job, request: FileRequest) -> None:
     if request.kind in SOLIDS - {"step"} and not failed:
         from camgeo.output.solid import aim
 
-        aim(job, request)
+        for single in job.single:
+            aim(single, request)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import MOTION, RATIO
@@ -15,8 +16,8 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
-from camgeo.output.file_intent import intent_of_file
-from camgeo.synthesis.intent import permitted, shaft_intended
+from camgeo.output.file_intent import intent_of_file, shaft_of_file
+from camgeo.synthesis.intent import permitted
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -88,12 +89,14 @@ class Job:
             job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
         return job, ()
 
-    def of_disc(self, rank: int) -> Job:
-        """The job for one of several discs, as its own file shows it."""
-        disc = self.design.discs[rank]
-        held = [made in disc.surfaces for made in self.design.surfaces]
-        fits = tuple(fit for fit, own in zip(self.fits, held, strict=True) if own)
-        return replace(self, design=replace(self.design, discs=(disc,)), fits=fits)
+    @property
+    def single(self) -> tuple[Job, ...]:
+        """The job for each disc, as a file with that disc alone shows it."""
+        fits = iter(self.fits)
+        return tuple(
+            replace(self, design=design, fits=tuple(islice(fits, len(design.surfaces))))
+            for design in self.design.single
+        )
 
     @property
     def clock(self) -> Clock:
@@ -185,7 +188,7 @@ class Job:
         from kin.judge.together import DiscFile, verify_set
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        meant = shaft_intended(recipe.told_for(request), self.design)
+        meant = shaft_of_file(recipe.told_for(request), self.design, request.kind)
         with self.clock.stage(f"judge {request.kind}"):
             (verdict,) = verify_set([DiscFile(path, None)], meant, recipe.verify.angles, permitted(recipe, tolerance))
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
@@ -202,7 +205,7 @@ class Job:
         limits = permitted(self.recipe, self.tolerance(request))
         with self.clock.stage(f"judge {request.kind}"):
             read = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
-            closures, more = left_between(read, shaft_intended(self.recipe, self.design), limits)
+            closures, more = left_between(read, shaft_of_file(self.recipe, self.design, request.kind), limits)
         files[-1] = replace(files[-1], closures=closures)
         return Made(tuple(files), (*checks, *more))
 

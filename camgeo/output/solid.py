@@ -88,9 +88,9 @@ def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
     if len(discs) == 1:
         return [DiscMesh("cam", *cam_mesh(job, request))]
     found = []
-    for rank, disc in enumerate(discs):
+    for disc, single in zip(discs, job.single, strict=True):
         place = np.vstack([np.eye(3), [0.0, 0.0, disc.z]]) if disc.z else None
-        found.append(DiscMesh(disc.name, *cam_mesh(job.of_disc(rank), request), place))
+        found.append(DiscMesh(disc.name, *cam_mesh(single, request), place))
     return found
 
 

@@ -23,15 +23,16 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
         need_kernel()
         form = request.as_ or "arcs"
         discs = job.design.discs
-        jobs = [job.of_disc(rank) for rank in range(len(discs))]
         names = [disc.name if len(discs) > 1 else "" for disc in discs]
-        drawn = [one.outlines_written(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in jobs]
+        drawn = [
+            one.outlines_written(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
+        ]
         with job.clock.stage("write step"):
             if recipe.part.thickness is None:
                 raise recipe.error("part.thickness", "a solid needs a thickness")
             bodies = [
                 StepBody([*rim_of(one.body), *contours_of(one.design, contours)], solid_of(one.body), name, disc.z)
-                for one, contours, name, disc in zip(jobs, drawn, names, discs, strict=True)
+                for one, contours, name, disc in zip(job.single, drawn, names, discs, strict=True)
             ]
             bound = write_step(
                 path,

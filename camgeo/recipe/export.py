@@ -94,10 +94,7 @@ class FileRequest:
             parts.append(self.units)
         return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
 
-
-    def filenames(
-        self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1
-    ) -> tuple[str, ...]:
+    def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
         """Name every file with a cam of that many discs: one for all, or one for each disc."""
         whole = self.filename(name, requests)
         if discs == 1 or self.kind not in BY_DISC:

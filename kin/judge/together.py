@@ -59,10 +59,7 @@ def left_between(
     """Judge what is left between surfaces of discs that were read from files: closures, and checks on the last file."""
     intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
     surfaces = [
-        (intents[found.name], found.contour)
-        for file in files
-        for found in file.surfaces
-        if found.contour is not None
+        (intents[found.name], found.contour) for file in files for found in file.surfaces if found.contour is not None
     ]
     closures, checks = judge_closures(surfaces, shaft.closures, limits, max(file.uneven for file in files))
     others = ", ".join(file.file for file in files[:-1])
