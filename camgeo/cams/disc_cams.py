@@ -178,9 +178,7 @@ class DiscCam(GuidedCam):
             nearer = scale * (self.touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
             face = Flat(self.touch.tilt, width, nearer)
             pair = self.conjugate and self.conjugate.scaled(face, scale, 2.0 * out)
-            return replace(
-                self, base_radius=scale * (self.base_radius + out), guide=guide, touch=face, conjugate=pair
-            )
+            return replace(self, base_radius=scale * (self.base_radius + out), guide=guide, touch=face, conjugate=pair)
         touch = _less(self.touch, out, scale)
         pair = self.conjugate and self.conjugate.scaled(_less(self.conjugate.touch, out, scale), scale)
         base, groove = scale * (self.base_radius + self.side * out), self.groove and self.groove.scaled(scale)
@@ -208,16 +206,14 @@ class ExactFaced(ExactLed):
         from camgeo.curve.disc import face_shape
 
         self.cam.demand(self.law)
-        first, *others = self.follower.contacts
+        _, *others = self.follower.contacts
         faces = [self.cam.face(self.law), *(self.cam.second_face(self.law, contact) for contact in others)]
         surfaces = []
-        for contact, face, flank in zip((first, *others), faces, self.cam.flanks, strict=True):
+        for face, flank in zip(faces, self.cam.flanks, strict=True):
             whole = Curve.whole(face_shape(face))
             series = {"slope": face.slope, "contact": face.contact}
             pressure, place = face.pressure_angle, face.place
             surfaces.append(
-                Surface(
-                    whole, whole, pressure=pressure, place=place, series=series, name=flank.name, disc=flank.disc
-                )
+                Surface(whole, whole, pressure=pressure, place=place, series=series, name=flank.name, disc=flank.disc)
             )
         return tuple(surfaces)

@@ -117,9 +117,7 @@ class FlatFace(Follower):
     def _error(self, bearing: Bearing, theta: Array, reach: Extremes) -> MotionError:
         (worst, at), share, ahead = reach.worst, self._share, self.ahead
         angle = with_steps(theta)
-        position = self.contacts[0].position(
-            bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share
-        )
+        position = self.contacts[0].position(bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share)
         ranges = [lift_range(bearing, begin + ahead, end + ahead) / share for begin, end in self.rests]
         errors = position - self.intended(angle)
         return motion_error((worst / share, at), errors, max(ranges, default=None), "mm")

@@ -29,7 +29,9 @@ NAMES = ("disc 1", "disc 2")
 
 def text(follower, conjugate, rows=D09, base=36.0, more=""):
     steps = [
-        f"{{{'rise' if by > 0 else 'return'}: {abs(by)!r}, over: {over!r}, law: {law}}}" if law else f"{{dwell: {over!r}}}"
+        f"{{{'rise' if by > 0 else 'return'}: {abs(by)!r}, over: {over!r}, law: {law}}}"
+        if law
+        else f"{{dwell: {over!r}}}"
         for by, over, law in rows
     ]
     return (
