@@ -76,7 +76,7 @@ class Conjugate:
 
 
 def _swing(pivot: float, arm: float, radius: float) -> float:
-    """Angle to the line from pivot to shaft, rad, at which an arm's end is a radius from the shaft; 0 where it never is."""
+    """Angle at the pivot, rad, at which an arm's end is a radius from the shaft; 0 where it never is."""
     cosine = (pivot**2 + arm**2 - radius**2) / (2.0 * pivot * arm)
     return math.acos(cosine) if cosine < 1.0 else 0.0
 

@@ -206,10 +206,10 @@ class ExactFaced(ExactLed):
         from camgeo.curve.disc import face_shape
 
         self.cam.demand(self.law)
-        first, *others = self.follower.contacts
+        _, *others = self.follower.contacts
         faces = [self.cam.face(self.law), *(self.cam.second_face(self.law, contact) for contact in others)]
         surfaces = []
-        for contact, face, flank in zip((first, *others), faces, self.cam.flanks, strict=True):
+        for face, flank in zip(faces, self.cam.flanks, strict=True):
             whole = Curve.whole(face_shape(face))
             series = {"slope": face.slope, "contact": face.contact}
             pressure, place = face.pressure_angle, face.place

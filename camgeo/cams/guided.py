@@ -123,6 +123,16 @@ class GuidedCam(Cam):
         return tuple(circles)
 
 
+def led_by(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
+    """How the centre of a round touch is led, by the displacement of its own position."""
+    from camgeo.curve import moving_frame
+
+    guide = contact.guide
+    if isinstance(guide, Translating):
+        return moving_frame.Translating(contact.zero, guide.offset, contact.turned)
+    return moving_frame.Oscillating(guide.pivot, guide.arm, contact.zero, guide.side)
+
+
 @dataclass(frozen=True)
 class Spin:
     """Turns of a roller per turn of the shaft; on the inner side of a ring it turns the other way round."""
@@ -184,7 +194,7 @@ class ExactGuided(ExactLed):
 
         A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
         """
-        from camgeo.curve.moving_frame import CentreShape, guide_of
+        from camgeo.curve.moving_frame import CentreShape
 
         self.cam.demand(self.law)
         contacts = {contact.surface: contact for contact in reversed(self.follower.contacts)}
@@ -193,7 +203,7 @@ class ExactGuided(ExactLed):
         for flank in self.cam.flanks:
             contact = contacts[flank.name]
             if contact.place not in paths:
-                pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), guide_of(contact))
+                pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), led_by(contact))
                 paths[contact.place] = pitch, Curve.whole(pitch)
             surfaces.append(self._surface(*paths[contact.place], contact, flank))
         return tuple(surfaces)

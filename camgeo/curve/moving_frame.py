@@ -21,7 +21,6 @@ import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import OfLaw, SourceT, bounds_of, cut, series_of
-from kin.law import contacts
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
@@ -280,14 +279,6 @@ class Oscillating:
 
 Guide: TypeAlias = Translating | Oscillating
 """How a roller's centre is led: its place, its direction of travel, and the frame's b, a and tau'."""
-
-
-def guide_of(contact: contacts.Contact[contacts.Guide, contacts.Touch]) -> Guide:
-    """How the centre of a round touch is led, from its contact; the displacement is that of its own position."""
-    guide = contact.guide
-    if isinstance(guide, contacts.Translating):
-        return Translating(contact.zero, guide.offset, contact.turned)
-    return Oscillating(guide.pivot, guide.arm, contact.zero, guide.side)
 
 
 @dataclass(frozen=True)
