@@ -14,6 +14,7 @@ from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
+from kin.judge.verdict import UNREAD
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -159,12 +160,11 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
     }
-    if len(file.surfaces) > 1:
-        entry["surfaces"] = [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]
-    else:
-        entry |= _surface(recipe, file.surface)
-        if file.surface.name:
-            entry["surface"] = file.surface.name
+    rows = [(one.name, _surface(recipe, one)) for one in file.surfaces or (UNREAD,)]
+    if len(rows) > 1:
+        entry["surfaces"] = [{"name": name, **row} for name, row in rows]
+    for name, row in rows if len(rows) == 1 else ():  # flat keys, where there is one
+        entry |= row | ({"surface": name} if name else {})
     if file.closures or "surfaces" in entry:
         entry["play"] = [_play(recipe, one) for one in file.closures]
     return entry
