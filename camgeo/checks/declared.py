@@ -18,6 +18,7 @@ from camgeo.recipe.figures import (
     CONTACT_TRAVEL,
     FIGURES,
     FORMER,
+    LAW_ERROR,
     LEAST_WALL,
     PITCH_RADIUS,
     PRESSURE_ANGLE,
@@ -308,6 +309,7 @@ RATIO = Declared(
     remedy=remedies.smaller_swing,
     formerly=FORMER[VELOCITY_RATIO],
 )
+LAW = Declared(LAW_ERROR, ("deg",), _named(LAW_ERROR), field="cam.delta.harmonics", remedy=remedies.more_harmonics)
 PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
 BREADTH = Declared(
     "constant-breadth",

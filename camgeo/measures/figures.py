@@ -10,6 +10,7 @@ from camgeo.checks.declared import (
     CHECKS,
     CLEARANCE,
     COLLISION,
+    LAW,
     LEAST_BACKLASH,
     PRESSURE,
     RATIO,
@@ -65,7 +66,7 @@ if TYPE_CHECKING:
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
-_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE, COLLISION)}
+_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
 class Measured(NamedTuple):
