@@ -20,6 +20,7 @@ from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
 from camgeo.curve.support import is_sharp
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -29,27 +30,7 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array, Mask
 
-_NODE = np.array(  # of Gauss and Legendre's rule of 12 points, and the weights; numpy's polynomials are slow to import
-    [
-        0.1252334085114689,
-        0.3678314989981802,
-        0.5873179542866175,
-        0.7699026741943047,
-        0.9041172563704748,
-        0.9815606342467192,
-    ]
-)
-_WEIGHT = np.array(
-    [
-        0.2491470458134027,
-        0.2334925365383546,
-        0.20316742672306573,
-        0.16007832854334642,
-        0.10693932599531907,
-        0.04717533638651141,
-    ]
-)
-NODES, WEIGHTS = np.append(-_NODE[::-1], _NODE), np.append(_WEIGHT[::-1], _WEIGHT)
+NODES, WEIGHTS = gauss(12)
 FIRST = 8  # parts of a stretch, at first
 EXACT = 1e-13  # of the whole: where halving a part changes less than its share of this, the part is done
 HALVINGS = 30

@@ -115,7 +115,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
 
 def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int) -> _Scene:
     from kin.dynamics.train import Train
-    from kin.follower.guide import METRE
+    from kin.law.contacts import METRE
 
     train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
     if design.driven is None:

@@ -8,7 +8,6 @@ from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensati
 from camgeo.recipe.track import is_ring
 from camgeo.schema.errors import shown
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
-from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
 from kin.numeric.records import dataclass
 
@@ -237,6 +236,8 @@ def _format(node: Node) -> tuple[Scalar | None, Node | None]:
 
 
 def _files_schema(_: Field) -> Schema:
+    from camgeo.schema.json_schema import table_schema
+
     formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in FILES.items()]
     items = {"anyOf": [{"enum": list(FILES)}, *(table_schema(Table((item,))) for item in formats)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
