@@ -118,11 +118,13 @@ def _mechanism(
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
-        from camgeo.report.page.linked import Driven, linked
+        from camgeo.report.page.linked import Driven, linked, traced
 
         driven = Driven.of(design.driven.mechanism)
         disk = cam(drawn, bore, size, driven.cam, on_it)
         bodies = linked(driven, size)
+        if recipe.linkage is not None:
+            bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
         return (
             Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),
