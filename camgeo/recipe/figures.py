@@ -85,7 +85,7 @@ PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio
 LAW_ERROR = "law-error"
 
 
-BACKLASH_LEFT = "least-backlash"
+BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
 
 
 FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
@@ -217,7 +217,7 @@ FIGURES: dict[str, Figure] = {
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
-    "backlash": _of_file(
+    BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
