@@ -108,11 +108,11 @@ def _round(job: Job, asked: Manufacture, path: ArcSpline, side: Side, room: floa
     """A path along a surface with ways in and out, which have `room`, mm; where they would vanish it has none."""
     begun = begun_at(path, asked.start)
     drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-    lead = min(asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn)), LEAD * room)
     clockwise = (asked.direction == "climb") == (side > 0)
-    if lead < LEAST_LEAD:
+    if LEAD * room < LEAST_LEAD:
         return plunged(drawn, clockwise=clockwise)
-    return led(drawn, lead, side=side, clockwise=clockwise)
+    lead = asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn))
+    return led(drawn, min(lead, LEAD * room), side=side, clockwise=clockwise)
 
 
 def _pocket(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
