@@ -21,7 +21,7 @@ KEYS = (
     "name, about, units, rotation, cam, linkage, part, export, verify, limits, mechanism, dwell, sweep, dynamics "
     "and manufacture"
 )
-PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer and wall"
+PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer, wall and density"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
