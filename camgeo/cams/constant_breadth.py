@@ -9,6 +9,7 @@ from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
+from camgeo.cams.preload import PRELOAD, Preload
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace
@@ -47,6 +48,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     undercut: Undercut
     swings: bool = False
     frame: SlidingFrame | None = None
+    preload: Preload | None = None
 
     def lift(self) -> Lift:
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
@@ -112,6 +114,7 @@ TABLE = Table(
         replace(MOTION, required=False),
         SWING,
         UNDERCUT,
+        PRELOAD,
     ),
     alternatives=(("motion", ()), ("swing", ())),
 )

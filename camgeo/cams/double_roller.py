@@ -17,6 +17,7 @@ from kin.law.contacts import Arrangement, Oscillating, Roller, on_one_arm
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.preload import Preload
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -70,6 +71,7 @@ class DoubleRollerCam(PairCam):
     roller_radius: float
     route: Route
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     def touch(self) -> Roller:

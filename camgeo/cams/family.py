@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.cams.position import Position
+    from camgeo.cams.preload import Preload
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme, Figure
     from camgeo.curve.moving_frame import Displacement
@@ -284,6 +285,8 @@ class ExactCam(ABC):
     def running(self) -> dict[str, Gauge]:
         """The follower itself on each surface: with the touch of its first contact, where gauges are wider."""
         touch = self.follower.contacts[0].touch
+        if all(contact.touch == touch for contact in self.follower.contacts):
+            return self.gauges
         return self._followers([replace(contact, touch=touch) for contact in self.follower.contacts])
 
     def _followers(self, contacts: Sequence[Contact[Guide, Touch]]) -> dict[str, Gauge]:
@@ -357,6 +360,7 @@ class Cam(ABC):
 
     kind: ClassVar[str]
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     @abstractmethod
@@ -415,7 +419,14 @@ class Cam(ABC):
 
     def refusing(self) -> Cam:
         """The same cam with undercut refused."""
-        return replace(self, undercut="refuse")  # type: ignore[type-var]  # every family is a dataclass
+        return self._changed(undercut="refuse")
+
+    def with_preload(self, preload: Preload) -> Cam:
+        """The same cam with its metal grown towards its contacts."""
+        return self._changed(preload=preload)
+
+    def _changed(self, **fields: object) -> Cam:
+        return replace(self, **fields)  # type: ignore[type-var]  # every family is a dataclass
 
 
 @dataclass(frozen=True)

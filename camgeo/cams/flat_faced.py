@@ -11,6 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
+from camgeo.cams.preload import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
@@ -76,9 +77,9 @@ class FlatFacedCam(Cam):
     def lift(self) -> Lift:
         """Distance of the face from the shaft over the shaft angle."""
 
-    def exact(self, *, framed: bool = False) -> ExactLifted:
+    def exact(self, *, framed: bool = False) -> ExactCam:
         """By its support function."""
-        return ExactLifted(self, self.lift(), framed)
+        return preloaded(ExactLifted(self, self.lift(), framed), self.preload)
 
     def joints(self) -> tuple[Joint, ...]:
         """Where derivatives of the motion that a recipe gives jump."""

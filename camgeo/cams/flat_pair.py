@@ -13,6 +13,7 @@ from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.preload import Preload
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
 
@@ -44,6 +45,7 @@ class FlatPairCam(PairCam):
     arm: float
     route: Route
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     def touch(self) -> Flat:

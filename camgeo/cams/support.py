@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Surface, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
+from camgeo.cams.preload import PRELOAD, Preload
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
@@ -80,6 +81,7 @@ class SupportCam(FlatFacedCam):
     shape: Shape
     shaft: tuple[float, float]
     undercut: Undercut
+    preload: Preload | None = None
 
     def lift(self) -> Lift:
         """The support function about the shaft."""
@@ -291,6 +293,7 @@ TABLE = Table(
             formerly="pivot",
         ),
         UNDERCUT,
+        PRELOAD,
     ),
     alternatives=(("p", ()), ("fourier", ()), ("reuleaux", ()), ("hypocycloid", ())),
 )

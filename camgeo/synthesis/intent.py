@@ -31,7 +31,7 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
             one.surface.layer if one.surface.name else "",
             side=one.surface.side,
             trimmed=one.trimmed,
-            follower=exact.running[one.surface.name] if one.surface.name else None,
+            follower=exact.running[one.surface.name] if exact.running is not exact.gauges else None,
         )
         for one in design.surfaces
     )
