@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right, unit
-from kin.follower.projection import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.angles import TURN
+from kin.numeric.feet import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:

@@ -24,11 +24,11 @@ from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
-from kin.follower.projection import grid
 from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
+from kin.numeric.feet import grid
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:

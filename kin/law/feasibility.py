@@ -68,7 +68,7 @@ def _demand_possible(law: Transmission, knots: Sequence[float], functions: Seque
         raise too_wide(law, at, swing, field)
 
 
-def too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentError:
+def too_wide(law: Transmission, angle: float, swing: float, field: str) -> IntentError:
     """Say that the swing (rad), reached at tau, leads out of 0 < r < 2l."""
     limit = min(law.alpha, math.pi - law.alpha)
     end = "2l" if law.alpha < math.pi / 2 else "0"
@@ -76,7 +76,7 @@ def too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentEr
         f"the follower would swing {math.degrees(swing):.6g} degrees to each side; below {math.degrees(limit):.6g} is "
         f"possible with lam/mu = {law.lam}/{law.mu}, there roller A's distance from the shaft reaches {end}",
         field,
-        _shaft_deg(law, at),
+        _shaft_deg(law, angle),
     )
 
 

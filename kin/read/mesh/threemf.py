@@ -232,36 +232,36 @@ class _Model:
             most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
             raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
 
-    def _corners(self, one: _Object, depth: int) -> Array:
+    def _corners(self, item: _Object, depth: int) -> Array:
         """Triangles (t, 3, 3) of an object and all its components, in the file's unit."""
         if depth > DEEPEST:
             raise ReadError("unsupported", f"components lie more than {DEEPEST} deep, or hold themselves", self.path)
-        if one.whole is not None:
-            self.components += one.under
-            return one.whole
+        if item.whole is not None:
+            self.components += item.under
+            return item.whole
         before = self.components
-        points = np.array(one.points, dtype=np.float64).reshape(-1, 3)
-        corners: Indices = np.array(one.corners, dtype=np.intp).reshape(-1, 3)
+        points = np.array(item.points, dtype=np.float64).reshape(-1, 3)
+        corners: Indices = np.array(item.corners, dtype=np.intp).reshape(-1, 3)
         if not bool((corners < len(points)).all()):
             raise self._fault(f"a triangle has a corner that is none of the {len(points)} vertices")
-        self._demand_used(one, len(points), corners)
+        self._demand_used(item, len(points), corners)
         parts = [points[corners]]
-        for name, place in one.components:
+        for name, place in item.components:
             self.components += 1
             self._demand_room()
             part = self._corners(self._named(name), depth + 1)
             self._demand_room(len(part))
             parts.append(_moved(part, place))
-        one.whole, one.under = np.concatenate(parts), self.components - before
-        return one.whole
+        item.whole, item.under = np.concatenate(parts), self.components - before
+        return item.whole
 
-    def _demand_used(self, one: _Object, count: int, corners: Indices) -> None:
+    def _demand_used(self, item: _Object, count: int, corners: Indices) -> None:
         """Refuse a mesh most of whose vertices no triangle has."""
         used = np.zeros(count, dtype=bool)
         used[corners.ravel()] = True
         loose = count - int(np.count_nonzero(used))
         if loose > FREE_LOOSE + LOOSE_SHARE * count:
-            message = f"{loose} of the {count} vertices of object {one.name!r} belong to no triangle; leave them out"
+            message = f"{loose} of the {count} vertices of object {item.name!r} belong to no triangle; leave them out"
             raise ReadError("range", message, self.path)
 
     def _begin(self, attributes: dict[str, str]) -> None:
