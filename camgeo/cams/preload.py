@@ -38,6 +38,12 @@ class Preload:
     interference: float
     stiffness: tuple[float, float] | None = None
 
+    @property
+    def overlaps(self) -> tuple[float, float]:
+        """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
+        half = 0.5 * self.interference
+        return half, half
+
 
 @dataclass(frozen=True, eq=False)
 class Preloaded(ExactCam):
@@ -78,7 +84,7 @@ class Preloaded(ExactCam):
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
         """Followers with room for the metal by which it has grown."""
-        return self._followers([eased(one, 0.5 * self.preload.interference) for one in self.follower.contacts])
+        return self._followers(list(map(eased, self.follower.contacts, self.preload.overlaps)))
 
     @property
     def running(self) -> dict[str, Gauge]:

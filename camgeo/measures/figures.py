@@ -32,6 +32,8 @@ from camgeo.recipe.figures import (
     PITCH_RADIUS,
     PIVOT,
     PIVOT_CLEARANCE,
+    PRELOAD_GREATEST,
+    PRELOAD_LEAST,
     RADIUS,
     ROLLER_SPEED,
     SIZE,
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
+_ABRUPT = "the motion changes too abruptly to be resolved"
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
@@ -241,6 +244,26 @@ def _pivot(_: Recipe, design: Design) -> Measured:
     return Measured(design.follower.pivot, "mm")
 
 
+def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
+    """Least (0) or greatest (1) force of a preload."""
+
+    def measured(recipe: Recipe, design: Design) -> Measured:
+        from camgeo.measures.forces import preload_force
+        from kin.numeric.monotone import RoughError
+
+        unit = "N m" if design.motion.unit == "deg" else "N"
+        preload = recipe.cam.preload
+        if preload is None or preload.stiffness is None:
+            return Measured(None, unit, detail="the preload has no stiffness")
+        try:
+            value, at_deg = preload_force(design, preload)[rank]
+        except RoughError:
+            return Measured(None, unit, detail=_ABRUPT)
+        return Measured(value, unit, at_deg)
+
+    return measured
+
+
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
@@ -255,6 +278,8 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ROLLER_SPEED: _roller_speed,
     FACE_WIDTH: _face_width,
     JAM_MARGIN: _jam_margin,
+    PRELOAD_LEAST: _of_preload(0),
+    PRELOAD_GREATEST: _of_preload(1),
 }
 
 
@@ -273,8 +298,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
-        why = "the motion changes too abruptly to be resolved"
-        return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
+        return {name: Measured(None, unit + FIGURES[name].per, detail=_ABRUPT) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
         row = pieces(made, _ORDERS[name])

@@ -41,7 +41,7 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "stiff"]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -65,6 +65,7 @@ NEEDS: dict[Needs, str] = {
     "stem-face": "a flat face on a stem",
     "guide": "dynamics.guide",
     "speed": "a follower without a linkage, and dynamics.rpm",
+    "stiff": "cam.preload.stiffness",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
 
@@ -104,6 +105,9 @@ BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
 FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
+
+
+PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
 
 
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
@@ -180,6 +184,13 @@ FIGURES: dict[str, Figure] = {
         "most",
         "arm",
     ),
+    PRELOAD_LEAST: Figure(
+        "least force of a preload by interference over the turn, along the travel, N; N m where it turns",
+        Kind.NUMBER,
+        "most",
+        "stiff",
+    ),
+    PRELOAD_GREATEST: Figure("its greatest force", Kind.NUMBER, "least", "stiff"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -271,6 +282,8 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "linkage" not in given and "dynamics.rpm" in given
         case "guide":
             return "dynamics.guide" in given
+        case "stiff":
+            return "cam.preload.stiffness" in given
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
         case "stem":

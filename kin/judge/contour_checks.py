@@ -144,7 +144,9 @@ def _beside_interference(check: Check, interference: float, detail: str) -> Chec
     """A check on what a gauge has left, said of its follower: a limit that lets all of an interference go is none."""
     if check.limit is None or check.limit < interference:
         return replace(check, detail=detail)
-    permitted = f"{check.limit:.3g} {check.unit} would be permitted, as much as the interference; give a finer tolerance"
+    permitted = (
+        f"{check.limit:.3g} {check.unit} would be permitted, as much as the interference; give a finer tolerance"
+    )
     return replace(check, ok=False, limit=None, detail=f"{permitted}; {detail}")
 
 

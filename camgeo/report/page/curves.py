@@ -136,6 +136,19 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
+def preload(recipe: Recipe, design: Design) -> list[Plot]:
+    """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
+    if recipe.cam.preload is None or recipe.cam.preload.stiffness is None:
+        return []
+    from camgeo.measures.forces import FollowerTurn, elastic
+
+    turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
+    force = elastic(turn, recipe.cam.preload, rows).preload
+    normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
+    note = "along the normal of each contact, without load"
+    return [Plot("Preload", "N", tuple(Series(name, values) for name, values in normal), note=note)]
+
+
 def along(recipe: Recipe, place: Array) -> Plot:
     """Return the plot of where a flat face is touched, mm (STEPS + 1,)."""
     note = "along the face, from the axis of its stem or the pivot of its arm"
