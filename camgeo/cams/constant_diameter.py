@@ -13,7 +13,8 @@ import numpy as np
 from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Undercut
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
-from camgeo.cams.preload import PRELOAD, Preload, preloaded
+from camgeo.cams.preload import PRELOAD, Preload, build_preload
+from camgeo.cams.preloaded import preloaded
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
@@ -102,8 +103,8 @@ def check(cam: Values, reader: Reader) -> None:
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
-    undercut = cam.get("undercut", "refuse")
-    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut)
+    undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
+    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 
 
 FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check)

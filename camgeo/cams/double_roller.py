@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Surface, Undercut
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
+from camgeo.cams.preload import Preload, build_preload
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
@@ -17,7 +18,6 @@ from kin.law.contacts import Arrangement, Oscillating, Roller, on_one_arm
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.preload import Preload
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -116,10 +116,9 @@ TABLE = pair_table(
 
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
-    lam, mu = cam["ratio"]
-    return DoubleRollerCam(
-        lam, mu, cam["arm"], cam["roller_radius"], build_route(cam, mm), cam.get("undercut", "refuse")
-    )
+    (lam, mu), undercut = cam["ratio"], cam.get("undercut", "refuse")
+    route, preload = build_route(cam, mm), build_preload(cam)
+    return DoubleRollerCam(lam, mu, cam["arm"], cam["roller_radius"], route, undercut, preload)
 
 
 FAMILY = Family(DoubleRollerCam.kind, ARRANGEMENT, TABLE, build, check)

@@ -335,6 +335,11 @@ class ExactCam(ABC):
         return False
 
     @property
+    def preload(self) -> Preload | None:
+        """The interference that its contacts have, None of those that have none."""
+        return None
+
+    @property
     def plate(self) -> Lift | None:
         """Support function of a plate that a linkage can carry, None of other cams."""
         return None
@@ -360,7 +365,6 @@ class Cam(ABC):
 
     kind: ClassVar[str]
     undercut: Undercut
-    preload: Preload | None = None
 
     @property
     @abstractmethod
@@ -419,14 +423,7 @@ class Cam(ABC):
 
     def refusing(self) -> Cam:
         """The same cam with undercut refused."""
-        return self._changed(undercut="refuse")
-
-    def with_preload(self, preload: Preload) -> Cam:
-        """The same cam with its metal grown towards its contacts."""
-        return self._changed(preload=preload)
-
-    def _changed(self, **fields: object) -> Cam:
-        return replace(self, **fields)  # type: ignore[type-var]  # every family is a dataclass
+        return replace(self, undercut="refuse")  # type: ignore[type-var]  # every family is a dataclass
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
-from camgeo.cams.preload import preloaded
+from camgeo.cams.preloaded import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
@@ -22,6 +22,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from camgeo.cams.preload import Preload
     from kin.law.contacts import Guide, Touch
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
@@ -62,6 +63,7 @@ class FlatFacedCam(Cam):
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
+    preload: Preload | None
 
     @property
     def arrangement(self) -> Arrangement:

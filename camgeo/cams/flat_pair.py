@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
+from camgeo.cams.preload import Preload, build_preload
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.preload import Preload
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
 
@@ -84,7 +84,8 @@ TABLE = pair_table("swing of the pair, psi/2, over 180/lambda degrees of shaft a
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
     lam, mu = cam["ratio"]
-    return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), cam.get("undercut", "refuse"))
+    undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
+    return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), undercut, preload)
 
 
 FAMILY = Family(FlatPairCam.kind, ARRANGEMENT, TABLE, build, check)

@@ -13,7 +13,8 @@ from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margi
 from camgeo.cams.flat_faced import spread
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.cams.position import Position, SwingPosition
-from camgeo.cams.preload import PRELOAD, preloaded
+from camgeo.cams.preload import PRELOAD, Preload
+from camgeo.cams.preloaded import preloaded
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat
@@ -115,6 +116,7 @@ class PairCam(Cam):
     mu: int
     arm: float
     route: Route
+    preload: Preload | None
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By Wunderlich's law of transmission, by the route that the recipe takes."""

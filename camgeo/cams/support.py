@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Surface, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
-from camgeo.cams.preload import PRELOAD, Preload
+from camgeo.cams.preload import PRELOAD, Preload, build_preload
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
@@ -333,7 +333,7 @@ def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> floa
 
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
-    return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"))
+    return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"), build_preload(cam))
 
 
 def _shape(cam: Values, mm: float) -> Shape:

@@ -247,12 +247,12 @@ def _pivot(_: Recipe, design: Design) -> Measured:
 def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
     """Least (0) or greatest (1) force of a preload."""
 
-    def measured(recipe: Recipe, design: Design) -> Measured:
+    def measured(_: Recipe, design: Design) -> Measured:
         from camgeo.measures.forces import preload_force
         from kin.numeric.monotone import RoughError
 
         unit = "N m" if design.motion.unit == "deg" else "N"
-        preload = recipe.cam.preload
+        preload = design.exact.preload
         if preload is None or preload.stiffness is None:
             return Measured(None, unit, detail="the preload has no stiffness")
         try:

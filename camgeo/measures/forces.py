@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.dynamics.contact_forces import Elastic
-    from kin.dynamics.contact_lines import ContactLine
+    from kin.follower.contact_lines import ContactLine
     from kin.numeric.arrays import Array
 
 SHARE = 1e-12  # of the greatest value, to which a force is followed over the turn
@@ -65,7 +65,7 @@ class FollowerTurn:
 
     def lines(self, rows: Array) -> tuple[ContactLine, ...]:
         """The line of each contact at positions of the follower."""
-        from kin.dynamics.contact_lines import contact_line
+        from kin.follower.contact_lines import contact_line
 
         return tuple(contact_line(contact, rows) for contact in self.design.follower.contacts)
 
@@ -112,7 +112,7 @@ def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
 
 def preload_section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
     """The report's section on the preload: its force, and the load along the travel at which a contact is lost."""
-    preload = recipe.cam.preload
+    preload = design.exact.preload
     if preload is None:
         return None
     section: dict[str, Any] = {

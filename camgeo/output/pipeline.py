@@ -215,7 +215,7 @@ def _findings(
             train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
     preload = None
-    if recipe.cam.preload is not None:
+    if design.exact.preload is not None:
         from camgeo.measures.forces import preload_section
 
         with clock.stage("forces"):

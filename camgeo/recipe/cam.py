@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
-from camgeo.cams.preload import build_preload
 from camgeo.common.on_demand import OnDemand
 from camgeo.schema.readers import form_of_kinds
 
@@ -37,6 +36,4 @@ def check_cam(cam: Values, reader: Reader) -> None:
 
 def build_cam(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault; `mm` is the recipe's unit of length."""
-    built = FAMILIES[cam["kind"]].build(cam, mm)
-    preload = build_preload(cam)
-    return built if preload is None else built.with_preload(preload)
+    return FAMILIES[cam["kind"]].build(cam, mm)

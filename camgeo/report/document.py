@@ -160,8 +160,7 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
     }
     if len(file.surfaces) < 2:
-        held = {} if recipe.cam.preload is None or file.play is None else {"play": [_play(recipe, file.play)]}
-        return entry | _surface(recipe, file.surface) | held
+        return entry | _surface(recipe, file.surface)
     entry["surfaces"] = [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]
     return entry | {"play": [_between(recipe, one) for one in file.closures]}
 
@@ -185,6 +184,7 @@ def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
         "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
         "motion": None if surface.motion is None else _motion(recipe, surface.motion),
         **_measures(recipe, surface.perimeter, surface.area),
+        **({} if surface.play is None else {"play": [_play(recipe, surface.play)]}),
     }
 
 

@@ -1,7 +1,7 @@
 """Forces of two contacts that hold a follower from both sides, elastic along their normals and rigid otherwise.
 
 Contact 1 pushes the follower out by P1, contact 2 in by P2, both along its travel, or as moments about its pivot:
-P1 - P2 = F is what the cam must give. With the levers h of `kin.dynamics.contact_lines` a normal force is N = P/h, and
+P1 - P2 = F is what the cam must give. With the levers h of `kin.follower.contact_lines` a normal force is N = P/h, and
 a stiffness k along the normal is K = k h^2 along the travel.
 """
 

@@ -20,7 +20,7 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, permitted
 from kin.dynamics.contact_forces import preloaded
-from kin.dynamics.contact_lines import contact_line
+from kin.follower.contact_lines import contact_line
 from kin.judge.verify import verify
 from kin.law.contacts import Contact, Roller, Translating
 
@@ -54,7 +54,7 @@ def held(kind, degrees):
     turn = FollowerTurn(designed(recipe))
     rows = turn.design.motion.travel(np.radians(degrees), 2)
     levers = np.array([line.lever for line in turn.lines(rows)])
-    force = elastic(turn, recipe.cam.preload, rows)
+    force = elastic(turn, turn.design.exact.preload, rows)
     return levers, force, force.preload / levers
 
 
@@ -141,7 +141,7 @@ def test_figures(kind, least, most):
     values = [found[f"preload-force-{word}"] for word in ("least", "greatest")]
     assert [one.value for one in values] == pytest.approx([least, most], rel=1e-9)
     assert {one.unit for one in values} == {"N" if kind in {"yoke", "roller-yoke"} else "N m"}
-    assert tuple(one.value for one in values) == tuple(one.value for one in preload_force(design, recipe.cam.preload))
+    assert tuple(one.value for one in values) == tuple(one.value for one in preload_force(design, design.exact.preload))
     section = preload_section(recipe, design)
     assert section["interference"] == GIVEN[kind][0]
     if len(set(GIVEN[kind][1])) == 1:  # the cams are symmetric; levers that differ take some of twice the preload
@@ -202,7 +202,12 @@ def failing(verdict):
 
 
 @pytest.fixture(
-    scope="module", params=["yoke", "roller-yoke", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("double-roller", "flat-pair"))]
+    scope="module",
+    params=[
+        "yoke",
+        "roller-yoke",
+        *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("double-roller", "flat-pair")),
+    ],
 )
 def exported(request, tmp_path_factory):
     """A kind of cam, its recipe, its folder and its DXF."""
@@ -225,7 +230,9 @@ def test_what_is_made_interferes(exported):
         assert [play["min"], play["max"]] == pytest.approx([-0.0205, -0.02], abs=4.0 * TOLERANCE)
 
 
-@pytest.mark.parametrize("share", [0.0, pytest.param(0.5, marks=pytest.mark.slow), pytest.param(1.5, marks=pytest.mark.slow), 2.0])
+@pytest.mark.parametrize(
+    "share", [0.0, pytest.param(0.5, marks=pytest.mark.slow), pytest.param(1.5, marks=pytest.mark.slow), 2.0]
+)
 def test_another_interference_fails(exported, share, tmp_path):
     kind, recipe, _ = exported
     other = recipe_of(kind, share * GIVEN[kind][0] if share else 0.0)

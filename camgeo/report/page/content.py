@@ -63,7 +63,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     exacts = [outline.Exact.of(design, made, per) for made in design.surfaces]
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots += curves.preload(recipe, design)
+    plots += curves.preload(design)
     plots += [curves.curvature(recipe, design, *each) for each in zip(design.surfaces, exacts, strict=True)]
     measured = [
         (file.name, made.surface.name, each.error(arcs))

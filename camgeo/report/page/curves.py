@@ -136,14 +136,15 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
-def preload(recipe: Recipe, design: Design) -> list[Plot]:
+def preload(design: Design) -> list[Plot]:
     """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
-    if recipe.cam.preload is None or recipe.cam.preload.stiffness is None:
+    given = design.exact.preload
+    if given is None or given.stiffness is None:
         return []
     from camgeo.measures.forces import FollowerTurn, elastic
 
     turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
-    force = elastic(turn, recipe.cam.preload, rows).preload
+    force = elastic(turn, given, rows).preload
     normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
     note = "along the normal of each contact, without load"
     return [Plot("Preload", "N", tuple(Series(name, values) for name, values in normal), note=note)]
