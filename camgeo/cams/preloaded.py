@@ -33,7 +33,12 @@ class Preloaded(ExactCam):
 
     nominal: ExactCam
     grown_metal: ExactCam
-    preload: Preload
+    held_by: Preload
+
+    @property
+    def preload(self) -> Preload:
+        """The one that it is made by."""
+        return self.held_by
 
     @property
     def cam(self) -> Cam:
