@@ -21,10 +21,13 @@ from camgeo.recipe.figures import (
     AT_SPEED,
     BASE_RADIUS,
     DWELL,
+    ECCENTRICITY,
     FACE_WIDTH,
     FIGURES,
     HOLLOW_RADIUS,
+    INERTIA,
     JAM_MARGIN,
+    MASS,
     OFFSET,
     ON_RETURN,
     ON_RISE,
@@ -37,6 +40,7 @@ from camgeo.recipe.figures import (
     RADIUS,
     ROLLER_SPEED,
     SIZE,
+    UNBALANCE,
 )
 from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width
 from kin.judge.verdict import UNREAD
@@ -49,6 +53,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Surface
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
+    from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, SurfaceDesign
@@ -264,6 +269,21 @@ def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
     return measured
 
 
+def _of_mass(value: Callable[[Balance], float], unit: str) -> Callable[[Recipe, Design], Measured]:
+    """Make the measure of the discs' balance: the greatest of them."""
+
+    def measure(recipe: Recipe, design: Design) -> Measured:
+        from camgeo.measures.balance import balances
+
+        found = balances(recipe, design)
+        if not found:
+            return Measured(None, unit, detail="the part is no single body")
+        detail = f"without the {', '.join(found[0].without)}" if found[0].without else ""
+        return _greatest(Measured(value(one), unit, detail=detail, surface=one.surface) for one in found)
+
+    return measure
+
+
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
@@ -280,6 +300,10 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     JAM_MARGIN: _jam_margin,
     PRELOAD_LEAST: _of_preload(0),
     PRELOAD_GREATEST: _of_preload(1),
+    MASS: _of_mass(lambda disc: disc.mass, "kg"),
+    ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
+    INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
+    UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
 }
 
 

@@ -187,6 +187,8 @@ def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult
 def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
     from camgeo.report.page.content import content
 
+    if len(design.discs) > 1:
+        raise recipe.error("export.files", f"a page does not show a cam of {len(design.discs)} discs", None, "")
     with clock.stage("page"):
         return content(recipe, design, [file for file in found.files if file.shows_cam])
 
@@ -227,6 +229,7 @@ def _findings(
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
+    from camgeo.measures.balance import balances
     from camgeo.measures.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
@@ -244,4 +247,5 @@ def _findings(
         remarks=remarks,
         joints=design.exact.joints,
         contours={surface.name: measures(contour) for surface, contour in design.contours},
+        balances=balances(recipe, design),
     )

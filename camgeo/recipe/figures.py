@@ -41,7 +41,7 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "stiff"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "stiff", "density"]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -66,6 +66,7 @@ NEEDS: dict[Needs, str] = {
     "guide": "dynamics.guide",
     "speed": "a follower without a linkage, and dynamics.rpm",
     "stiff": "cam.preload.stiffness",
+    "density": "part.density, and in a sweep no linkage",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
 
@@ -99,6 +100,9 @@ def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]
 
 
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
+
+
+MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "unbalance"
 
 
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
@@ -209,6 +213,12 @@ FIGURES: dict[str, Figure] = {
     OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", "stem"),
     PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", "arm"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
+    MASS: Figure("mass of a disc, kg", Kind.NUMBER, "least", "density", per="kg"),
+    ECCENTRICITY: Figure("distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", "density"),
+    INERTIA: Figure("moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", "density", "kg mm^2"),
+    UNBALANCE: Figure(
+        "mass of a disc times the distance of its centre of mass, kg mm", Kind.NUMBER, "least", "density", "kg mm"
+    ),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
     "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
@@ -284,6 +294,8 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "dynamics.guide" in given
         case "stiff":
             return "cam.preload.stiffness" in given
+        case "density":
+            return "part.density" in given
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
         case "stem":

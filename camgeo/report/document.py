@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from camgeo.curve.measures import Measures
+    from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
@@ -49,6 +50,7 @@ class Findings:
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     contours: Mapping[str, Measures] = field(default_factory=dict)
+    balances: tuple[Balance, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -71,6 +73,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
         "contour": _contours(recipe, found.contours),
+        **({"balance": [_balance(recipe, one) for one in found.balances]} if found.balances else {}),
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
         "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
@@ -192,6 +195,20 @@ def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any
     """Perimeter and area of the exact contour, of several by the names of their surfaces."""
     told = {name: _measures(recipe, one.perimeter, one.area) for name, one in measures.items()}
     return told.get("", told) or None
+
+
+def _balance(recipe: Recipe, disc: Balance) -> dict[str, Any]:
+    """Mass and its moments of a disc: kg and mm whatever the recipe's unit, but for the place of the centre."""
+    return {
+        **({"surface": disc.surface} if disc.surface else {}),
+        "mass_kg": disc.mass,
+        "centre": [value / recipe.mm for value in disc.centre],
+        "inertia_kg_mm2": disc.inertia,
+        "unbalance_kg_mm": disc.unbalance,
+        "unbalance_deg": disc.direction,
+        "error": disc.error,
+        **({"without": list(disc.without)} if disc.without else {}),
+    }
 
 
 def _measures(recipe: Recipe, perimeter: float | None, area: float | None) -> dict[str, float | None]:

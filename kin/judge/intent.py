@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.judge.milling import Milling
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Side
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
 
@@ -28,7 +28,6 @@ class SurfaceIntent:
     trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     follower  that runs on it, where the gauge is larger by a clearance, or has room for an interference; None for the
               gauge itself
-    contact   of the follower there, where its position does not count as the gauge's does: on the second of two discs
     """
 
     gauge: Follower
@@ -38,7 +37,6 @@ class SurfaceIntent:
     side: Side = 1
     trimmed: bool = False
     follower: Follower | None = None
-    contact: Contact[Guide, Touch] | None = None
 
 
 @dataclass(frozen=True)
@@ -90,6 +88,7 @@ class PartIntent:
     milling     how a program mills it
     linkage     that it drives; None for a plain follower
     closures    what is left between its surfaces
+    name        by which checks tell it from other discs on its shaft; empty where there is no other
     """
 
     surfaces: tuple[SurfaceIntent, ...]
@@ -104,11 +103,26 @@ class PartIntent:
     milling: Milling | None = None
     linkage: LinkageIntent | None = None
     closures: tuple[ClosureIntent, ...] = ()
+    name: str = ""
 
     @property
     def featured(self) -> bool:
         """Whether the part has more than a round bore."""
         return bool(self.holes or self.layers)
+
+
+@dataclass(frozen=True)
+class ShaftIntent:
+    """Discs on one shaft, in a file each or together in one.
+
+    parts     the discs, the lowest first; alone in a file each stands on z = 0
+    levels    height of the lower face of each in a file that holds all of them, mm
+    closures  what is left between surfaces of two of them
+    """
+
+    parts: tuple[PartIntent, ...]
+    levels: tuple[float, ...] = (0.0,)
+    closures: tuple[ClosureIntent, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,18 @@ from camgeo.recipe.export import Export
 from camgeo.recipe.figures import (
     AT_SPEED,
     CONTACT_TRAVEL,
+    ECCENTRICITY,
     FACE_WIDTH,
     HOLLOW_RADIUS,
+    INERTIA,
     JAM_MARGIN,
+    MASS,
     ON_RETURN,
     ON_RISE,
     PEAKS,
     PIVOT_CLEARANCE,
     ROLLER_SPEED,
+    UNBALANCE,
 )
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import output_slides
@@ -39,7 +43,7 @@ if TYPE_CHECKING:
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
-_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN)
+_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN, MASS, ECCENTRICITY, INERTIA, UNBALANCE)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
@@ -101,12 +105,13 @@ class Ask:
         was computed as it is.
         """
         timed = any(FIGURES[name].needs in {"speed", "guide"} for name in figures)
+        weighed = any(FIGURES[name].needs == "density" for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
             self.recipe,
             name="",
             about="",
-            part=Part(),
+            part=self.recipe.part if weighed else Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
             dynamics=self.recipe.dynamics if timed else None,
