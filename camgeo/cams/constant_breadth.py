@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
-from camgeo.cams.preload import PRELOAD, Preload, build_preload
+from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Preload, Undercut
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
-from camgeo.cams.preload import PRELOAD, Preload, build_preload
-from camgeo.cams.preloaded import preloaded
+from camgeo.cams.preload import PRELOAD, build_preload, preloaded
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace

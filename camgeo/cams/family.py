@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.cams.position import Position
-    from camgeo.cams.preload import Preload
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme, Figure
     from camgeo.curve.moving_frame import Displacement
@@ -226,6 +225,23 @@ class Advice(ABC):
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
         """Say how the follower comes to swing less."""
         return "a smaller swing"
+
+
+@dataclass(frozen=True)
+class Preload:
+    """What both contacts together overlap the metal by, mm, and the stiffness of each along its normal, N/m.
+
+    `stiffness` is None where no force is asked for.
+    """
+
+    interference: float
+    stiffness: tuple[float, float] | None = None
+
+    @property
+    def overlaps(self) -> tuple[float, float]:
+        """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
+        half = 0.5 * self.interference
+        return half, half
 
 
 class Linear(ABC):

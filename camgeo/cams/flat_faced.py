@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
-from camgeo.cams.preloaded import preloaded
+from camgeo.cams.preload import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
@@ -22,7 +22,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.cams.preload import Preload
+    from camgeo.cams.family import Preload
     from kin.law.contacts import Guide, Touch
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise

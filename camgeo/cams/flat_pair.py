@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
+from camgeo.cams.family import Cam, Circle, Family, Follower, Preload, Surface, Undercut
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
-from camgeo.cams.preload import Preload, build_preload
+from camgeo.cams.preload import build_preload
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Proof
+from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Preload, Proof
 from camgeo.cams.flat_faced import spread
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.cams.position import Position, SwingPosition
-from camgeo.cams.preload import PRELOAD, Preload
-from camgeo.cams.preloaded import preloaded
+from camgeo.cams.preload import PRELOAD, preloaded
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat

@@ -16,7 +16,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.preload import Preload
+    from camgeo.cams.family import Preload
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.dynamics.contact_forces import Elastic
