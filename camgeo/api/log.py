@@ -10,12 +10,11 @@ if TYPE_CHECKING:
     import logging
     from collections.abc import Callable, Iterable, Iterator
 
-    from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
     from kin.judge.check import Check
 
 
-def _log() -> logging.Logger | None:
+def heard() -> logging.Logger | None:
     """Logger of the library; None where `logging` was never imported, and nobody can have set it up."""
     if "logging" not in sys.modules:
         return None
@@ -30,7 +29,7 @@ def _log() -> logging.Logger | None:
 @contextmanager
 def unsaid() -> Iterator[None]:
     """Tell nothing meanwhile, where all of it is reported in another way."""
-    if (log := _log()) is None:
+    if (log := heard()) is None:
         yield
         return
     before, log.disabled = log.disabled, True
@@ -44,7 +43,7 @@ def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Cal
     """Give what a clock reports of each stage as it begins: the log hears of it, and who wants to know."""
 
     def tell(stage: str) -> None:
-        if log := _log():
+        if log := heard():
             log.debug("%s: %s", recipe.name, stage)
         if progress is not None:
             progress(stage)
@@ -54,18 +53,7 @@ def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Cal
 
 def tell_checks(name: str, checks: Iterable[Check]) -> None:
     """Tell of the checks that fail."""
-    if log := _log():
+    if log := heard():
         for check in checks:
             if not check.ok:
                 log.warning("%s: %s", name, check)
-
-
-def tell_report(report: Report) -> Report:
-    """Tell of the files that were written, of the checks that fail and of the verdict."""
-    name = report.recipe.name
-    if log := _log():
-        for file in report.files if report.path is not None else ():
-            log.info("%s: wrote %s", name, file.path)
-        tell_checks(name, report.checks)
-        log.info("%s: %s", name, "ok" if report.ok else "FAILED")
-    return report

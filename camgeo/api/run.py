@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
 from camgeo.api.loading import recipe_of
-from camgeo.api.log import staged, tell_report
+from camgeo.api.log import heard, staged, tell_checks
 from camgeo.api.report import Report
 from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
 from camgeo.common.terminal import escaped
@@ -51,7 +51,7 @@ def export(
         raise CallError(*faults)
     told = staged(recipe, progress)
     outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
-    return tell_report(Report(recipe, outcome.report, outcome.folder))
+    return _told(Report(recipe, outcome.report, outcome.folder))
 
 
 def check(
@@ -62,7 +62,7 @@ def check(
     called("progress", progress)
     is_a("second_opinion", second_opinion, bool, "a bool")
     outcome = pipeline.check(recipe, told=staged(recipe, progress), second_opinion=second_opinion)
-    return tell_report(Report(recipe, outcome.report))
+    return _told(Report(recipe, outcome.report))
 
 
 def verify(
@@ -103,7 +103,18 @@ def verify(
     within = None if within is None else within * recipe.mm
     unit = None if units is None else UNIT_MM[units]
     report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
-    return tell_report(Report(recipe, report, None, tuple(paths)))
+    return _told(Report(recipe, report, None, tuple(paths)))
+
+
+def _told(report: Report) -> Report:
+    """Tell the log of a report."""
+    name = report.recipe.name
+    if log := heard():
+        for file in report.files if report.path is not None else ():
+            log.info("%s: wrote %s", name, file.path)
+        tell_checks(name, report.checks)
+        log.info("%s: %s", name, "ok" if report.ok else "FAILED")
+    return report
 
 
 def _unlisted(kind: str) -> str:
