@@ -58,18 +58,34 @@ class Verify:
 
 
 @dataclass(frozen=True)
-class Recipe(Document):
-    """A recipe, checked as far as no geometry is needed; `mm` is the length of its unit."""
+class Order(Document):
+    """What any recipe says, of one cam or of a camshaft; `mm` is the length of its unit."""
 
     name: str
     about: str
     units: Length
     mm: float
     rotation: Literal["cw", "ccw"]
-    cam: Cam
-    part: Part
     export: Export
     verify: Verify
+
+    def field_of(self, request: FileRequest | None) -> str:
+        """Give the path of a request; that of the list for one that does not stand there."""
+        files = self.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def request_of(self, filename: str) -> FileRequest | None:
+        """Give the request whose file has this name, the first of all bodies' files, or None."""
+        files = self.export.files
+        return next((request for request in files if request.filename(self.name, files) == filename), None)
+
+
+@dataclass(frozen=True)
+class Recipe(Order):
+    """A recipe of a cam, checked as far as no geometry is needed."""
+
+    cam: Cam
+    part: Part
     linkage: Linkage | None = None
     dwell: DwellAsked | None = None
     sweep: Sweep | None = None
@@ -118,16 +134,6 @@ class Recipe(Document):
     def told_for(self, request: FileRequest) -> Recipe:
         """Give the recipe as one in the unit of a file."""
         return self.told_in(request.told_in(self.units))
-
-    def field_of(self, request: FileRequest | None) -> str:
-        """Give the path of a request; that of the list for one that does not stand there."""
-        files = self.export.files
-        return f"export.files[{files.index(request)}]" if request in files else "export.files"
-
-    def request_of(self, filename: str) -> FileRequest | None:
-        """Give the request whose file has this name, the first of all bodies' files, or None."""
-        files = self.export.files
-        return next((request for request in files if request.filename(self.name, files) == filename), None)
 
     def unstated(self, path: Path) -> float | None:
         """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
