@@ -395,7 +395,6 @@ WHERE_ONE_IS_ALL = {
     "camgeo/output/job.py": 2,
     "camgeo/output/second_opinion.py": 3,
     "camgeo/output/table.py": 1,
-    "camgeo/synthesis/intent.py": 1,
     "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
     "camgeo/sweep/study/margins.py": 1,
     "camgeo/sweep/search/cams.py": 1,  # support functions

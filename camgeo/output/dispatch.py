@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
@@ -78,22 +80,28 @@ SURFACES: dict[tuple[str, str | None], int] = {
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 
+DISCS: dict[tuple[str, str | None], int] = {("csv", "motion"): 2, ("csv", "contacts"): 2}
+"""How many discs on one shaft each form of a file is taught to hold, one where it does not stand here."""
 
-def demand_taught(job: Job, request: FileRequest) -> None:
-    """Raise RecipeErrors where a form of file is not taught as many surfaces as the cam has."""
-    count = len(job.design.exact.surfaces)
-    if count <= SURFACES.get((request.kind, request.as_), 1):
+
+def demand_taught(recipe: Recipe, design: Design, request: FileRequest) -> None:
+    """Raise RecipeErrors where a form of file is not taught as many surfaces or discs as the cam has."""
+    form, surfaces, discs = (request.kind, request.as_), len(design.exact.surfaces), len(design.discs)
+    if discs > DISCS.get(form, 1):
+        others, what = [other for other, most in DISCS.items() if most >= discs], f"{discs} discs"
+    elif discs == 1 and surfaces > SURFACES.get(form, 1):
+        others, what = [other for other, most in SURFACES.items() if most >= surfaces], f"{surfaces} surfaces"
+    else:
         return
-    form = request.kind if request.as_ is None else f"{request.kind} as {request.as_}"
-    forms = [form for form, most in SURFACES.items() if most >= count]
-    others = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in forms)
-    remedy = f"give {others}" if others else "leave it out"
-    raise job.recipe.error(job.field(request), f"{form} does not hold a cam of {count} surfaces", None, remedy)
+    held = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in others)
+    word = request.kind if request.as_ is None else f"{request.kind} as {request.as_}"
+    remedy = f"give {held}" if held else "leave it out"
+    raise recipe.error(recipe.field_of(request), f"{word} does not hold a cam of {what}", None, remedy)
 
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
-    demand_taught(job, request)
+    demand_taught(job.recipe, job.design, request)
     if request.parts == "all":
         from camgeo.output.mechanism import foresee_mechanism
 

@@ -21,6 +21,8 @@ def intent_of_file(
 
     Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.
     """
+    if len(design.discs) > 1:
+        raise recipe.error(field, f"files of a cam of {len(design.discs)} discs are not judged", None, "")
     if by is not None:
         from camgeo.machining.compensation import compensated
 

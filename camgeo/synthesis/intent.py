@@ -10,12 +10,22 @@ from camgeo.recipe.linkage import output_slides
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, Disc
     from kin.judge.intent import Limits, PartIntent
 
 
 def intended(recipe: Recipe, design: Design) -> PartIntent:
-    """What kin is given of the part: the follower with its law, and how the part is drawn."""
+    """What kin is given of a part that is one disc; raises ValueError for a cam of several."""
+    (intent,) = intents(recipe, design)
+    return intent
+
+
+def intents(recipe: Recipe, design: Design) -> tuple[PartIntent, ...]:
+    """What kin is given of each disc: the follower with its law, and how the part is drawn."""
+    return tuple(_intended(recipe, design, disc) for disc in design.discs)
+
+
+def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
     from kin.judge.intent import ClosureIntent, DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
     driven, asked, linkage = design.driven, recipe.dwell, None
@@ -31,12 +41,12 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
             one.surface.layer if one.surface.name else "",
             side=one.surface.side,
             trimmed=one.trimmed,
-            follower=exact.running[one.surface.name] if one.surface.name else None,
+            follower=exact.running.get(one.surface.name),
         )
-        for one in design.surfaces
+        for one in disc.surfaces
     )
-    if len(surfaces) > 1 and design.follower.closure:
-        pushes, stops = (surface.name for surface in surfaces)
+    if len(exact.surfaces) > 1 and design.follower.closure:
+        pushes, stops = (surface.name for surface in exact.surfaces)
         closures = (ClosureIntent(pushes, stops, design.follower.closure),)
     intent = PartIntent(
         surfaces=surfaces,
@@ -48,7 +58,6 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
         linkage=linkage,
         closures=closures,
     )
-    (disc,) = design.discs
     if recipe.part.plain or disc.body is None:
         return intent
     from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of

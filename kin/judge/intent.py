@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.judge.milling import Milling
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Side
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
 
@@ -27,7 +27,6 @@ class SurfaceIntent:
     side      on which the metal lies: 1 within the contour, -1 round it
     trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     follower  that runs on it, where the gauge is larger by a clearance; None for the gauge itself
-    contact   of the follower there, where its position does not count as the gauge's does: on the second of two discs
     """
 
     gauge: Follower
@@ -37,7 +36,6 @@ class SurfaceIntent:
     side: Side = 1
     trimmed: bool = False
     follower: Follower | None = None
-    contact: Contact[Guide, Touch] | None = None
 
 
 @dataclass(frozen=True)

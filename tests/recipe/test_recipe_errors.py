@@ -638,7 +638,6 @@ def test_cams(body: str, messages: list[str]) -> None:
 @pytest.mark.parametrize(
     ("lines", "place"),
     [
-        ("  conjugate: {radius: 11, distance: 120}\n", "4:3: cam.conjugate: conjugate cams"),
         ("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n", "4:1: camshaft: camshafts"),
     ],
 )
