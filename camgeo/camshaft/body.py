@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.curve.ring import steps_along
+from camgeo.files.triangulate import RegionError
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline, Polygon
 from kin.numeric.records import replace
@@ -19,9 +21,10 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.fit.cache import Fits
-    from camgeo.recipe.camshaft import Bar, CamshaftRecipe
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from kin.numeric.arrays import Array
 
+LOOKS = 4  # places on each arc at which it is looked at
 BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
 
 
@@ -48,7 +51,7 @@ def camshaft_mesh(
 ) -> tuple[Mesh, Bound, int]:
     """Closed, oriented mesh of the whole shaft, the bound of its contours (mm), and how many edges the lobes have.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where the mesh does not close.
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where it does not close.
     """
     from camgeo.files.prism import bore_polygon, rounded_contour
     from camgeo.files.solid import manifold, meshed, prism
@@ -57,11 +60,12 @@ def camshaft_mesh(
     fine = precision.fit_tolerance(tolerance, 1.01 * size)
 
     def cylinder(diameter: float, low: float, high: float) -> Any:  # noqa: ANN401 - manifold3d has no types
-        circle, _ = bore_polygon(diameter, fine)
-        return manifold(*prism(precision.rounded(circle)[0], low, high, precision))
+        polygon, _ = bore_polygon(diameter, fine)
+        return manifold(*prism(precision.rounded(polygon)[0], low, high, precision))
 
     shaft, *journals = recipe.bars
-    for height in {z for part in (*recipe.bars, *recipe.lobes) for z in (part.low, part.high)}:
+    placed = [(part.low, part.high) for part in recipe.bars] + [(part.low, part.high) for part in recipe.lobes]
+    for height in {z for ends in placed for z in ends}:
         precision.within("a height", abs(precision.number(height) - height), tolerance)
     body = cylinder(shaft.diameter, shaft.low, shaft.high)
     for bar in journals:
@@ -95,16 +99,34 @@ def camshaft_outlines(
         outline = _placed(fits(lobe).within("arcs", tolerance), lobe.at, recipe.rotation)
         bound, count = bound.wider(outline.bound), count + outline.count
         parts.append((outline, lobe.lobe.low, lobe.lobe.high))
-    parts += [(_round(bar), bar.low, bar.high) for bar in journals]
+    parts += [(circle(bar.diameter), bar.low, bar.high) for bar in journals]
     levels = sorted({shaft.low, shaft.high, *(z for _, low, high in parts for z in (low, high))})
     stretches = []
     for low, high in pairwise(levels):
-        own = next((outline for outline, a, b in parts if a <= low and high <= b), _round(shaft))
+        own = next((outline for outline, a, b in parts if a <= low and high <= b), circle(shaft.diameter))
         stretches.append((own, low, high))
+    for (below, _, z), (above, _, _) in pairwise(stretches):
+        least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
+        if max(least) < min(most):
+            told = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
+            raise RegionError(f"{told}; leave a gap between them, or give stl or 3mf")
     return stretches, bound, count
 
 
-def _round(bar: Bar) -> ArcSpline:
+def _reach(outline: ArcSpline) -> tuple[float, float]:
+    """Least and greatest distance from the shaft's axis, mm, of an outline's ends and places along its arcs."""
+    distance = np.hypot(*_along(outline).T)
+    return float(distance.min()), float(distance.max())
+
+
+def _along(outline: ArcSpline) -> Array:
+    """Points on every piece of an outline (n, 2)."""
+    starts, ends = outline.points, np.roll(outline.points, -1, axis=0)
+    pieces = zip(starts, ends, outline.bulges.tolist(), strict=True)
+    return np.concatenate([steps_along(start, end, bulge, LOOKS) for start, end, bulge in pieces])
+
+
+def circle(diameter: float) -> ArcSpline:
     """Circle about the shaft as two halves."""
-    radius = 0.5 * bar.diameter
+    radius = 0.5 * diameter
     return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))

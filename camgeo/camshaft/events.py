@@ -26,7 +26,7 @@ STEPS = 60  # of bisection, to rounding
 
 
 class Event(NamedTuple):
-    """One lobe's lift over a turn: shaft angles, degrees from 0 to below 360, at which it rises and falls past a lift."""
+    """When a lobe lifts its follower beyond a lift: shaft angles, degrees from 0 to below 360, and how long."""
 
     opens: float
     closes: float
@@ -35,7 +35,7 @@ class Event(NamedTuple):
 
 
 class Valves(NamedTuple):
-    """An engine's events at a lift, crank degrees: before (positive) and after dead centre; lobe separation in cam's."""
+    """An engine's events at a lift, crank degrees before or after dead centre; the lobes' separation in cam degrees."""
 
     intake_opens: float
     intake_closes: float
@@ -80,19 +80,19 @@ def centre(motion: Position, lift: float) -> float | None:
     return None if ends is None else 0.5 * sum(ends)
 
 
-def event(lobe: PlacedLobe, lift: float) -> Event | None:
-    """When a placed lobe lifts its follower beyond a lift; None where it does not do so once a turn."""
-    ends = crossings(lobe.design.motion, lift)
+def event(motion: Position, at: float, lift: float) -> Event | None:
+    """When a lobe turned by `at`, rad, lifts its follower beyond a lift; None where it does not do so once a turn."""
+    ends = crossings(motion, lift)
     if ends is None:
         return None
-    opens, closes = (math.degrees(end + lobe.at) for end in ends)
+    opens, closes = (math.degrees(end + at) for end in ends)
     middle = 0.5 * (opens + closes)
     return Event(opens % 360.0, closes % 360.0, middle % 360.0, closes - opens)
 
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
     """Events of a cylinder with an intake and an exhaust lobe; None without both."""
-    own = {lobe.lobe.valve: event(lobe, engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
+    own = {lobe.lobe.valve: lobe.event(engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
     intake, exhaust = own.get("intake"), own.get("exhaust")
     if intake is None or exhaust is None:
         return None

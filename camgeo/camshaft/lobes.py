@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import centre
+from camgeo.camshaft.events import centre, event
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.synthesis.design import designed
 from kin.judge.check import Check
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
+    from camgeo.camshaft.events import Event
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
     from camgeo.recipe.camshaft import CamshaftRecipe, Lobe
@@ -26,16 +27,23 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class PlacedLobe:
-    """A lobe, its exact design, and the angle by which its zero is turned, rad: counter-clockwise, as drawn for `cw`."""
+    """A lobe, its exact design, and the angle, rad, by which its zero is turned counter-clockwise as drawn for `cw`."""
 
     lobe: Lobe
     design: Design
     at: float
+    events: dict[float, Event | None] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def contour(self) -> Curve | None:
         """The contour to be made, before it is turned; None where a check forbids it."""
         return self.design.only_surface.contour
+
+    def event(self, lift: float) -> Event | None:
+        """When it lifts its follower beyond a lift, mm or rad; None where it does not do so once a turn."""
+        if lift not in self.events:
+            self.events[lift] = event(self.design.motion, self.at, lift)
+        return self.events[lift]
 
     def rows(self, shaft: Array, order: int) -> Array:
         """Lift above the lowest position, mm or rad, and derivatives by the shaft angle, at shaft angles (n,), rad."""
@@ -43,7 +51,7 @@ class PlacedLobe:
 
 
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
-    """Design each lobe, those of one recipe once; raises RecipeErrors as `designed` does, or for a lobe that is none."""
+    """Design each lobe, those of one recipe once; raises RecipeErrors as `designed` does, or for what is no lobe."""
     designs: dict[str, Design] = {}
     lobes = []
     for i, lobe in enumerate(recipe.lobes):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import CRANK, event, lifts, valves
+from camgeo.camshaft.events import CRANK, lifts, valves
 from camgeo.files.table import write_table
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def column(name: str) -> str:
 
 
 def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
-    """Write lifts at every degree of the shaft, in the recipe's unit or degrees; with an engine also the crank's angle."""
+    """Write lifts at every degree of the shaft, in the recipe's unit or degrees; of an engine also the crank angle."""
     angle = np.arange(0.0, 360.0 + STEP, STEP)
     heads, columns = ["shaft_deg"], [angle]
     if recipe.engine is not None:
@@ -50,7 +50,7 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
         heads += ["ivo_btdc", "ivc_abdc", "evo_bbdc", "evc_atdc", "overlap_crank_deg", "separation_cam_deg"]
     for number, lobe in enumerate(lobes, 1):
         lift = event_lift(recipe, lobe)
-        found = event(lobe, lift)
+        found = lobe.event(lift)
         told = [math.nan] * 4 if found is None else list(found)
         scale = math.degrees(1.0) if lobe.lobe.recipe.cam.arrangement.unit == "deg" else 1.0 / recipe.mm
         row = [number, math.degrees(lobe.at), *told, lift * scale]
@@ -69,5 +69,5 @@ def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:
     """Lift, mm or rad, at which a lobe's events are told: the engine's; of a machine's lobes half of the stroke."""
     if recipe.engine is not None and lobe.lobe.recipe.cam.arrangement.unit == "mm":
         return recipe.engine.lift
-    lift = lobe.design.motion.rows(np.arange(3600) * (2.0 * math.pi / 3600), 0)[0]
+    lift = lobe.design.motion.rows(np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False), 0)[0]
     return 0.5 * float(np.ptp(lift)) + float(lift.min())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import event, lifts
+from camgeo.camshaft.events import lifts
 from camgeo.camshaft.tables import event_lift
 from camgeo.files.markup import one_line
 
@@ -25,7 +25,7 @@ FONT = 'font-family="DejaVu Sans, Arial, sans-serif"'
 
 def timing(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
     """Return the diagram as an SVG text."""
-    return _wheel(recipe, lobes) if recipe.engine is not None else _bars(recipe, lobes)
+    return _wheel(recipe, lobes) if recipe.engine is not None else bars(recipe, lobes)
 
 
 def _text(x: float, y: float, words: str, *, size: float = 13.0, anchor: str = "start", colour: str = INK) -> str:
@@ -44,8 +44,8 @@ def _page(width: float, height: float, title: str, parts: Sequence[str]) -> str:
     return "\n".join([head, *parts, "</svg>"]) + "\n"
 
 
-def _bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
-    """A row for each lobe: its lift as an area over the shaft's angle, and the stretch beyond half its stroke as a bar."""
+def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
+    """Return a row for each lobe: its lift over the shaft's angle, and a bar where it is beyond the lift of events."""
     height = 64.0 + ROW * len(lobes) + 40.0
     span = WIDTH - LEFT - RIGHT
     base = 64.0 + ROW * len(lobes)
@@ -68,12 +68,11 @@ def _bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
             f'<polygon points="{LEFT:.2f},{foot:.2f} {points} {LEFT + span:.2f},{foot:.2f}" fill="{colour}" '
             f'fill-opacity="0.25" stroke="{colour}" stroke-width="1.5"/>'
         )
-        found = event(lobe, event_lift(recipe, lobe))
+        found = lobe.event(event_lift(recipe, lobe))
         for low, high in [] if found is None else _split(found.opens, found.duration):
             x = LEFT + span * low / 360.0
-            parts.append(
-                f'<rect x="{x:.2f}" y="{foot:.2f}" width="{span * (high - low) / 360.0:.2f}" height="5" fill="{colour}"/>'
-            )
+            width = span * (high - low) / 360.0
+            parts.append(f'<rect x="{x:.2f}" y="{foot:.2f}" width="{width:.2f}" height="5" fill="{colour}"/>')
         parts.append(_text(LEFT - 10.0, foot - 8.0, lobe.lobe.name, anchor="end"))
     return _page(WIDTH, height, f"{recipe.name}: timing", parts)
 
@@ -111,7 +110,7 @@ def _wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
         parts.append(
             f'<circle cx="{middle:g}" cy="{middle:g}" r="{radius:.2f}" fill="none" stroke="{FAINT}" stroke-width="1"/>'
         )
-        found = event(lobe, event_lift(recipe, lobe))
+        found = lobe.event(event_lift(recipe, lobe))
         if found is None:
             continue
         start, sweep = math.radians(found.opens), math.radians(found.duration)
@@ -123,17 +122,12 @@ def _wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
             f'stroke="{colour}" stroke-width="{min(0.6 * step, 14.0):.2f}"/>'
         )
         a = start + 0.5 * sweep
-        number_told = f"{lobe.lobe.cylinder or number + 1}"
-        parts.append(
-            _text(
-                middle + radius * math.sin(a),
-                middle - radius * math.cos(a) + 4.0,
-                number_told,
-                size=11.0,
-                anchor="middle",
-                colour=PAPER,
+        if lobe.lobe.cylinder is not None:
+            x, y = middle + radius * math.sin(a), middle - radius * math.cos(a)
+            size_told = min(11.0, 0.7 * step)
+            parts.append(
+                _text(x, y + 0.36 * size_told, f"{lobe.lobe.cylinder}", size=size_told, anchor="middle", colour=PAPER)
             )
-        )
     for k, (valve, words) in enumerate((("intake", "intake"), ("exhaust", "exhaust"), ("", "other lobe"))):
         if any(lobe.lobe.valve == valve for lobe in lobes):
             parts.append(f'<rect x="20" y="{650 + 20 * k}" width="14" height="12" fill="{COLOURS[valve]}"/>')

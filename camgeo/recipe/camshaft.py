@@ -216,11 +216,6 @@ SHAFT = Table(
 )
 
 
-def is_camshaft(source: Source) -> bool:
-    """Whether a text is the recipe of a camshaft."""
-    return isinstance(source.root, Mapping) and "camshaft" in entries(source.root)
-
-
 # --- reading ----------------------------------------------------------------------------------------------------------
 
 

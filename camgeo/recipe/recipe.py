@@ -23,11 +23,11 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
-from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import read_source
+from camgeo.schema.yaml_source import Mapping, entries, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.sweep import Sweep
     from camgeo.schema.change import Value
     from camgeo.schema.reader import Values
+    from camgeo.schema.yaml_source import Source
 
 ANGLES = 3600  # of a turn at which files are judged
 
@@ -153,7 +154,20 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
             raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
         notices = tuple(notice.without_place(unplaced) for notice in recipe.notices)
         return replace(recipe, notices=notices, unplaced=unplaced)
-    source = read_source(data, str(path))
+    return of_source(read_source(data, str(path)), path)
+
+
+def is_of_a_camshaft(source: Source) -> bool:
+    """Whether a text is the recipe of a camshaft, which has no cam of its own."""
+    return isinstance(source.root, Mapping) and "camshaft" in entries(source.root)
+
+
+def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
+    """Make the recipe of a text that was parsed; raises RecipeErrors."""
+    if is_of_a_camshaft(source):
+        mark = entries(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
+        remedy = "export, check and verify take it; give any other command the recipe of a lobe"
+        raise RecipeErrors([RecipeError(str(path), *mark, "camshaft", "a camshaft is no cam", None, remedy)])
     reader = Reader(source, READERS, RECIPE)
     values = read_values(reader)
     if "name" not in reader.marks:

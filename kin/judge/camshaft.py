@@ -85,8 +85,8 @@ class CamshaftIntent:
     def stretches(self) -> list[tuple[float, float, LobeIntent | BarIntent]]:
         """From below: from, to, and what is outermost there."""
         shaft, *journals = self.bars
-        levels = sorted({z for part in (shaft, *journals, *self.lobes) for z in (part.low, part.high)})
-        parts = [*self.lobes, *journals, shaft]
+        parts: list[LobeIntent | BarIntent] = [*self.lobes, *journals, shaft]
+        levels = sorted({z for part in parts for z in (part.low, part.high)})
         return [
             (low, high, next(part for part in parts if part.low <= low and high <= part.high))
             for low, high in pairwise(levels)
@@ -109,13 +109,13 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     Checks of a lobe are told by its name. Raises OSError as the file system does, ValueError for another suffix.
     """
     kind = kind_of(path)
-    heights = {part: _heights(low, high, part) for low, high, part in intent.stretches for part in [(low, high, part)]}
+    stretches = [(part, _heights(low, high, part)) for low, high, part in intent.stretches]
     try:
-        solid = read_solid(path, [z for part in heights.values() for z in part], units)
+        solid = read_solid(path, [z for _, heights in stretches for z in heights], units)
     except ReadError as error:
         unread = "readable" if error.reason in NOT_READ else "watertight"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
-    if len(solid.sections) < sum(map(len, heights.values())):
+    if len(solid.sections) < sum(len(heights) for _, heights in stretches):
         text = "the solid has no section where the camshaft has a lobe or a journal"
         return Verdict(kind, (about(failed("readable", text), path.name),))
     sections = _Sections(solid, intent.mirrored)
@@ -123,27 +123,30 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     checks = [at_most("watertight", len(solid.faults), 0, "faults", detail="; ".join(solid.faults))]
     checks.append(_ends(solid, intent))
     surfaces: list[SurfaceVerdict] = []
-    holes: list[Check] = []
-    for (_, _, part), levels in heights.items():
-        middle, *others = levels
+    rounds: dict[str, list[Check]] = {"bore": []}
+    for part, (middle, *others) in stretches:
         outline, *inner = sections.at(middle)
         bore = bore_check([chain.contour for chain in inner], intent.bore, intent.tolerance)
-        holes += [] if bore is None else [bore]
+        rounds["bore"] += [] if bore is None else [bore]
         if isinstance(part, BarIntent):
-            checks.append(
-                replace(round_check("journal", outline.contour, part.diameter, intent.tolerance), surface=part.name)
-            )
+            checked = round_check("journal", outline.contour, part.diameter, intent.tolerance)
+            rounds.setdefault(part.name, []).append(replace(checked, surface=part.name))
             continue
         surface, found = _lobe(outline, part, phi, solid.uneven)
-        found += [_same(sections.at(z)[0], part, z) for z in others]
+        found.append(_worst([_same(sections.at(z)[0], part, z) for z in others]))
         found.append(_position(solid, part))
         checks += [replace(check, surface=part.name) for check in found]
         surfaces.append(surface)
-    checks += sorted(holes, key=lambda check: check.value or np.inf)[-1:]
+    checks += [_worst(same) for same in rounds.values() if same]
     checks.append(_volume(solid, intent, surfaces))
     chains = tuple(surface.contour for surface in surfaces if surface.contour is not None)
     named = tuple(about(check, path.name) for check in checks)
     return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, chains, solid.uneven)
+
+
+def _worst(checks: Sequence[Check]) -> Check:
+    """One of several checks alike: one that fails, or that with the greatest figure."""
+    return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))
 
 
 def _heights(low: float, high: float, part: LobeIntent | BarIntent) -> list[float]:
