@@ -35,6 +35,7 @@ FLOORS = {
         pytest_plugin testing
         sweep
         api
+        camshaft
         output
         report.page
         assembly machining report
@@ -49,7 +50,7 @@ FLOORS = {
         common version
     """,
 }
-WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}
+WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep", "camgeo.camshaft"}
 # Modules of core rooms that stand for a wing, imported only when a recipe or a command asks for it.
 DOORS = {"camgeo.output.parts", "camgeo.output.mechanism", "camgeo.output.gcode", "camgeo.cli.study"}
 HEAVY = {

@@ -56,7 +56,9 @@ def camshaft_mesh(
     from camgeo.files.prism import bore_polygon, rounded_contour
     from camgeo.files.solid import manifold, meshed, prism
 
-    size = max([lobe.design.only_surface.surface.curve.size for lobe in lobes] + [bar.diameter for bar in recipe.bars])
+    size = max(
+        [lobe.contour.size for lobe in lobes if lobe.contour is not None] + [bar.diameter for bar in recipe.bars]
+    )
     fine = precision.fit_tolerance(tolerance, 1.01 * size)
 
     def cylinder(diameter: float, low: float, high: float) -> Any:  # noqa: ANN401 - manifold3d has no types

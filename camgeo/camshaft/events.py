@@ -12,12 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from camgeo.cams.position import Position
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import Engine
-    from kin.numeric.arrays import Array
 
 TURN = 2.0 * math.pi
 CRANK = 720.0  # degrees of one turn of the camshaft
@@ -90,13 +85,8 @@ def event(motion: Position, at: float, lift: float) -> Event | None:
     return Event(opens % 360.0, closes % 360.0, middle % 360.0, closes - opens)
 
 
-def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
-    """Events of a cylinder with an intake and an exhaust lobe; None without both."""
-    own = {lobe.lobe.valve: lobe.event(engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
-    intake, exhaust = own.get("intake"), own.get("exhaust")
-    if intake is None or exhaust is None:
-        return None
-    fires = math.degrees(engine.firing[cylinder])
+def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:
+    """Events of a cylinder that fires at a crank angle, degrees, by those of its two lobes."""
     # crank degrees after the cylinder's own firing dead centre; 360 is the dead centre of the overlap
     opens, closes = _crank(intake.opens, fires), _crank(intake.closes, fires)
     opened, closed = _crank(exhaust.opens, fires), _crank(exhaust.closes, fires)
@@ -120,8 +110,3 @@ def _crank(cam: float, fires: float) -> float:
 def _signed(crank: float) -> float:
     """The same angle from -360 to below 360."""
     return (crank + 360.0) % CRANK - 360.0
-
-
-def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
-    """Lift of each lobe, mm or rad, at shaft angles (n,), rad: (lobes, n)."""
-    return np.array([lobe.rows(shaft, 0)[0] for lobe in lobes])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import centre, event
+from camgeo.camshaft.events import centre, event, valves_of
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.synthesis.design import designed
@@ -15,10 +15,12 @@ from kin.judge.check import Check
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from camgeo.camshaft.events import Event
+    from collections.abc import Sequence
+
+    from camgeo.camshaft.events import Event, Valves
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.recipe.camshaft import CamshaftRecipe, Lobe
+    from camgeo.recipe.camshaft import CamshaftRecipe, Engine, Lobe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
@@ -80,6 +82,20 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
         told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
         raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
     return float(np.mod(recipe.engine.centre(lobe.cylinder, lobe.valve) - middle, TURN))
+
+
+def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
+    """Events of a cylinder with an intake and an exhaust lobe; None without both."""
+    own = {lobe.lobe.valve: lobe.event(engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
+    intake, exhaust = own.get("intake"), own.get("exhaust")
+    if intake is None or exhaust is None:
+        return None
+    return valves_of(intake, exhaust, math.degrees(engine.firing[cylinder]))
+
+
+def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
+    """Lift of each lobe, mm or rad, at shaft angles (n,), rad: (lobes, n)."""
+    return np.array([lobe.rows(shaft, 0)[0] for lobe in lobes])
 
 
 def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[Check]:

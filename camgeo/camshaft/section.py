@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.camshaft.events import CRANK, valves
+from camgeo.camshaft.events import CRANK
+from camgeo.camshaft.lobes import valves
 from camgeo.camshaft.tables import event_lift
 from camgeo.measures.balance import KG
 

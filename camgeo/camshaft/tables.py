@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import CRANK, lifts, valves
+from camgeo.camshaft.events import CRANK
+from camgeo.camshaft.lobes import lifts, valves
 from camgeo.files.table import write_table
 
 if TYPE_CHECKING:

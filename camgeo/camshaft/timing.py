@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import lifts
+from camgeo.camshaft.lobes import lifts
 from camgeo.camshaft.tables import event_lift
 from camgeo.files.markup import one_line
 

@@ -10,6 +10,7 @@ from camgeo.checks.declared import (
     CHECKS,
     CLEARANCE,
     COLLISION,
+    LAW,
     LEAST_BACKLASH,
     PRESSURE,
     RATIO,
@@ -19,6 +20,7 @@ from camgeo.checks.declared import (
 )
 from camgeo.recipe.figures import (
     AT_SPEED,
+    BACKLASH,
     BASE_RADIUS,
     DWELL,
     ECCENTRICITY,
@@ -64,7 +66,7 @@ if TYPE_CHECKING:
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
-_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE, COLLISION)}
+_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
 class Measured(NamedTuple):
@@ -364,9 +366,9 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     if name == "output-error":
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
-    if name == "backlash" and file.closures:
+    if name == BACKLASH and file.closures:
         return _greatest(_of_play(closure.play) for closure in file.closures)
-    if name == "backlash":
+    if name == BACKLASH:
         held = [
             one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash
         ]

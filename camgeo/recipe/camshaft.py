@@ -11,8 +11,7 @@ from camgeo.cams.lift_table import read_path
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import FILES, build_export, export_of
 from camgeo.recipe.keys import RECIPE, UNITS
-from camgeo.recipe.loading import load_silent
-from camgeo.recipe.recipe import ANGLES, Order, Verify
+from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length, mapping
 from camgeo.schema.json_schema import table_schema
@@ -33,7 +32,6 @@ MOST_LOBES = 64
 MOST_CYLINDERS = 16
 LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are told
 TURN = 2.0 * math.pi
-KINDS = ("disc", "constant-diameter")  # of cams that a lobe may be
 
 
 @dataclass(frozen=True)
@@ -342,13 +340,9 @@ def _cam(document: Document, name: str, field: str) -> Recipe:
     path = document.path.parent / name
     if not path.is_file():
         raise document.error(field, "no such file", f"'{name}'", f"give the path of a recipe from {path.parent}")
-    recipe = load_silent(path)
-    kind = recipe.kinds.get("cam", "")
-    remedy = f"give a recipe of kind {' or '.join(KINDS)} with one contour, followed from outside"
-    if kind not in KINDS:
-        raise document.error(field, f"a {kind} cam is no lobe of a camshaft", f"'{name}'", remedy)
+    recipe = read(file_bytes(path), path)
     if recipe.linkage is not None:
-        raise document.error(field, "a lobe drives no linkage", f"'{name}'", remedy)
+        raise document.error(field, "a lobe drives no linkage", f"'{name}'", "give a recipe without one")
     return recipe
 
 

@@ -41,7 +41,7 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density", "wanted"]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -64,6 +64,7 @@ NEEDS: dict[Needs, str] = {
     "stem": "a stem that a cam of kind disc works",
     "stem-face": "a flat face on a stem",
     "guide": "dynamics.guide",
+    "wanted": "cam.delta.law",
     "speed": "a follower without a linkage, and dynamics.rpm",
     "density": "part.density, and in a sweep no linkage",
 }
@@ -81,9 +82,10 @@ RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "p
 
 
 PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
+LAW_ERROR = "law-error"
 
 
-BACKLASH_LEFT = "least-backlash"
+BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
 
 
 FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
@@ -170,6 +172,7 @@ FIGURES: dict[str, Figure] = {
     VELOCITY_RATIO: Figure(
         "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, "least", "swings"
     ),
+    LAW_ERROR: Figure("greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", "wanted"),
     CONTACT_TRAVEL: Figure("how far the contact travels along the face", Kind.LENGTH, "least", "face"),
     FACE_WIDTH: Figure(
         "least width of a face, centred on the stem's axis, that the contact does not leave",
@@ -214,7 +217,7 @@ FIGURES: dict[str, Figure] = {
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
-    "backlash": _of_file(
+    BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
@@ -279,8 +282,8 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "linkage" not in given
         case "speed":
             return "linkage" not in given and "dynamics.rpm" in given
-        case "guide":
-            return "dynamics.guide" in given
+        case "guide" | "wanted":
+            return NEEDS[needs] in given
         case "density":
             return "part.density" in given
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":

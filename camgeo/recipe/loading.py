@@ -6,11 +6,9 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from camgeo.recipe.recipe import is_of_a_camshaft, load_text, of_source, read
-from camgeo.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
-from camgeo.schema.file_bytes import bytes_of
-from camgeo.schema.scalars import Complaint
-from camgeo.schema.yaml_source import MAX_BYTES, read_source
+from camgeo.recipe.recipe import file_bytes, is_of_a_camshaft, load_text, of_source, read
+from camgeo.schema.errors import DeprecatedKeyWarning
+from camgeo.schema.yaml_source import read_source
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -41,23 +39,14 @@ def announced(recipe: O) -> O:
 
 def load_silent(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file, whose `notices` are left to the caller; raises RecipeErrors as `load` does."""
-    return read(_bytes(path), path)
+    return read(file_bytes(path), path)
 
 
 def load_order(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
     """Read the recipe of a cam or of a camshaft, whichever the file holds; raises RecipeErrors as `load` does."""
-    source = read_source(_bytes(path), str(path))
+    source = read_source(file_bytes(path), str(path))
     if is_of_a_camshaft(source):
         from camgeo.recipe.camshaft import read_camshaft
 
         return read_camshaft(source, Path(path))
     return of_source(source, path)
-
-
-def _bytes(path: str | PathLike[str]) -> bytes:
-    if not str(path):
-        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
-    try:
-        return bytes_of(path, MAX_BYTES, "recipe")
-    except Complaint as complaint:
-        raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None

@@ -24,10 +24,11 @@ from camgeo.recipe.machining import Manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
 from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import Mapping, entries, read_source
+from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -75,10 +76,13 @@ class Order(Document):
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
+    def filenames(self, request: FileRequest) -> tuple[str, ...]:
+        """Name the files of a request that hold what the recipe is of."""
+        return (request.filename(self.name, self.export.files),)
+
     def request_of(self, filename: str) -> FileRequest | None:
-        """Give the request whose file has this name, the first of all bodies' files, or None."""
-        files = self.export.files
-        return next((request for request in files if request.filename(self.name, files) == filename), None)
+        """Give the request one of whose files has this name, the first of all bodies' files, or None."""
+        return next((request for request in self.export.files if filename in self.filenames(request)), None)
 
 
 @dataclass(frozen=True)
@@ -136,6 +140,10 @@ class Recipe(Order):
         """Give the recipe as one in the unit of a file."""
         return self.told_in(request.told_in(self.units))
 
+    def filenames(self, request: FileRequest) -> tuple[str, ...]:
+        """Name the files of a request that hold the cam: one, or one for each of its discs."""
+        return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
+
     def unstated(self, path: Path) -> float | None:
         """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
         request = self.request_of(path.name) if path.suffix == ".stl" else None
@@ -188,6 +196,16 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         kinds=reader.kinds,
     )
     return _built(values, document)
+
+
+def file_bytes(path: str | PathLike[str]) -> bytes:
+    """Read a recipe's file; raises RecipeErrors where there is none, or it is no recipe's."""
+    if not str(path):
+        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
+    try:
+        return bytes_of(path, MAX_BYTES, "recipe")
+    except Complaint as complaint:
+        raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
 
 
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:

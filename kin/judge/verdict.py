@@ -132,5 +132,5 @@ class Verdict(OfSurfaces):
 
     @property
     def pieces(self) -> int | None:
-        """Of the first surface, as the file counts them."""
-        return self.surface.pieces
+        """Of all surfaces, as the file counts them; None where it cannot be read."""
+        return sum(surface.pieces or 0 for surface in self.surfaces) or None

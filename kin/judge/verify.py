@@ -220,14 +220,14 @@ def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[Par
     found = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
         file = _solid_read(solid, part, limits, path, None)
-        above = f"heights are counted from {level:.9g} mm, where it belongs"
+        above = f"heights are counted from z = {level:.9g} mm, where {part.name} belongs" if level else ""
         checks = [replace(check, surface=part.name, detail=_joined(check.detail, above)) for check in file.checks]
         found.append((part, file._replace(checks=checks)))
     return found
 
 
 def _joined(detail: str, more: str) -> str:
-    return f"{detail}; {more}" if "z = " in detail or detail.startswith("z ") else detail
+    return f"{detail}; {more}" if more and ("z = " in detail or detail.startswith("z ")) else detail
 
 
 def _sought(part: PartIntent) -> Sought:
