@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from camgeo.schema.change import Value
 
     RecipeSource: TypeAlias = Recipe | str | PathLike[str]
-    AnySource: TypeAlias = RecipeSource | CamshaftRecipe
+    OrderSource: TypeAlias = RecipeSource | CamshaftRecipe
 
 NAME = "recipe"  # of what has no file
 
@@ -37,7 +37,7 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     return announced(load_silent(path_of("source", source)))
 
 
-def order_of(recipe: AnySource) -> Recipe | CamshaftRecipe:
+def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:
     """Give a recipe of a cam or of a camshaft, read from its file where its path is given; raises as `load` does."""
     if isinstance(recipe, (str, PathLike)):
         return announced(load_order(path_of("recipe", recipe)))

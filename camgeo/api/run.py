@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    from camgeo.api.loading import AnySource
+    from camgeo.api.loading import OrderSource
     from camgeo.common.units import Units
 
 
 def export(
-    recipe: AnySource,
+    recipe: OrderSource,
     out: str | PathLike[str],
     *,
     only: Sequence[str] = (),
@@ -54,14 +54,15 @@ def export(
     if isinstance(recipe, Recipe):
         outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
     else:
-        from camgeo.camshaft import pipeline as wing
+        from camgeo.api import camshaft
 
-        _demand_no_second(second_opinion)
-        outcome = wing.export(recipe, folder, only=only, progress=told)
+        outcome = camshaft.made(recipe, folder, only, told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(recipe: AnySource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False) -> Report:
+def check(
+    recipe: OrderSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
+) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
     recipe = order_of(recipe)
     called("progress", progress)
@@ -70,15 +71,14 @@ def check(recipe: AnySource, *, progress: Callable[[str], None] | None = None, s
     if isinstance(recipe, Recipe):
         outcome = pipeline.check(recipe, told=told, second_opinion=second_opinion)
     else:
-        from camgeo.camshaft import pipeline as wing
+        from camgeo.api import camshaft
 
-        _demand_no_second(second_opinion)
-        outcome = wing.check(recipe, progress=told)
+        outcome = camshaft.made(recipe, None, (), told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report))
 
 
 def verify(
-    recipe: AnySource,
+    recipe: OrderSource,
     file: str | PathLike[str],
     *files: str | PathLike[str],
     tolerance: float | None = None,
@@ -117,16 +117,10 @@ def verify(
     if isinstance(recipe, Recipe):
         report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
     else:
-        from camgeo.camshaft import pipeline as wing
+        from camgeo.api import camshaft
 
-        _demand_no_second(second_opinion)
-        report = wing.judged(recipe, paths, tolerance=within, units=unit)
+        report = camshaft.judged(recipe, paths, within, unit, second_opinion=second_opinion)
     return _told(Report(recipe, report, None, tuple(paths)))
-
-
-def _demand_no_second(second_opinion: bool) -> None:
-    if second_opinion:
-        raise CallError("second_opinion asks of files of one cam: leave it out for a camshaft")
 
 
 def _told(report: Report) -> Report:
