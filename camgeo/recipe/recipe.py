@@ -28,7 +28,7 @@ from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, read_source
+from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, keys, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def is_of_a_camshaft(source: Source) -> bool:
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
     """Make the recipe of a text that was parsed; raises RecipeErrors."""
     if is_of_a_camshaft(source):
-        mark = entries(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
+        mark = keys(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
         remedy = "export, check and verify take it; give any other command the recipe of a lobe"
         raise RecipeErrors([RecipeError(str(path), *mark, "camshaft", "a camshaft is no cam", None, remedy)])
     reader = Reader(source, READERS, RECIPE)
