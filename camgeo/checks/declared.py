@@ -166,6 +166,12 @@ def _program(_: Scene, file: FileRequest) -> bool:
     return file.kind == "gcode"
 
 
+def _pocketed(scene: Scene, file: FileRequest) -> bool:
+    """Of a program that mills between two surfaces that one touch runs on."""
+    follower = scene.follower
+    return file.kind == "gcode" and follower.arrangement.contacts < len(follower.contacts)
+
+
 def _reached(scene: Scene, file: FileRequest) -> bool:
     asked = scene.recipe.manufacture
     drawn = file.kind == "dxf" and file.compensation is None and asked is not None and asked.layer
@@ -355,6 +361,7 @@ CUTTER = Declared("cutter", ("mm",), of_file=_program)
 ARCS = Declared("arcs", ("mm",), of_file=_program)
 RAPID = Declared("rapid", ("", "faults"), of_file=_program)
 DEPTH = Declared("depth", ("mm",), of_file=_program)
+FLOOR = Declared("floor", ("mm",), of_file=_pocketed)
 DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
 ENTRY = Declared("entry", ("deg",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
 GOUGE = Declared("gouge", ("mm",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)

@@ -83,7 +83,7 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("stl", None): 2,
     ("3mf", None): 2,
     ("glb", None): 2,
-    ("gcode", None): 1,
+    ("gcode", None): 2,
     ("csv", "motion"): 2,
     ("csv", "contacts"): 2,
     ("csv", "polar"): 1,

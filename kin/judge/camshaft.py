@@ -141,7 +141,7 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     checks.append(_volume(solid, intent, surfaces))
     chains = tuple(surface.contour for surface in surfaces if surface.contour is not None)
     named = tuple(about(check, path.name) for check in checks)
-    return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, chains, solid.uneven)
+    return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, (chains,), solid.uneven)
 
 
 def _worst(checks: Sequence[Check]) -> Check:

@@ -401,7 +401,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
         kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
         assert {file.kind for file in recipe.export.files} - {"gcode"} == kinds
     files = [file for recipe in recipes.values() for file in recipe.export.files]
-    assert {file.as_ for file in files} == {"arcs", "polyline", "spline", "motion", None}
+    assert {file.as_ for file in files} == {"arcs", "polyline", "spline", "motion", "trace", None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
     assert {recipe.units for recipe in recipes.values()} == {"mm", "inch"}
     assert {recipe.rotation for recipe in recipes.values()} == {"cw", "ccw"}
@@ -727,10 +727,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
                     "2:14: manufacture.cutter: missing; give a length above 0 in mm: diameter of the cutter that mills "
                     "the contour"
                 ),
-                (
-                    "2:15: manufacture.diameter: unknown key; the keys here are cutter, feed, plunge, spindle, "
-                    "depth_of_cut, safe_height, lead_in, direction, allowance, start, holes, unreached, layer and wheel"
-                ),
+                "2:15: manufacture.diameter: unknown key; it belongs under follower of kind flat",
                 "2:39: manufacture.direction: not one of the choices, given 'down'; give climb or conventional",
             ],
         ),
