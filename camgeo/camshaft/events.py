@@ -9,15 +9,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
+from camgeo.measures.lobe import EventError, event_of
 
 if TYPE_CHECKING:
-    from camgeo.cams.position import Position
+    from camgeo.cams.family import ExactCam
 
-TURN = 2.0 * math.pi
 CRANK = 720.0  # degrees of one turn of the camshaft
-LOOKS = 3600  # shaft angles at which crossings are looked for
-STEPS = 60  # of bisection, to rounding
 
 
 class Event(NamedTuple):
@@ -40,49 +37,14 @@ class Valves(NamedTuple):
     separation: float
 
 
-def crossings(motion: Position, lift: float) -> tuple[float, float] | None:
-    """Shaft angles, rad, at which a follower passes a lift on its rise and then on its return.
-
-    None where it does not do so exactly once each; both are in [0, 2 turns), the return after the rise.
-    """
-    angle = np.arange(LOOKS) * TURN / LOOKS
-    above = motion.rows(angle, 0)[0] > lift
-    rises, falls = np.flatnonzero(~above & np.roll(above, -1)), np.flatnonzero(above & ~np.roll(above, -1))
-    if len(rises) != 1 or len(falls) != 1:
-        return None
-    step = TURN / LOOKS
-    up = _settled(motion, lift, float(angle[rises[0]]), step, sign=1.0)
-    down = _settled(motion, lift, float(angle[falls[0]]), step, sign=-1.0)
-    return up, down if down > up else down + TURN
-
-
-def _settled(motion: Position, lift: float, low: float, step: float, *, sign: float) -> float:
-    """Bisect for the place where a rising (sign 1) or falling follower passes the lift."""
-    high = low + step
-    for _ in range(STEPS):
-        middle = 0.5 * (low + high)
-        value = float(motion.rows(np.array([middle % TURN]), 0)[0, 0])
-        if sign * (value - lift) > 0.0:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
-
-
-def centre(motion: Position, lift: float) -> float | None:
-    """Shaft angle, rad, midway between the two crossings of a lift; None where there are not two."""
-    ends = crossings(motion, lift)
-    return None if ends is None else 0.5 * sum(ends)
-
-
-def event(motion: Position, at: float, lift: float) -> Event | None:
+def event(exact: ExactCam, at: float, lift: float) -> Event | None:
     """When a lobe turned by `at`, rad, lifts its follower beyond a lift; None where it does not do so once a turn."""
-    ends = crossings(motion, lift)
-    if ends is None:
+    try:
+        crossed = event_of(exact, lift)
+    except EventError:
         return None
-    opens, closes = (math.degrees(end + at) for end in ends)
-    middle = 0.5 * (opens + closes)
-    return Event(opens % 360.0, closes % 360.0, middle % 360.0, closes - opens)
+    opens, closes = (math.degrees(angle + at) for angle in (crossed.opening, crossed.closing))
+    return Event(opens % 360.0, closes % 360.0, 0.5 * (opens + closes) % 360.0, closes - opens)
 
 
 def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:

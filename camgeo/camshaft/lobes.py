@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import centre, event, valves_of
+from camgeo.camshaft.events import event, valves_of
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.synthesis.design import designed
@@ -44,7 +44,7 @@ class PlacedLobe:
     def event(self, lift: float) -> Event | None:
         """When it lifts its follower beyond a lift, mm or rad; None where it does not do so once a turn."""
         if lift not in self.events:
-            self.events[lift] = event(self.design.motion, self.at, lift)
+            self.events[lift] = event(self.design.exact, self.at, lift)
         return self.events[lift]
 
     def rows(self, shaft: Array, order: int) -> Array:
@@ -70,18 +70,21 @@ def _demand_one_outside(recipe: CamshaftRecipe, design: Design, index: int) -> N
     if len(design.exact.surfaces) != 1 or any(surface.side < 0 for surface in design.exact.surfaces):
         remedy = "give a cam with one contour, followed from outside"
         raise recipe.error(f"camshaft.lobes[{index}].recipe", "a ring, a groove or a pair is no lobe", None, remedy)
+    if len(design.follower.contacts) > 1 and math.isfinite(design.follower.pivot):
+        remedy = "give a cam with a follower on a stem, or one that touches it once"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", "two contacts on one arm are no lobe's", None, remedy)
 
 
 def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> float:
     """Angle by which a lobe's zero is turned, rad from 0 to below a turn: as given, or so that its centre is right."""
     if lobe.at is not None or recipe.engine is None or lobe.cylinder is None:
         return float(np.mod(lobe.at or 0.0, TURN))
-    middle = centre(design.motion, recipe.engine.lift)
-    if middle is None:
+    unturned = event(design.exact, 0.0, recipe.engine.lift)
+    if unturned is None:
         remedy = "give a camshaft.engine.lift that each lobe crosses once on its rise and once on its return"
         told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
         raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
-    return float(np.mod(recipe.engine.centre(lobe.cylinder, lobe.valve) - middle, TURN))
+    return float(np.mod(recipe.engine.centre(lobe.cylinder, lobe.valve) - math.radians(unturned.centre), TURN))
 
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:

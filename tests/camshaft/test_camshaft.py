@@ -14,6 +14,7 @@ import camgeo
 from camgeo.cli.main import main
 from kin.judge.camshaft import verify_camshaft
 
+RECIPES = Path(__file__).parents[2] / "recipes"
 INTAKE = """\
 cam:
   kind: disc
@@ -289,6 +290,27 @@ def test_a_shaft_as_thick_as_a_lobe_fails(tmp_path: Path) -> None:
     report = camgeo.check(path)
     assert failing(report) == {"shaft, intake"}
     assert json.loads(report.to_json())["files"] == []
+
+
+@pytest.mark.parametrize(
+    ("recipe", "message"),
+    [("w-booth", "two contacts on one arm are no lobe's"), ("disc-ring", "a ring, a groove or a pair is no lobe")],
+)
+def test_what_is_no_lobe(tmp_path: Path, recipe: str, message: str) -> None:
+    path = shaft(tmp_path, f"recipe: {RECIPES / recipe}.yaml, at: 0, z: 30, length: 9")
+    with pytest.raises(camgeo.RecipeErrors, match=message):
+        camgeo.check(path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["four-cylinder", "packaging"])
+def test_shipped_camshafts(tmp_path: Path, name: str) -> None:
+    report = camgeo.export(RECIPES / "camshafts" / f"{name}.yaml", tmp_path)
+    assert report.ok
+    assert report.path is not None
+    mesh = trimesh.load(report.path / f"{name}.stl")
+    assert mesh.is_watertight
+    assert mesh.body_count == 1
 
 
 def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
