@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
+from camgeo.common.rounding import upward
 from camgeo.schema.fields import Field, Kind
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
@@ -222,9 +223,30 @@ class Advice(ABC):
         """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
         return ""
 
+    def wider_face(self, width: float, mm: float) -> str:  # noqa: ARG002 - a round tappet's has lengths of its own
+        """Say which face has a width, in the recipe's unit."""
+        return f"a follower.width of {upward(width)}"
+
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
         """Say how the follower comes to swing less."""
         return "a smaller swing"
+
+
+@dataclass(frozen=True)
+class Preload:
+    """What both contacts together overlap the metal by, mm, and the stiffness of each along its normal, N/m.
+
+    `stiffness` is None where no force is asked for.
+    """
+
+    interference: float
+    stiffness: tuple[float, float] | None = None
+
+    @property
+    def overlaps(self) -> tuple[float, float]:
+        """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
+        half = 0.5 * self.interference
+        return half, half
 
 
 class Linear(ABC):
@@ -340,6 +362,11 @@ class ExactCam(ABC):
     def free(self) -> bool:
         """Whether nothing undercuts it, whatever the motion: a parallel outside a convex surface."""
         return False
+
+    @property
+    def preload(self) -> Preload | None:
+        """The interference that its contacts have, None of those that have none."""
+        return None
 
     @property
     def plate(self) -> Lift | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
+from camgeo.cams.preload import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
@@ -21,6 +22,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from camgeo.cams.family import Preload
     from kin.law.contacts import Guide, Touch
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
@@ -34,12 +36,21 @@ STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however shor
 
 @dataclass(frozen=True)
 class SizeAdvice(Advice):
-    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius."""
+    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius.
+
+    `beyond` is as of the cam, for a round tappet.
+    """
 
     size: str = "base radius"
     share: float = 1.0
     beside: str = ""
+    beyond: float = 0.0
     free: str = "have no undercut"
+
+    def wider_face(self, width: float, mm: float) -> str:
+        """The width, or the diameter of a round tappet that has it at the lobe's farther edge."""
+        across = upward(math.hypot(width, 2.0 * self.beyond / mm))
+        return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
@@ -61,6 +72,7 @@ class FlatFacedCam(Cam):
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
+    preload: Preload | None
 
     @property
     def arrangement(self) -> Arrangement:
@@ -76,9 +88,9 @@ class FlatFacedCam(Cam):
     def lift(self) -> Lift:
         """Distance of the face from the shaft over the shaft angle."""
 
-    def exact(self, *, framed: bool = False) -> ExactLifted:
+    def exact(self, *, framed: bool = False) -> ExactCam:
         """By its support function."""
-        return ExactLifted(self, self.lift(), framed)
+        return preloaded(ExactLifted(self, self.lift(), framed), self.preload)
 
     def joints(self) -> tuple[Joint, ...]:
         """Where derivatives of the motion that a recipe gives jump."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import starmap
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import (
     CHECKS,
@@ -18,7 +18,10 @@ from camgeo.checks.declared import (
     TRAVEL,
     WALL,
 )
+from camgeo.measures.lobe import of_lobe
+from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import (
+    AT_LIFT,
     AT_SPEED,
     BACKLASH,
     BASE_RADIUS,
@@ -37,6 +40,8 @@ from camgeo.recipe.figures import (
     PITCH_RADIUS,
     PIVOT,
     PIVOT_CLEARANCE,
+    PRELOAD_GREATEST,
+    PRELOAD_LEAST,
     RADIUS,
     ROLLER_SPEED,
     SIZE,
@@ -63,23 +68,11 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
+_ABRUPT = "the motion changes too abruptly to be resolved"
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
 _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
-
-
-class Measured(NamedTuple):
-    """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place.
-
-    `surface` is the name of the one that it is of, the worst of several; empty where the cam has one.
-    """
-
-    value: float | None
-    unit: str
-    at_deg: float | None = None
-    detail: str = ""
-    surface: str = ""
 
 
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
@@ -252,6 +245,26 @@ def _pivot(_: Recipe, design: Design) -> Measured:
     return Measured(design.follower.pivot, "mm")
 
 
+def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
+    """Least (0) or greatest (1) force of a preload."""
+
+    def measured(_: Recipe, design: Design) -> Measured:
+        from camgeo.measures.forces import preload_force
+        from kin.numeric.monotone import RoughError
+
+        unit = "N m" if design.motion.unit == "deg" else "N"
+        preload = design.exact.preload
+        if preload is None or preload.stiffness is None:
+            return Measured(None, unit, detail="the preload has no stiffness")
+        try:
+            value, at_deg = preload_force(design, preload)[rank]
+        except RoughError:
+            return Measured(None, unit, detail=_ABRUPT)
+        return Measured(value, unit, at_deg)
+
+    return measured
+
+
 def _of_mass(value: Callable[[Balance], float], unit: str) -> Callable[[Recipe, Design], Measured]:
     """Make the measure of the discs' balance: the greatest of them."""
 
@@ -281,10 +294,13 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ROLLER_SPEED: _roller_speed,
     FACE_WIDTH: _face_width,
     JAM_MARGIN: _jam_margin,
+    PRELOAD_LEAST: _of_preload(0),
+    PRELOAD_GREATEST: _of_preload(1),
     MASS: _of_mass(lambda disc: disc.mass, "kg"),
     ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
     INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
     UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
+    **{name: of_lobe(name) for name in AT_LIFT},
 }
 
 
@@ -303,8 +319,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
-        why = "the motion changes too abruptly to be resolved"
-        return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
+        return {name: Measured(None, unit + FIGURES[name].per, detail=_ABRUPT) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
         row = pieces(made, _ORDERS[name])

@@ -201,8 +201,6 @@ def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult
 def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
     from camgeo.report.page.content import content
 
-    if len(design.discs) > 1:
-        raise recipe.error("export.files", f"a page does not show a cam of {len(design.discs)} discs", None, "")
     with clock.stage("page"):
         return content(recipe, design, [file for file in found.files if file.shows_cam])
 
@@ -230,6 +228,12 @@ def _findings(
         with clock.stage("dynamics"):
             train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
+    preload = None
+    if design.exact.preload is not None:
+        from camgeo.measures.forces import preload_section
+
+        with clock.stage("forces"):
+            preload = preload_section(recipe, design)
     if recipe.limits:
         from camgeo.measures.limits import limit_checks
 
@@ -251,6 +255,7 @@ def _findings(
         design.follower.name,
         linkage=linkage,
         dynamics=None if train is None else train.section,
+        preload=preload,
         remarks=remarks,
         joints=design.exact.joints,
         contours={surface.name: measures(contour) for surface, contour in design.contours},

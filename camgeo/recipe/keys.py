@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM
-from camgeo.recipe.cam import CAM, CAMS, check_cam
+from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.dynamics import DYNAMICS, check_train
 from camgeo.recipe.export import EXPORT, check_files
@@ -14,6 +14,7 @@ from camgeo.recipe.figures import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance
 from camgeo.recipe.part import PART, check_part
+from camgeo.recipe.preload import check_preload
 from camgeo.recipe.sweep import SWEEP, check_sweep
 from camgeo.recipe.track import check_track
 from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
@@ -134,10 +135,12 @@ def _check(values: Values, reader: Reader) -> None:
     Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say,
     as that fault is noted already.
     """
+    check_tappet(values, reader)
     check_cam(values.get("cam", {}), reader)
     check_linkage(values, reader)
     check_part(values.get("part", {}), reader)
     check_track(values, reader)
+    check_preload(values, reader)
     check_discs(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)
