@@ -38,6 +38,7 @@ SHARE = 0.99  # of the tolerance that straight joins may take, the rest being fo
 TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
 BELOW = 0.95  # of the largest wheel, with which rows need not be too close
 COARSEST, FINEST = 10.0, 1e-3  # degrees
+NOTHING = 1e-13  # of a direction or of the size: rounding about 0
 DIGITS = 5e-12  # of a length as a table has it
 
 
@@ -77,12 +78,14 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
     head = [f"{recipe.name}: {{}}; c_deg: direction of its centre from the shaft, as the part is drawn"]
     if request.as_ == "lift":
         zero = _zero(path)
-        rows = [degrees, _closed((distance - zero) / recipe.mm)]
+        lift = np.where(np.abs(distance - zero) < NOTHING * far, 0.0, distance - zero)
+        rows = [degrees, _closed(lift / recipe.mm)]
         columns: tuple[str, ...] = ("c_deg", f"lift_{unit}")
         head[0] = head[0].format(f"lift of a roller {length} across on a stem through the shaft")
         head.append(f"at lift 0 its centre is {_length(zero, recipe)} from the shaft")
     else:
-        normal = np.mod(np.degrees(np.arctan2(turned * at.normal[:, 1], at.normal[:, 0])), 360.0)
+        outward = np.where(np.abs(at.normal) < NOTHING, 0.0, at.normal)
+        normal = np.mod(np.degrees(np.arctan2(turned * outward[:, 1], outward[:, 0])), 360.0)
         rows = [degrees, _closed(distance / recipe.mm), _closed(np.where(normal < 360.0, normal, 0.0))]
         columns = ("c_deg", f"x_{unit}", "normal_deg")
         head[0] = head[0].format(f"places of a grinding wheel {length} across")

@@ -159,8 +159,8 @@ COMPENSATION = (
 
 def check_cutter(reader: Reader) -> None:
     """Note a part that is to be milled without a cutter: of a grinder the wheel alone is given."""
-    given = [path for path in reader.marks if path.startswith("manufacture.")]
-    if "manufacture" in reader.marks and "manufacture.cutter" not in given and given != ["manufacture.wheel"]:
+    milled = any(f"manufacture.{field.name}" in reader.marks for field in MANUFACTURE.fields if field.name != "wheel")
+    if milled and "manufacture.cutter" not in reader.marks:
         field = MANUFACTURE.field("cutter")
         remedy = f"{reader.wanted(field)}: {field.about}"
         reader.fault(reader.marks["manufacture"], "manufacture.cutter", "missing", None, remedy)

@@ -142,7 +142,7 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     if file.units is not None:
         named = (name for name, mm in UNIT_MM.items() if math.isclose(mm, file.units, rel_tol=1e-6))
         entry["units"] = next(named, f"{file.units:.9g} mm")
-    if file.request.kind in NO_CONTOUR and not file.request.ground:
+    if file.request.kind in NO_CONTOUR and not file.surfaces:
         return entry
     mm = recipe.mm
     if file.body != "cam":
