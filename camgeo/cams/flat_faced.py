@@ -41,7 +41,7 @@ class SizeAdvice(Advice):
     beside: str = ""
     free: str = "have no undercut"
 
-    def larger(self, by: float, unit: str = "") -> str:
+    def enlarged(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
         if by == 0.0:  # a radius that is 0 needs no more than not to be
             return f"a larger {self.size}{self.beside}"
@@ -49,11 +49,11 @@ class SizeAdvice(Advice):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A larger cam."""
-        return f"{self.larger(free_at / mm)} would {self.free}"
+        return f"{self.enlarged(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """A larger cam."""
-        return self.larger(limit - value, unit)
+        return self.enlarged(limit - value, unit)
 
 
 class FlatFacedCam(Cam):
