@@ -153,6 +153,8 @@ def _size(cam: Values, reader: Reader) -> None:
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
         if error.field.endswith(".pivot"):
             remedy = "leave it out, or give base_radius in place of sizing"
+        if path.startswith("cam.conjugate"):  # which says what would do
+            remedy = "or give base_radius instead"
         reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
 
 

@@ -136,6 +136,8 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
             return None
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
+    if made.surface and not of:
+        of = f" on {made.surface}"
     told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
     found = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
     if found is not None:
