@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class DiscCam(GuidedCam):
-    """Size and motion of a disc cam."""
+    """Size and motion of a disc cam.
+
+    `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a straight face.
+    """
 
     kind: ClassVar[str] = "disc"
     base_radius: float
@@ -35,6 +38,7 @@ class DiscCam(GuidedCam):
     motion: MotionAsked
     undercut: Undercut
     side: Side = 1
+    beyond: float = 0.0
     holding: Holding = Holding()
 
     @property
@@ -89,7 +93,9 @@ class DiscCam(GuidedCam):
         larger, trims = self.holding.larger, self.holding.trims
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else self.holding.beside
-            return SizeAdvice(beside=beside, free="be free of it", larger=larger, less_steep=SMALLER_STROKE)
+            return SizeAdvice(
+                beside=beside, beyond=self.beyond, free="be free of it", larger=larger, less_steep=SMALLER_STROKE
+            )
         return RoundAdvice(self, larger=larger, less_steep=SMALLER_STROKE, radius_field=self.radius_field, trims=trims)
 
     @property

@@ -65,7 +65,7 @@ def balances(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
     for disc in design.discs:
         if disc.body is None or not disc.contours or (len(disc.contours) > 1 and disc.body.pocket is None):
             continue
-        names = " and ".join(surface.name for surface, _ in disc.contours) if len(design.discs) > 1 else ""
+        names = disc.name if len(design.discs) > 1 else ""
         found.append(replace(_balance(disc, disc.body, density * KG, turned), surface=names))
     return tuple(found)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.remedies import Missed, of_limit
-from camgeo.measures.figures import Measured, of_design, of_dynamics, of_file
+from camgeo.measures.figures import of_design, of_dynamics, of_file
 from camgeo.recipe.figures import FIGURES
 from kin.judge.check import Check
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from camgeo.measures.file_result import FileResult
+    from camgeo.measures.measured import Measured
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -47,9 +48,12 @@ def limit_checks(
             for run, value in of_dynamics(name, dynamics, checks).items():
                 found += _held(recipe, limit, value, run)
         elif of == "file":
-            declared = EVERY[LIMIT + name].of_file
+            declared = EVERY[LIMIT + name]
+            closed = declared.between and len(design.discs) > 1
             for file in files:
-                if file.body == "cam" and declared is not None and declared(scene, file.request):
+                if closed and not file.closures:
+                    continue  # it stands on the last file of a pair
+                if file.body == "cam" and declared.of_file is not None and declared.of_file(scene, file.request):
                     value = of_file(name, file, checks)
                     found += _held(recipe, limit, value, file.path.name, file.tolerance)
     return found

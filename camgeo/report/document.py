@@ -14,6 +14,7 @@ from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
+from kin.judge.verdict import UNREAD
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -159,10 +160,14 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
     }
-    if len(file.surfaces) < 2:
-        return entry | _surface(recipe, file.surface)
-    entry["surfaces"] = [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]
-    return entry | {"play": [_play(recipe, one) for one in file.closures]}
+    rows = [(one.name, _surface(recipe, one)) for one in file.surfaces or (UNREAD,)]
+    if len(rows) > 1:
+        entry["surfaces"] = [{"name": name, **row} for name, row in rows]
+    for name, row in rows if len(rows) == 1 else ():  # flat keys, where there is one
+        entry |= row | ({"surface": name} if name else {})
+    if file.closures or "surfaces" in entry:
+        entry["play"] = [_play(recipe, one) for one in file.closures]
+    return entry
 
 
 def _play(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
@@ -244,9 +249,9 @@ def summary(report: dict[str, Any]) -> str:
         text = escaped(file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"])
         if file.get("pieces"):
             text += f" {file['pieces']} {pieces_word(file)}"
-        motion = file.get("motion")
-        if motion and motion["max"] is not None:
-            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
+        motion, on = _worst(file)
+        if motion:
+            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}{on}"
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
@@ -260,6 +265,16 @@ def summary(report: dict[str, Any]) -> str:
     if failed:
         line += "\n" + "\n".join(f"  {text}" for text in failed)
     return line
+
+
+def _worst(file: dict[str, Any]) -> tuple[dict[str, Any] | None, str]:
+    """The greatest motion error of a file, and on which of several surfaces it is."""
+    found = [
+        (one["motion"], f" on {one['name']}" if "name" in one else "")
+        for one in file.get("surfaces") or [file]
+        if one.get("motion") and one["motion"]["max"] is not None
+    ]
+    return max(found, key=lambda each: each[0]["max"], default=(None, ""))
 
 
 def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:

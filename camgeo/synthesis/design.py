@@ -74,6 +74,11 @@ class Disc:
     z: float = 0.0
 
     @property
+    def name(self) -> str:
+        """What tells it from other discs: the names of its surfaces."""
+        return " and ".join(made.surface.name for made in self.surfaces)
+
+    @property
     def contours(self) -> tuple[tuple[Surface, Curve], ...]:
         """Each surface with its contour; empty where one of them has none: a disc is made whole or not at all."""
         found = tuple((made.surface, made.contour) for made in self.surfaces if made.contour is not None)
@@ -102,6 +107,11 @@ class Design:
         """Each surface with its contour; empty where a check forbids the cam: it is made whole or not at all."""
         discs = [disc.contours for disc in self.discs]
         return tuple(chain.from_iterable(discs)) if all(discs) else ()
+
+    @property
+    def single(self) -> tuple[Design, ...]:
+        """The design for each disc, as a file with that disc alone shows it."""
+        return tuple(replace(self, discs=(disc,)) for disc in self.discs)
 
     @property
     def openings(self) -> tuple[Opening, ...]:

@@ -11,7 +11,7 @@ from camgeo.recipe.linkage import output_slides
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
-    from kin.judge.intent import Limits, PartIntent
+    from kin.judge.intent import ClosureIntent, Limits, PartIntent
 
 
 def intended(recipe: Recipe, design: Design) -> PartIntent:
@@ -26,10 +26,9 @@ def intents(recipe: Recipe, design: Design) -> tuple[PartIntent, ...]:
 
 
 def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
-    from kin.judge.intent import ClosureIntent, DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
+    from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
     driven, asked, linkage = design.driven, recipe.dwell, None
-    closures: tuple[ClosureIntent, ...] = ()
     exact = design.exact
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
@@ -45,9 +44,6 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
         )
         for one in disc.surfaces
     )
-    if len(exact.surfaces) > 1 and design.follower.closure:
-        pushes, stops = (surface.name for surface in exact.surfaces)
-        closures = (ClosureIntent(pushes, stops, design.follower.closure),)
     intent = PartIntent(
         surfaces=surfaces,
         mm=recipe.mm,
@@ -56,7 +52,7 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
         thickness=recipe.part.thickness,
         outline=recipe.part.outer,
         linkage=linkage,
-        closures=closures,
+        closures=closures_between(design) if len(surfaces) > 1 else (),
     )
     if recipe.part.plain or disc.body is None:
         return intent
@@ -64,6 +60,17 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
 
     body = disc.body
     return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
+
+
+def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
+    """What is left between the surfaces of a cam: of two the first pushes the follower out, the other stops it."""
+    from kin.judge.intent import ClosureIntent
+
+    surfaces = design.exact.surfaces
+    if len(surfaces) < 2 or not design.follower.closure:
+        return ()
+    pushes, stops = (surface.name for surface in surfaces)
+    return (ClosureIntent(pushes, stops, design.follower.closure),)
 
 
 def permitted(recipe: Recipe, tolerance: float) -> Limits:

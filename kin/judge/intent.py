@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
-    from kin.judge.milling import Milling
     from kin.law.contacts import Side
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
@@ -70,6 +69,30 @@ class LinkageIntent:
     mechanism: Mechanism
     swing: FrameSwing | None = None
     dwell: DwellAsked | None = None
+
+
+@dataclass(frozen=True)
+class Milling:
+    """How a part is meant to be milled, mm.
+
+    radius        of the cutter
+    thickness     of the stock, which is cut through
+    depth_of_cut  that one pass may have at most
+    climb         a right-handed cutter meets the metal climbing
+    standing      how far metal may stand outside the contour where the cutter does not reach
+    hub           radius and height of the metal about the shaft that stands on the stock; None without
+    outline       the outline is milled; of round stock, as of a ring, it is not
+    pocket        depth of what lies between two surfaces; None where contours are cut through
+    """
+
+    radius: float
+    thickness: float
+    depth_of_cut: float
+    climb: bool = True
+    standing: float = 0.0
+    hub: tuple[float, float] | None = None
+    outline: bool = True
+    pocket: float | None = None
 
 
 @dataclass(frozen=True)

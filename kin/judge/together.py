@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.judge.closure import Surface
+    from kin.judge.check import Check
     from kin.judge.intent import Limits, ShaftIntent
-    from kin.judge.verdict import Verdict
+    from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 
 
 class DiscFile(NamedTuple):
@@ -26,44 +26,43 @@ class DiscFile(NamedTuple):
     units: float | None = None
 
 
-def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
-    """Judge files that are made to go together; a closure stands in the verdict on the last file that it needs.
+class DiscsRead(NamedTuple):
+    """The surfaces that were read from a file, by its name, and by how much its sections differ, mm."""
 
-    One whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises as `verify`.
+    file: str
+    surfaces: Sequence[SurfaceVerdict]
+    uneven: float = 0.0
+
+
+def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
+    """Judge files that go together, at least one; what is left between discs stands in the verdict on the last file.
+
+    A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises as
+    `verify` does.
     """
     verdicts = []
-    there: dict[str, tuple[Surface, float, str]] = {}
     for path, disc, units in files:
         if disc is None:
-            verdict, parts = verify_together(path, shaft, angles, limits), shaft.parts
+            verdicts.append(verify_together(path, shaft, angles, limits))
         else:
-            verdict, parts = verify(path, shaft.parts[disc], angles, limits, units), (shaft.parts[disc],)
-        intents = {surface.name: surface for part in parts for surface in part.surfaces}
-        for found in verdict.surfaces:
-            if found.contour is not None:
-                there[found.name] = ((intents[found.name], found.contour), verdict.uneven, path.name)
-        verdicts.append(_closed(verdict, there, shaft, limits, path.name))
+            verdicts.append(verify(path, shaft.parts[disc], angles, limits, units))
+    read = [DiscsRead(file.path.name, one.surfaces, one.uneven) for file, one in zip(files, verdicts, strict=True)]
+    closures, checks = left_between(read, shaft, limits)
+    last = verdicts[-1]
+    verdicts[-1] = replace(last, checks=(*last.checks, *checks), closures=(*last.closures, *closures))
     return verdicts
 
 
-def _closed(
-    verdict: Verdict, there: dict[str, tuple[Surface, float, str]], shaft: ShaftIntent, limits: Limits, file: str
-) -> Verdict:
-    """The verdict with the closures for which its file brings the last surface."""
-    new = {surface.name for surface in verdict.surfaces}
-    for closure in shaft.closures:
-        names = {closure.pushes, closure.stops}
-        if not names & new or not names <= set(there):
-            continue
-        uneven = max(there[name][1] for name in names)
-        closures, checks = judge_closures([there[name][0] for name in sorted(names)], [closure], limits, uneven)
-        others = sorted({there[name][2] for name in names} - {file})
-        if others:
-            told = f"with {', '.join(others)}"
-            checks = [replace(check, detail=f"{check.detail}; {told}" if check.detail else told) for check in checks]
-        verdict = replace(
-            verdict,
-            checks=(*verdict.checks, *(about(check, file) for check in checks)),
-            closures=(*verdict.closures, *closures),
-        )
-    return verdict
+def left_between(
+    files: Sequence[DiscsRead], shaft: ShaftIntent, limits: Limits
+) -> tuple[tuple[ClosureVerdict, ...], tuple[Check, ...]]:
+    """Judge what is left between surfaces of discs that were read from files: closures, and checks on the last file."""
+    intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
+    surfaces = [
+        (intents[found.name], found.contour) for file in files for found in file.surfaces if found.contour is not None
+    ]
+    closures, checks = judge_closures(surfaces, shaft.closures, limits, max(file.uneven for file in files))
+    others = ", ".join(file.file for file in files[:-1])
+    if others:
+        checks = [replace(check, detail=f"{check.detail}; with {others}".removeprefix("; ")) for check in checks]
+    return closures, tuple(about(check, files[-1].file) for check in checks)

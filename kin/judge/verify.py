@@ -102,9 +102,9 @@ def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], ang
             closures += left
             checks += more
     named = tuple(about(check, path.name) for check in checks)
-    chains = tuple(chain.contour for _, file in files for chain in file.chains)
+    bodies = tuple(tuple(chain.contour for chain in file.chains) for _, file in files)
     units, uneven = files[0][1].units, max(file.uneven for _, file in files)
-    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, chains, uneven)
+    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, bodies, uneven)
 
 
 class _Read(NamedTuple):
@@ -220,14 +220,14 @@ def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[Par
     found = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
         file = _solid_read(solid, part, limits, path, None)
-        above = f"heights are counted from {level:.9g} mm, where it belongs"
+        above = f"heights are counted from z = {level:.9g} mm, where {part.name} belongs" if level else ""
         checks = [replace(check, surface=part.name, detail=_joined(check.detail, above)) for check in file.checks]
         found.append((part, file._replace(checks=checks)))
     return found
 
 
 def _joined(detail: str, more: str) -> str:
-    return f"{detail}; {more}" if "z = " in detail or detail.startswith("z ") else detail
+    return f"{detail}; {more}" if more and ("z = " in detail or detail.startswith("z ")) else detail
 
 
 def _sought(part: PartIntent) -> Sought:

@@ -18,6 +18,7 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
+    from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
@@ -162,7 +163,7 @@ def within(design: Design, rise: float, back: float) -> None:
     )
 
 
-def steepest(design: Design, k: int) -> tuple[object, ...]:
+def steepest(design: Design, k: int) -> tuple[Extreme, Extreme]:
     found = design.exact.steepest(design.exact.surfaces[k])
     assert found is not None
     return found

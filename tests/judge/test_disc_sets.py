@@ -164,7 +164,7 @@ def test_another_gap(tmp_path, gap):
     ((_, surface, name),) = failures([verdict])
     assert (surface, name) == ("disc 2", "thickness")
     detail = next(check.detail for check in verdict.checks if not check.ok)
-    assert detail.endswith("heights are counted from 12 mm, where it belongs")
+    assert detail.endswith("heights are counted from z = 12 mm, where disc 2 belongs")
 
 
 def test_a_body_turned_in_its_place(tmp_path):

@@ -15,7 +15,7 @@ from support import brute_disc
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intents
+from camgeo.synthesis.intent import closures_between, intents
 from kin.contour.contour import Contour
 from kin.judge.closure import judge_closures
 from kin.judge.intent import Limits
@@ -163,7 +163,7 @@ def test_the_judge_finds_nothing_left_between_the_discs(name):
         judged = surface.gauge.judge(contour, np.radians(np.arange(0.0, 360.0, 5.0)))
         assert judged.motion.max <= surface.gauge.motion_limit(1.1e-5)
         read_back.append((surface, contour))
-    (closure,), (check,) = judge_closures(read_back, first.closures, Limits(1e-5))
+    (closure,), (check,) = judge_closures(read_back, closures_between(design), Limits(1e-5))
     assert check.ok
     assert max(abs(closure.play.least), abs(closure.play.most)) <= check.limit
     assert (closure.pushes, closure.stops) == NAMES
