@@ -18,7 +18,7 @@ from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import ExactCam
+    from camgeo.cams.family import ExactCam, Surface
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
@@ -151,22 +151,27 @@ def _shown(size: float) -> str:
 
 def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
     """The figures that are at their limits, and at which shaft angle, degrees."""
-    from camgeo.curve.curvature import least_radius
-
     limits, bounds = cam.sizing, {}
     for surface in exact.surfaces:
-        steepest = exact.steepest(surface)
+        of, steepest = f" of {surface.name}" if cam.holding.discs > 1 else "", exact.steepest(surface)
         if limits.angles is not None and steepest is not None:
             for name, most, limit in zip(("pressure-angle-rise", ON_RETURN), steepest, limits.angles, strict=True):
                 if math.atan(most.value) > limit - _NEAR:
-                    bounds[f"{name} of {surface.name}" if surface.name else name] = degrees(most.at)
-        if limits.radius is not None and surface.side > 0:
-            radius, at = least_radius(surface.base)
-            if radius - surface.radius < limits.radius * (1.0 + _NEAR):
-                bounds[f"radius-of-curvature of {surface.name}" if surface.name else "radius-of-curvature"] = (
-                    exact.motion.shaft_deg(at)
-                )
+                    bounds[f"{name}{of}"] = degrees(most.at)
+        if limits.radius is not None:
+            radius, at = _bend(surface)
+            if radius < limits.radius * (1.0 + _NEAR):
+                bounds[f"radius-of-curvature{of}"] = exact.motion.shaft_deg(at)
     return bounds
+
+
+def _bend(surface: Surface) -> tuple[float, float]:
+    """Least radius of a surface's convex metal, mm, and its parameter: where it lies round, of hollows."""
+    from camgeo.curve.backwards import least_hollow
+    from camgeo.curve.curvature import least_radius
+
+    radius, at = least_radius(surface.base) if surface.side > 0 else least_hollow(surface.base)
+    return radius - surface.radius, at
 
 
 def sized(cam: SizedDiscCam) -> SizedDiscCam:
@@ -197,7 +202,7 @@ def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
     stem = moving_frame.Translating(0.0, limits.place or 0.0)
     if limits.angles is not None:
         stem = cam.holding.least_stem(motion, limits.angles, limits.place)
-    stem = _rounder(cam, motion, stem, settled=limits.place is not None)
+    stem = _opened(cam, motion, _rounder(cam, motion, stem, settled=limits.place is not None))
     return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
@@ -217,7 +222,7 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
     else:
         arm = moving_frame.Oscillating(pivot, length, 0.0, side)
-    arm = _rounder(cam, motion, arm, settled=False)
+    arm = _opened(cam, motion, _rounder(cam, motion, arm, settled=False))
     return replace(cam, guide=Oscillating(float(arm.pivot), side, length), base_radius=_base(cam, arm.prime))
 
 
@@ -245,13 +250,13 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 def _demand_kept(cam: SizedDiscCam) -> None:
     """Raise IntentError where a size that was found does not keep its limits, by the exact figures."""
-    from camgeo.curve.curvature import least_radius
     from kin.law.programme import IntentError
 
     limits = cam.sizing
     exact = cam.exact()
     for surface in exact.surfaces:
-        where, steepest = f" of {surface.name}" if surface.name else "", exact.steepest(surface)
+        several, steepest = cam.holding.discs > 1, exact.steepest(surface)
+        where = f" of {surface.name}" if several else ""
         if limits.angles is not None and steepest is not None:
             for name, reached, limit in zip(("rise", "return"), steepest, limits.angles, strict=True):
                 angle, most = math.degrees(math.atan(reached.value)), math.degrees(limit)
@@ -262,11 +267,10 @@ def _demand_kept(cam: SizedDiscCam) -> None:
                         "curvature",
                         "sizing",
                     )
-        if limits.radius is not None and surface.side > 0:
-            found = least_radius(surface.base)[0] - surface.radius
+        if limits.radius is not None:
+            found, _ = _bend(surface)
             if found < limits.radius * (1.0 - SLACK):
-                more = cam.advice.on(surface.name).larger
-                less = f"; {more} leaves more" if where else ""
+                less = f"; {cam.advice.on(surface.name).larger} leaves more" if several else ""
                 raise IntentError(f"the size found has a radius of curvature{where} of {found:.9g} mm{less}", "sizing")
 
 
@@ -293,6 +297,25 @@ def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled
     elif not settled:
         return least_round(motion, guide, limits.angles, radius, start)
     return guide.resized(least_prime(lambda size: CentreShape(motion, guide.resized(size)), radius, start))
+
+
+def _opened(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) -> _GuideT:
+    """Guide of the least prime circle from that of a guide on at which the outer flank keeps the radius too.
+
+    Its metal is convex where the path is hollow.
+    """
+    from camgeo.cams.least_size import least_prime
+    from camgeo.curve.backwards import least_hollow
+    from camgeo.curve.moving_frame import CentreShape
+
+    outer = [flank.radius for flank in cam.holding.flanks(cam.touch, cam.side) if flank.side < cam.side]
+    if not outer or cam.sizing.radius is None:
+        return guide
+    radius = cam.sizing.radius + outer[0]
+    prime = least_prime(
+        lambda size: CentreShape(motion, guide.resized(size)), radius, guide.prime, lambda curve: least_hollow(curve)[0]
+    )
+    return guide if prime == guide.prime else guide.resized(prime)
 
 
 def _base(cam: DiscCam, prime: float) -> float:

@@ -49,7 +49,7 @@ _DWELLS = (
 
 
 def _disc(title: str, base: str, stroke: str, follower: Given) -> _Starter:
-    unfit = ("offset", "tilt", "width") if "arm" in follower else ()
+    unfit: tuple[str, ...] = ("offset", "tilt", "width") if "arm" in follower else ()
     unfit += ("conjugate",) if follower["kind"] == "knife-edge" or (unfit and follower["kind"] == "flat") else ()
     cam: Given = {"base_radius": base, "follower": follower, "motion": _DWELLS.format(stroke)}
     return _Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
@@ -130,6 +130,18 @@ _STARTERS = {
         },
         {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
         unfit=(*OF_A_DISC, "conjugate", "mechanism"),
+    ),
+    "disc-groove": _Starter(
+        "A disc with a groove that pushes a roller on a stem out and back.",
+        "disc",
+        {
+            "base_radius": "36",
+            "track": {"groove": {"clearance": "0.03", "depth": "6"}},
+            "follower": {"kind": "roller", "radius": "9"},
+            "motion": _DWELLS.format("20"),
+        },
+        {"part": {"thickness": "12", "bore": "16", "outer": "160"}},
+        unfit=("undercut", "chamfer", "dynamics"),
     ),
     "constant-diameter": _Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",
