@@ -23,6 +23,7 @@ FIGURES = DOCS / "figures"
 SCRIPTS = {
     "make_constant_breadth": "constant-breadth.md",
     "make_double_roller": "double-roller.md",
+    "make_laws": "double-roller.md",
     "make_yoke_pictures": "linkages.md",
 }
 WORDS = {"double-roller.md": 1}  # tables without figures

@@ -90,7 +90,7 @@ def _evolute(stage: Stage) -> list[Body]:
             rings += [_ring(part) for part in long if abs(part[0]) <= far]
         if rings:
             bodies.append(stage.on_cam(f"evolute, {surface.name}" if surface.name else "evolute", rings))
-    surface, standing = exact.surfaces[0], np.exp(1j * stage.turned)
+    surface, standing = stage.view.surface(stage.view.contacts[0]), np.exp(1j * stage.turned)
     t = np.mod(next(iter(exact.motion.parameters(SHAFT, stage.relative).values())), TURN)
     frame, centre = surface.curve.sample(t), _centre(surface, t) * standing
     contact = _complex(frame.point) * standing
@@ -179,7 +179,7 @@ def _isoptic(stage: Stage) -> list[Body]:
     corner = np.full(SHAFT.shape, 2.0 * arms.length, dtype=complex)
     circle = Shape(CURVE, (disc(0.0, 0.0, 2.0 * arms.length),), "isoptic circle, 2 l")
     found = [Body("isoptic circle", OVERLAYS, (circle,), still())]
-    surface = stage.view.design.exact.surfaces[0]
+    surface = stage.view.surface(stage.view.contacts[0])
     if surface.radius:
         found.append(stage.on_cam("curve of the faces", [_ring(_enveloped(surface), closed=True)]))
     ends = arms.ends(SHAFT)
@@ -191,7 +191,7 @@ def _isoptic(stage: Stage) -> list[Body]:
 
 def _pedal(stage: Stage) -> list[Body]:
     """The feet A and B of the perpendiculars from O to the faces run on the pedal: the pitch curve (W section 5)."""
-    arms, surface = _arms(stage), stage.view.design.exact.surfaces[0]
+    arms, surface = _arms(stage), stage.view.surface(stage.view.contacts[0])
     frame = surface.base.sample(_GRID)
     point, normal = _complex(frame.point), _complex(frame.normal)
     curve = point if surface.radius else (point * normal.conj()).real * normal
