@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.track import is_ring
-from camgeo.schema.errors import shown
+from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
@@ -88,6 +88,8 @@ class FileRequest:
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
     mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `step`, rad, is that of a grinder's
     table, `roller` the radius, mm, of the one whose lift is tabled.
+    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `overlays` are what a page shows
+    besides.
     """
 
     kind: FileKind
@@ -104,6 +106,8 @@ class FileRequest:
     def ground(self) -> bool:
         """Whether it is a table that a lobe is ground by, whose contour is judged."""
         return self.as_ in GROUND
+
+    overlays: tuple[str, ...] = ()
 
     def told_in(self, units: Length) -> Length:
         """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
@@ -151,6 +155,11 @@ class Export:
     tolerance: float
     files: tuple[FileRequest, ...]
 
+    @property
+    def overlays(self) -> tuple[str, ...]:
+        """What pages show over the mechanism, each once."""
+        return tuple(dict.fromkeys(name for request in self.files for name in request.overlays))
+
 
 _TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
 
@@ -164,6 +173,57 @@ def _units(default: str) -> Field:
 
 
 _OF_RECIPE, _OF_SOLID = _units("the recipe's"), _units("mm")
+
+
+OVERLAYS = {
+    "instant-centres": "plate",
+    "chord-polygon": "swings",
+    "isoptic": "swings",
+    "pedal": "swings",
+    "evolute": "",
+}
+"""What a page can show over a mechanism, and what of its cam's offers that needs; a linkage leaves the evolute."""
+
+
+def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
+    """Read the names of overlays, those that the cam's family has, each once."""
+    linked = bool(reader.kinds["linkage"])
+    there = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    names: list[str] = []
+    for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
+        word = item.text if isinstance(item, Scalar) else ""
+        if word in names:
+            reader.fault(item.mark, join(path, i), "the same overlay twice", shown(word), "leave one out")
+        elif word in there:
+            names.append(word)
+        elif word in OVERLAYS:
+            of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
+            remedy = f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", shown(word), remedy)
+        else:
+            remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), "no overlay", described(item), remedy)
+    return tuple(names)
+
+
+_OVERLAYS = Field(
+    "overlays",
+    Kind.OWN,
+    "constructions shown over the mechanism, which turn with it, as far as its family has them",
+    default="none",
+    form=Form(
+        "a list of overlays",
+        f"a list of {either(tuple(OVERLAYS), 'and')}",
+        _read_overlays,
+        lambda _: {
+            "type": "array",
+            "items": {"enum": list(OVERLAYS)},
+            "minItems": 1,
+            "maxItems": len(OVERLAYS),
+            "uniqueItems": True,
+        },
+    ),
+)
 
 
 FILES: dict[str, Table] = {
@@ -241,7 +301,7 @@ FILES: dict[str, Table] = {
             _TOLERANCE,
         )
     ),
-    "html": Table(()),
+    "html": Table((_OVERLAYS,)),
     "gcode": Table((_OF_RECIPE, _TOLERANCE)),
 }
 
@@ -406,6 +466,7 @@ def _request(kind: FileKind, file: Values) -> FileRequest:
         chosen.get("units"),
         chosen.get("step"),
         None if "roller" not in chosen else 0.5 * chosen["roller"],
+        chosen.get("overlays", ()),
     )
 
 
