@@ -88,8 +88,7 @@ class FileRequest:
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
     mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `step`, rad, is that of a grinder's
     table, `roller` the radius, mm, of the one whose lift is tabled.
-    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `overlays` are what a page shows
-    besides.
+    `overlays` are what a page shows besides.
     """
 
     kind: FileKind
@@ -101,13 +100,12 @@ class FileRequest:
     units: Length | None = None
     step: float | None = None
     roller: float | None = None
+    overlays: tuple[str, ...] = ()
 
     @property
     def ground(self) -> bool:
         """Whether it is a table that a lobe is ground by, whose contour is judged."""
         return self.as_ in GROUND
-
-    overlays: tuple[str, ...] = ()
 
     def told_in(self, units: Length) -> Length:
         """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
