@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from camgeo.sweep.search.cams import EDGE
-from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -133,10 +132,10 @@ def plate(rows: Array) -> Contours:
     return Contours(sound, 0.0 * p, p * p + q * q, radius=p + rows[2], contact=q, outside=outside)
 
 
-MAKERS: dict[tuple[type, type], Callable[[Sizes, Side, Array], Contours]] = {
-    **{(Translating, touch): _stem for touch in (Roller, KnifeEdge, Shoe)},
-    **{(Oscillating, touch): _arm for touch in (Roller, KnifeEdge, Shoe)},
-    (Translating, Flat): _stem_face,
-    (Oscillating, Flat): _arm_face,
+MAKERS: dict[tuple[str, bool], Callable[[Sizes, Side, Array], Contours]] = {
+    ("mm", True): _stem,
+    ("deg", True): _arm,
+    ("mm", False): _stem_face,
+    ("deg", False): _arm_face,
 }
-"""What makes contours, by the classes of guide and touch."""
+"""What makes contours, by the unit of the guide's motion and whether the touch is round."""

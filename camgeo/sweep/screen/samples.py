@@ -76,7 +76,7 @@ def shot_of(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> Shot:
     Raises IntentError for a cam that does not exist.
     """
     exact = cam.exact()
-    repeats = exact.surfaces[0].base.shape.repeats
+    repeats = min(surface.base.shape.repeats for surface in exact.surfaces)
     period = TURN / repeats
     breaks = exact.breaks[exact.breaks < period * (1.0 - 1e-12)]
     begins = breaks if len(breaks) else np.zeros(1)

@@ -220,11 +220,11 @@ class Screen:
         ends = [(ranges[path].values or (ranges[path].low, ranges[path].high)) for path in paths]
         try:
             exact = recipe.cam.exact()
-            surfaces, arrangement = exact.surfaces, exact.follower.arrangement
+            surfaces = exact.surfaces
         except IntentError:
             return "the cam does not exist as the recipe has it"
-        guided = "guided" in recipe.cam.arrangement.offers
-        maker = MAKERS.get((arrangement.guide, arrangement.touch)) if guided else None
+        arrangement, offers = recipe.cam.arrangement, recipe.cam.arrangement.offers
+        maker = MAKERS[arrangement.unit, "roller" in offers] if "guided" in offers else None
         if len(surfaces) > 1 or not surfaces[0].curve.closed or (maker is None and exact.plate is None):
             return "its contour is not sampled"
         template = Template.of(shoot, np.array([min(end) for end in ends]), np.array([max(end) for end in ends]))
