@@ -11,7 +11,8 @@ import numpy as np
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from kin.judge.milling import Milling, milled
+from kin.judge.intent import Milling
+from kin.judge.milling import milled
 from kin.read.gcode import arcs_of, read_gcode
 
 mpl.use("Agg")

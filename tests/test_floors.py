@@ -50,7 +50,6 @@ FLOORS = {
     """,
 }
 WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}
-CIRCLES = {"camgeo.schema"}  # rooms with circles of files, to be cleared
 # Modules of core rooms that stand for a wing, imported only when a recipe or a command asks for it.
 DOORS = {"camgeo.output.parts", "camgeo.output.mechanism", "camgeo.output.gcode", "camgeo.cli.study"}
 HEAVY = {
@@ -180,11 +179,8 @@ def circles(imports: dict[str, set[str]]) -> set[str]:
 
 @pytest.mark.parametrize("package", ["kin", "camgeo"])
 def test_no_files_import_one_another_in_a_circle(package: str) -> None:
-    rooms = floors(package)
     packages = {module.rpartition(".")[0] for module in modules(package)}  # importing a file does not import its room's
-    found = {module: imported(path) - packages for module, path in modules(package).items()}
-    offenders = {module for module in circles(found) if room_of(module, rooms) not in CIRCLES}
-    assert not offenders
+    assert not circles({module: imported(path) - packages for module, path in modules(package).items()})
 
 
 def test_a_circle_of_files_is_found() -> None:

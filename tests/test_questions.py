@@ -390,16 +390,13 @@ WHERE_ONE_IS_ALL = {
     "camgeo/report/page/curves.py": 1,
     "camgeo/report/page/content.py": 1,  # where the zero of the motion is marked
     "camgeo/machining/compensation.py": 1,  # a chamfer runs along one
-    "camgeo/machining/milling.py": 3,  # programs, polar tables, solids and second opinions are taught one: SURFACES
+    "camgeo/machining/milling.py": 1,  # polar tables and solids are taught one: SURFACES
     "camgeo/output/gcode.py": 1,
     "camgeo/output/job.py": 2,
-    "camgeo/output/second_opinion.py": 3,
     "camgeo/output/table.py": 1,
-    "camgeo/synthesis/intent.py": 1,
     "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
     "camgeo/sweep/study/margins.py": 1,
     "camgeo/sweep/search/cams.py": 1,  # support functions
-    "camgeo/report/document.py": 1,  # flat keys, where there is one
 }
 """How often a file takes one surface for all; it goes down as forms of files are taught more."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.cams.conjugate import CONJUGATE, check_conjugate, conjugate_of
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.groove import TRACK, Groove
@@ -90,11 +91,11 @@ TABLE = Table(
         SIZING,
         Field("follower", Kind.OWN, "what follows the cam, on a stem or an arm", required=True, form=FOLLOWER),
         TRACK,
+        CONJUGATE,
         motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
         UNDERCUT,
     ),
     alternatives=(("base_radius", ()), ("sizing", ())),
-    later=(("conjugate", "conjugate cams"),),
 )
 
 
@@ -102,7 +103,9 @@ def variant(node: Node) -> Arrangement:
     """Give the arrangement of a cam as written: its touch, and whether an arm leads it."""
     follower = entries(node).get("follower") if isinstance(node, Written) else None
     arm = isinstance(follower, Written) and "arm" in entries(follower)
-    return Arrangement(Oscillating if arm else Translating, TOUCHES.get(kind_of(follower, FOLLOWERS), Roller))
+    discs = 2 if isinstance(node, Written) and "conjugate" in entries(node) else 1
+    touch = TOUCHES.get(kind_of(follower, FOLLOWERS), Roller)
+    return Arrangement(Oscillating if arm else Translating, touch, discs, discs)
 
 
 TOUCHES: dict[str, type[Touch]] = {"roller": Roller, "knife-edge": KnifeEdge, "shoe": Shoe, "flat": Flat}
@@ -126,6 +129,8 @@ def check(cam: Values, reader: Reader) -> None:
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
+    if "conjugate" in cam:
+        check_conjugate(cam, reader)
     if "sizing" in cam and not reader.errors:
         _size(cam, reader)
 
@@ -173,15 +178,16 @@ def _values(cam: Values) -> Values:
     else:
         side = TRAILING if arm.get("side", "trailing") == "trailing" else LEADING
         guide = Oscillating(arm["pivot"], side, arm.get("length"))
-    track = cam.get("track")
+    track, touch = cam.get("track"), _touch(follower, arm or {})
     return {
         "base_radius": cam["base_radius"],
         "guide": guide,
-        "touch": _touch(follower, arm or {}),
+        "touch": touch,
         "motion": cam["motion"],
         "undercut": cam.get("undercut", "refuse"),
         "side": -1 if track == "internal" else 1,
         "groove": Groove(**track["groove"]) if isinstance(track, dict) else None,
+        "conjugate": conjugate_of(cam["conjugate"], touch) if "conjugate" in cam else None,
     }
 
 

@@ -6,16 +6,16 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
+from camgeo.cams.conjugate import FIRST, SECOND, Conjugate
 from camgeo.cams.family import Advice, Circle, ExactCam, Follower, GrownError, Surface, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
 from camgeo.cams.groove import Groove, GrooveAdvice
-from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, GuidedCam, RoundAdvice
+from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, Flank, GuidedCam, RoundAdvice
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.guided import Flank
     from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
@@ -37,16 +37,21 @@ class DiscCam(GuidedCam):
     undercut: Undercut
     side: Side = 1
     groove: Groove | None = None
+    conjugate: Conjugate | None = None
 
     @property
     def flanks(self) -> tuple[Flank, ...]:
-        """The one that the roller runs on, or both of its groove; `base_radius` is that of the inner one."""
+        """The one that the roller runs on, or both of its groove or pair; `base_radius` is that of the first."""
+        if self.conjugate is not None:
+            first = Flank(FIRST, 1, self.touch.radius)
+            return first, Flank(SECOND, 1, self.conjugate.touch.radius, disc=1)
         return super().flanks if self.groove is None else self.groove.flanks(self.touch.radius)
 
     @property
     def arrangement(self) -> Arrangement:
-        """One touch, which a spring or gravity holds on the cam, or a groove."""
-        return Arrangement(type(self.guide), type(self.touch))
+        """One touch, which a spring, gravity, a groove or a second disc holds on the cam."""
+        discs = 1 if self.conjugate is None else 2
+        return Arrangement(type(self.guide), type(self.touch), discs, discs)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By the displacement over a whole turn, 0 where it is lowest."""
@@ -68,6 +73,8 @@ class DiscCam(GuidedCam):
         if isinstance(self.touch, Flat):
             checks += ("contact-travel",) if self.touch.width is None else ("contact-travel", "face-width")
         name, first = f"{self.guide.word} {self.touch.word}", Contact(self.guide, self.touch, self.datum)
+        if self.conjugate is not None:
+            return Follower(f"{name} on conjugate discs", self.conjugate.contacts(first), checks, "form-closure")
         if self.groove is None:
             return Follower(name, (first,), checks)
         contacts = tuple(replace(first, touch=Roller(one.radius), surface=one.name) for one in self.flanks)
@@ -121,6 +128,16 @@ class DiscCam(GuidedCam):
             return moving_frame.Translating.on(self.prime, self.guide.offset)
         return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.arm, self.guide.side)
 
+    @property
+    def gap(self) -> float:
+        """Axial gap between conjugate discs, mm."""
+        return 0.0 if self.conjugate is None else self.conjugate.gap
+
+    def demand(self, law: Displacement) -> None:
+        """Raise IntentError where a second disc has no base circle."""
+        if self.conjugate is not None:
+            self.conjugate.demand(Contact(self.guide, self.touch, self.datum), law.range[1])
+
     def face(self, motion: Displacement) -> Face:
         """The flat face over the shaft angle; raises IntentError where it cannot be driven."""
         from camgeo.curve.disc import StraightFace, SwingingFace
@@ -134,6 +151,14 @@ class DiscCam(GuidedCam):
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)
+
+    def second_face(self, motion: Displacement, contact: Contact[Guide, Touch]) -> Face:
+        """The face that conjugate discs have opposite, over the shaft angle."""
+        from camgeo.curve.disc import StraightFace
+
+        guide = contact.guide
+        offset = guide.offset if isinstance(guide, Translating) else 0.0
+        return StraightFace(motion.scaled(-1.0), contact.zero, 0.0, offset, contact.turned)
 
     def resized(self, base: float, pivot: float | None = None) -> DiscCam:
         """With another base radius, and of an arm another pivot."""
@@ -152,14 +177,21 @@ class DiscCam(GuidedCam):
             # on an arm the same swing of a face that stands farther out
             nearer = scale * (self.touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
             face = Flat(self.touch.tilt, width, nearer)
-            return replace(self, base_radius=scale * (self.base_radius + out), guide=guide, touch=face)
-        radius = self.touch.radius
-        if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
-            raise GrownError("the shoe radius" if isinstance(self.touch, Shoe) else "the roller's radius", radius)
-        left = scale * (radius - out)
-        touch = KnifeEdge() if not left else (Shoe if isinstance(self.touch, Shoe) else Roller)(left)
+            pair = self.conjugate and self.conjugate.scaled(face, scale, 2.0 * out)
+            return replace(self, base_radius=scale * (self.base_radius + out), guide=guide, touch=face, conjugate=pair)
+        touch = _less(self.touch, out, scale)
+        pair = self.conjugate and self.conjugate.scaled(_less(self.conjugate.touch, out, scale), scale)
         base, groove = scale * (self.base_radius + self.side * out), self.groove and self.groove.scaled(scale)
-        return replace(self, base_radius=base, guide=guide, touch=touch, groove=groove)
+        return replace(self, base_radius=base, guide=guide, touch=touch, groove=groove, conjugate=pair)
+
+
+def _less(touch: Touch, out: float, scale: float) -> Touch:
+    """A round touch smaller by `out` mm and then scaled; raises GrownError where nothing of it is left."""
+    radius, kind = touch.radius, Shoe if isinstance(touch, Shoe) else Roller
+    if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
+        raise GrownError("the shoe radius" if kind is Shoe else "the roller's radius", radius)
+    left = scale * (radius - out)
+    return kind(left) if left else KnifeEdge()
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +205,15 @@ class ExactFaced(ExactLed):
         """The envelope of the face (`camgeo.curve.disc`), its parameter the shaft angle."""
         from camgeo.curve.disc import face_shape
 
-        face = self.cam.face(self.law)
-        whole = Curve.whole(face_shape(face))
-        series = {"slope": face.slope, "contact": face.contact}
-        return (Surface(whole, whole, pressure=face.pressure_angle, place=face.place, series=series),)
+        self.cam.demand(self.law)
+        _, *others = self.follower.contacts
+        faces = [self.cam.face(self.law), *(self.cam.second_face(self.law, contact) for contact in others)]
+        surfaces = []
+        for face, flank in zip(faces, self.cam.flanks, strict=True):
+            whole = Curve.whole(face_shape(face))
+            series = {"slope": face.slope, "contact": face.contact}
+            pressure, place = face.pressure_angle, face.place
+            surfaces.append(
+                Surface(whole, whole, pressure=pressure, place=place, series=series, name=flank.name, disc=flank.disc)
+            )
+        return tuple(surfaces)

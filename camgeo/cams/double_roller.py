@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Surface, Undercut
-from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
+from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
@@ -62,7 +62,7 @@ class DoubleRollerCam(PairCam):
     """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
 
     kind: ClassVar[str] = "double-roller"
-    swing_of: ClassVar[Literal["arm", "pair"]] = "arm"
+    swing_of: ClassVar[SwingOf] = "arm"
     arrangement: ClassVar[Arrangement] = ARRANGEMENT
     lam: int
     mu: int
@@ -83,7 +83,7 @@ class DoubleRollerCam(PairCam):
 
     def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002
         """Two rollers on one arm, its pivot as far from the shaft as from them."""
-        checks = ("closing-equation", "velocity-ratio", "pressure-angle")
+        checks = (*self.law_checks, "pressure-angle")
         contacts = on_one_arm(self.arm, self.arm, self.touch, math.pi, law.alpha)
         return Follower("double roller", contacts, checks, "form-closure")
 

@@ -83,7 +83,7 @@ class Surface:
     @property
     def prefix(self) -> str:
         """What names of its columns in tables begin with: its name, where the cam has several."""
-        return f"{self.name}_" if self.name else ""
+        return f"{self.name.replace(' ', '_')}_" if self.name else ""
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
         """Least and greatest value of one of `series`, found once; None of one that there is not."""
@@ -115,8 +115,12 @@ class Follower:
     def arrangement(self) -> Arrangement:
         """Guide and touch of its contacts, and in how many places they are: one roller may touch two surfaces."""
         first = self.contacts[0]
-        places = {replace(contact, touch=first.touch, surface=first.surface) for contact in self.contacts}
-        return Arrangement(type(first.guide), type(first.touch), len(places))
+        places, surfaces = {contact.place for contact in self.contacts}, {contact.surface for contact in self.contacts}
+        return Arrangement(type(first.guide), type(first.touch), len(places), min(len(places), len(surfaces)))
+
+    def running(self, contact: Contact[Guide, Touch]) -> Touch:
+        """The touch that runs where a contact is: that of the first one there, where a flank's gauge is wider."""
+        return next(first.touch for first in self.contacts if first.place == contact.place)
 
     @property
     def width(self) -> float | None:
@@ -282,9 +286,10 @@ class ExactCam(ABC):
 
     @cached_property
     def running(self) -> dict[str, Gauge]:
-        """The follower itself on each surface: with the touch of its first contact, where gauges are wider."""
-        touch = self.follower.contacts[0].touch
-        return self._followers([replace(contact, touch=touch) for contact in self.follower.contacts])
+        """The follower itself on each surface, where gauges are wider; empty where they are not."""
+        follower = self.follower
+        contacts = [replace(contact, touch=follower.running(contact)) for contact in follower.contacts]
+        return {} if tuple(contacts) == follower.contacts else self._followers(contacts)
 
     def _followers(self, contacts: Sequence[Contact[Guide, Touch]]) -> dict[str, Gauge]:
         from kin.follower.follower import followers_of
@@ -315,6 +320,11 @@ class ExactCam(ABC):
     def joints(self) -> tuple[Joint, ...]:
         """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
         return ()
+
+    @property
+    def gap(self) -> float:
+        """Axial gap between discs on the shaft, mm."""
+        return 0.0
 
     @property
     def margins(self) -> list[Margin]:

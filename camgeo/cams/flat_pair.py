@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
-from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
+from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
@@ -37,7 +37,7 @@ class FlatPairCam(PairCam):
     """A single disk that works a rigid pair of flat faces, its pivot at 2 arm from the shaft (Wunderlich, 5)."""
 
     kind: ClassVar[str] = "flat-pair"
-    swing_of: ClassVar[Literal["arm", "pair"]] = "pair"
+    swing_of: ClassVar[SwingOf] = "pair"
     arrangement: ClassVar[Arrangement] = ARRANGEMENT
     lam: int
     mu: int
@@ -58,7 +58,7 @@ class FlatPairCam(PairCam):
     def follower(self, law: Transmission, out: float) -> Follower:
         """Two faces whose lines pass through their pivot, or `out` beside it."""
         contacts = on_one_arm(2.0 * self.arm, None, Flat(nearer=-out), 0.5 * math.pi, 0.5 * law.alpha)
-        return Follower("flat pair", contacts, ("closing-equation", "velocity-ratio"), "form-closure")
+        return Follower("flat pair", contacts, self.law_checks, "form-closure")
 
     def surface(self, law: Transmission, out: float) -> Surface:
         """The curve with an isoptic circle (W section 5), or a parallel to it."""

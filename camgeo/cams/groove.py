@@ -30,7 +30,10 @@ class Groove:
     def flanks(self, radius: float) -> tuple[Flank, ...]:
         """Both, about the path of a roller of that radius, mm: the inner one pushes it out, the outer one stops it."""
         wider = radius + self.clearance
-        return Flank("inner", 1, radius, self.depth), Flank("outer", -1, wider, self.depth)
+        return (
+            Flank("inner", 1, radius, "GROOVE_INNER", self.depth),
+            Flank("outer", -1, wider, "GROOVE_OUTER", self.depth),
+        )
 
     def scaled(self, scale: float) -> Groove:
         """The groove drawn larger."""

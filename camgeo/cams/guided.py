@@ -21,11 +21,12 @@ from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Follower
+    from camgeo.curve import moving_frame
     from camgeo.curve.curve import Side as Before
     from camgeo.curve.extremes import Figure
-    from camgeo.curve.moving_frame import CentreShape, Displacement, Guide
+    from camgeo.curve.moving_frame import CentreShape, Displacement
     from camgeo.curve.rates import Series
-    from kin.law.contacts import Side
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
 
@@ -62,12 +63,17 @@ class RoundAdvice(Advice):
 
 
 class Flank(NamedTuple):
-    """A surface beside a centre's path: its name, the side of its metal, what radius judges it and its depth, mm."""
+    """A surface beside a centre's path: its name, the side of its metal, what radius judges it, where it stands.
+
+    That is the layer of drawings, its depth from the top face, mm, and the rank of its disc.
+    """
 
     name: str
     side: Side
     radius: float
+    layer: str = "CUT"
     depth: float | None = None
+    disc: int = 0
 
 
 class GuidedCam(Cam):
@@ -77,12 +83,12 @@ class GuidedCam(Cam):
 
     @property
     def flanks(self) -> tuple[Flank, ...]:
-        """Every surface that the follower touches: one, unless it runs in a groove."""
+        """Every surface that the follower touches, in the order of its contacts."""
         return (Flank("", self.side, self.touch.radius),)
 
     @property
     @abstractmethod
-    def led(self) -> Guide:
+    def led(self) -> moving_frame.Guide:
         """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
 
     @abstractmethod
@@ -92,6 +98,14 @@ class GuidedCam(Cam):
     @abstractmethod
     def follower(self, law: Displacement) -> Follower:
         """The follower that a motion calls for."""
+
+    @property
+    def gap(self) -> float:
+        """Axial gap between its discs, mm."""
+        return 0.0
+
+    def demand(self, law: Displacement) -> None:
+        """Raise IntentError where another contact than the first could not be led through a motion."""
 
     @abstractmethod
     def resized(self, base: float, pivot: float | None = None) -> GuidedCam:
@@ -107,6 +121,16 @@ class GuidedCam(Cam):
         if self.touch.radius:
             circles.append(Circle("prime circle", self.led.prime))
         return tuple(circles)
+
+
+def led_by(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
+    """How the centre of a round touch is led, by the displacement of its own position."""
+    from camgeo.curve import moving_frame
+
+    guide = contact.guide
+    if isinstance(guide, Translating):
+        return moving_frame.Translating(contact.zero, guide.offset, contact.turned)
+    return moving_frame.Oscillating(guide.pivot, guide.arm, contact.zero, guide.side)
 
 
 @dataclass(frozen=True)
@@ -149,6 +173,11 @@ class ExactLed(ExactCam):
         """Those that the recipe gives."""
         return self.cam.joints()
 
+    @property
+    def gap(self) -> float:
+        """As the recipe gives it."""
+        return self.cam.gap
+
     def grown(self, out: float, scale: float) -> ExactCam:
         """The same pitch curve, or a face farther out; a lift is scaled with the drawing, a swing is not."""
         law = self.law.scaled(scale) if self.cam.arrangement.unit == "mm" else self.law
@@ -167,18 +196,26 @@ class ExactGuided(ExactLed):
         """
         from camgeo.curve.moving_frame import CentreShape
 
-        pitch = CentreShape(self.law, self.cam.led)
-        path = Curve.whole(pitch)
-        return tuple(self._surface(pitch, path, flank) for flank in self.cam.flanks)
+        self.cam.demand(self.law)
+        contacts = {contact.surface: contact for contact in reversed(self.follower.contacts)}
+        paths: dict[Contact[Guide, Touch], tuple[CentreShape, Curve]] = {}  # one for a roller between two flanks
+        surfaces = []
+        for flank in self.cam.flanks:
+            contact = contacts[flank.name]
+            if contact.place not in paths:
+                pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), led_by(contact))
+                paths[contact.place] = pitch, Curve.whole(pitch)
+            surfaces.append(self._surface(*paths[contact.place], contact, flank))
+        return tuple(surfaces)
 
-    def _surface(self, pitch: CentreShape, path: Curve, flank: Flank) -> Surface:
-        name, side, radius, depth = flank
+    def _surface(self, pitch: CentreShape, path: Curve, contact: Contact[Guide, Touch], flank: Flank) -> Surface:
+        name, side, radius, layer, depth, disc = flank
         series: dict[str, Figure] = {"slope": pitch.slope}
-        if isinstance(self.cam.touch, Roller):
-            series["spin"] = Spin(pitch, self.cam.touch.radius, float(side))
+        touch = self.follower.running(contact)
+        if isinstance(touch, Roller):
+            series["spin"] = Spin(pitch, touch.radius, float(side))
         curve = Curve.whole(Parallel(pitch, side * radius))
-        layer = f"GROOVE_{name.upper()}" if name else "CUT"
-        return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, layer=layer, depth=depth)
+        return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, disc, layer, depth)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""

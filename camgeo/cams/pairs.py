@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission
+    from kin.law.wanted import Nearest
 
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
+HARMONICS = 7  # highest harmonic of a wanted law, where a recipe gives none
 LOOKS = 1440  # parameters of a law at which its margins are looked at
 _OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion after that follows"
 
@@ -56,6 +58,14 @@ class LawRoute:
 
 
 @dataclass(frozen=True)
+class WantedRoute:
+    """The series D of odd harmonics up to one whose law is nearest to a wanted swing (Wunderlich 6.5)."""
+
+    motion: MotionAsked
+    harmonics: int
+
+
+@dataclass(frozen=True)
 class ArcRoute:
     """A circular first arc of the pitch curve, radius in mm, symmetric about its bisector."""
 
@@ -79,7 +89,21 @@ class RosetteRoute:
     scale: float
 
 
-Route: TypeAlias = DeltaRoute | DeltaFormulaRoute | LawRoute | ArcRoute | CurveRoute | RosetteRoute
+Route: TypeAlias = DeltaRoute | DeltaFormulaRoute | LawRoute | WantedRoute | ArcRoute | CurveRoute | RosetteRoute
+SwingOf: TypeAlias = Literal["arm", "pair"]
+
+
+@lru_cache(maxsize=32)
+def _nearest(
+    lam: int, mu: int, swing_of: SwingOf, route: WantedRoute, share: float = 1.0
+) -> tuple[Nearest, Transmission]:
+    """The nearest series of arms of length 1, and the wanted law, with a share of its strokes."""
+    from kin.law.transmission import from_law
+    from kin.law.wanted import nearest
+
+    motion = route.motion.motion(math.pi / lam, "delta.law", None)
+    wanted = from_law(lam, mu, 1.0, motion, swing_of, share=share, corners=True, field="delta.law")
+    return nearest(wanted, route.harmonics), wanted
 
 
 def _greatest_share(law: Callable[[float], Transmission]) -> float:
@@ -109,7 +133,7 @@ def _greatest_share(law: Callable[[float], Transmission]) -> float:
 class PairCam(Cam):
     """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd."""
 
-    swing_of: ClassVar[Literal["arm", "pair"]]
+    swing_of: ClassVar[SwingOf]
     lam: int
     mu: int
     arm: float
@@ -143,12 +167,12 @@ class PairCam(Cam):
         try:
             return self._law()
         except IntentError as error:
-            if not isinstance(self.route, DeltaRoute | DeltaFormulaRoute | LawRoute):
+            if not isinstance(self.route, DeltaRoute | DeltaFormulaRoute | LawRoute | WantedRoute):
                 raise
             share = _greatest_share(self._law)
             if not share:
                 raise
-            what = "stroke" if isinstance(self.route, LawRoute) else "value of D"
+            what = "stroke" if isinstance(self.route, LawRoute | WantedRoute) else "value of D"
             less = f"{error.message}; with each {what} multiplied by {downward(share, 3)} such a motion is possible"
             raise IntentError(less, error.field, error.at_deg) from error
 
@@ -163,6 +187,10 @@ class PairCam(Cam):
         if isinstance(route, LawRoute):
             motion = route.motion.motion(math.pi / self.lam, "law", None)
             return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of, share=share)
+        if isinstance(route, WantedRoute):
+            series, square = _nearest(self.lam, self.mu, self.swing_of, route, share)[0], self.arm * self.arm
+            cos, sin = ({j: square * c for j, c in part.items()} for part in (series.cos, series.sin))
+            return transmission.from_delta(self.lam, self.mu, self.arm, cos, sin)
         if isinstance(route, ArcRoute):
             return transmission.from_arc(self.lam, self.mu, self.arm, route.radius, route.side)
         from kin.law import polar_formula
@@ -176,6 +204,24 @@ class PairCam(Cam):
             return polar_formula.from_curve(self.lam, self.mu, self.arm, Formula(route.text), route.scale)
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
+
+    @property
+    def law_checks(self) -> tuple[str, ...]:
+        """Names of the checks of its law."""
+        return ("closing-equation", "velocity-ratio", *(("law-error",) if isinstance(self.route, WantedRoute) else ()))
+
+    def law_error(self) -> Proof:
+        """How far the follower's swing is from the wanted one, proved; one that stands still is off by the limit."""
+        from kin.law.wanted import proved_error
+
+        if not isinstance(self.route, WantedRoute):
+            raise TypeError("no law is wanted")
+        series, wanted = _nearest(self.lam, self.mu, self.swing_of, self.route)
+        share = math.degrees(0.5 if self.swing_of == "pair" else 1.0)
+        error = share * proved_error(series, wanted)
+        psi = wanted.at(spread(wanted.breaks, 2.0 * math.pi), 0)[1][0]
+        still = share * float(np.abs(psi).max())
+        return Proof(error < still or not still, error, still, "deg", degrees(float(wanted.at(series.at, 0)[0][0, 0])))
 
     def joints(self, law: Transmission) -> tuple[Joint, ...]:
         """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""
@@ -243,7 +289,8 @@ class ExactPair(ExactCam):
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
         """Those of the law."""
-        return {"closing-equation": self._closing_equation, "velocity-ratio": self._velocity_ratio}
+        proofs = (self._closing_equation, self._velocity_ratio, self.cam.law_error)
+        return dict(zip(self.cam.law_checks, proofs, strict=False))
 
     def _closing_equation(self) -> Proof:
         """That the second arm's end runs on the same curve (W 4.6, 7.1).
@@ -297,6 +344,18 @@ _DELTA = mapping(
     Field("cos", Kind.HARMONICS, "coefficients of the cosines", default="none", unit=Kind.AREA, odd=True),
     Field("sin", Kind.HARMONICS, "coefficients of the sines", default="none", unit=Kind.AREA, odd=True),
     Field("formula", Kind.FORMULA, "or D itself, with D(t + 180°/lambda) = -D(t)", default="none", unit=Kind.AREA),
+    motion_field(
+        "law", Kind.ANGLE, "or the swing, as in cam.law, to which the follower comes as near as the harmonics let it"
+    ),
+    Field(
+        "harmonics",
+        Kind.INTEGER,
+        "highest harmonic of that D, of 1, 3, 5, ..",
+        default=str(HARMONICS),
+        at_least=1,
+        at_most=31,
+        odd=True,
+    ),
 )
 
 
@@ -343,22 +402,33 @@ def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
     )
 
 
+_APART = (
+    ("delta.cos", ("formula", "law")),
+    ("delta.sin", ("formula", "law")),
+    ("delta.formula", ("law",)),
+    ("arc.side", ("formula",)),
+)
+
+
 def check(cam: Values, reader: Reader) -> None:
     """Note harmonics that make no motion, what a formula leaves no room for, and segments that leave an angle."""
     _harmonics(cam, reader)
-    for path in ("delta.cos", "delta.sin", "arc.side"):
-        route = path.partition(".")[0]
-        if f"cam.{path}" in reader.marks and f"cam.{route}.formula" in reader.marks:
-            reader.fault_at(f"cam.{path}", "cannot stand beside formula", None, "leave one of them out")
-    if "law" in cam and "ratio" in cam:
-        lam, _ = cam["ratio"]
-        check_filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader, why=_OTHER_PARTS)
+    for path, others in _APART:
+        for other in others:
+            if f"cam.{path}" in reader.marks and f"cam.{path.partition('.')[0]}.{other}" in reader.marks:
+                reader.fault_at(f"cam.{path}", f"cannot stand beside {other}", None, "leave one of them out")
+    if "cam.delta.harmonics" in reader.marks and "cam.delta.law" not in reader.marks:
+        reader.fault_at("cam.delta.harmonics", "cannot stand without a law", None, "leave it out, or give delta.law")
+    for path, values in (("cam.law", cam), ("cam.delta.law", cam.get("delta") or {})):
+        if "law" in values and "ratio" in cam:
+            lam, _ = cam["ratio"]
+            check_filled(values["law"], path, math.pi / lam, f"180/{lam} degrees", reader, why=_OTHER_PARTS)
 
 
 def _harmonics(cam: Values, reader: Reader) -> None:
     delta = cam.get("delta")
     faulty = any(error.path.startswith("cam.delta") for error in reader.errors)
-    if delta is not None and not faulty and not any(map(delta.get, ("cos", "sin", "formula"))):
+    if delta is not None and not faulty and not any(map(delta.get, ("cos", "sin", "formula", "law", "harmonics"))):
         reader.fault_at("cam.delta", "no harmonics, so no motion", None, "give some, such as {cos: {1: 625}}")
 
 
@@ -366,6 +436,8 @@ def build_route(cam: Values, mm: float) -> Route:
     """Make the route of values in which there is no fault."""
     if "formula" in cam.get("delta", ()):
         return DeltaFormulaRoute(cam["delta"]["formula"], mm * mm)
+    if "law" in cam.get("delta", ()):
+        return WantedRoute(cam["delta"]["law"], cam["delta"].get("harmonics", HARMONICS))
     if "formula" in cam.get("arc", ()):
         return CurveRoute(cam["arc"]["formula"], mm)
     if "delta" in cam:

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, TypeAlias
 from camgeo.checks import remedies
 from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
 from camgeo.recipe.figures import (
+    BACKLASH,
     BACKLASH_LEFT,
     CONTACT_TRAVEL,
     FIGURES,
     FORMER,
+    LAW_ERROR,
     LEAST_WALL,
     PITCH_RADIUS,
     PRESSURE_ANGLE,
@@ -87,8 +89,9 @@ class Declared:
     mechanism, `of_file` whether of a file; `why_not` why it is not made, empty where that needs no words. `field` is
     the recipe's field that it hangs on most, `own_field` the one that takes its place where the recipe gives it.
     `remedy` says what would let it hold, empty where nothing would or where the check itself says it. `backlash` is
-    whether it concerns what is left between contour and follower; `in_frame` whether under a linkage it concerns the
-    cam in its frame alone, its place being the relative angle then. `formerly` is its former name.
+    whether it concerns what is left between contour and follower, `between` whether of a pair of discs it is made
+    once, of the last of their files; `in_frame` whether under a linkage it concerns the cam in its frame alone, its
+    place being the relative angle then. `formerly` is its former name.
     """
 
     name: str
@@ -100,6 +103,7 @@ class Declared:
     own_field: str = ""
     remedy: remedies.Remedy | None = None
     backlash: bool = False
+    between: bool = False
     in_frame: bool = False
     formerly: str = ""
 
@@ -160,6 +164,12 @@ def _solid(scene: Scene, file: FileRequest) -> bool:
 
 def _program(_: Scene, file: FileRequest) -> bool:
     return file.kind == "gcode"
+
+
+def _pocketed(scene: Scene, file: FileRequest) -> bool:
+    """Of a program that mills between two surfaces that one touch runs on."""
+    follower = scene.follower
+    return file.kind == "gcode" and follower.arrangement.contacts < len(follower.contacts)
 
 
 def _reached(scene: Scene, file: FileRequest) -> bool:
@@ -305,6 +315,7 @@ RATIO = Declared(
     remedy=remedies.smaller_swing,
     formerly=FORMER[VELOCITY_RATIO],
 )
+LAW = Declared(LAW_ERROR, ("deg",), _named(LAW_ERROR), field="cam.delta.harmonics", remedy=remedies.more_harmonics)
 PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
 BREADTH = Declared(
     "constant-breadth",
@@ -350,6 +361,7 @@ CUTTER = Declared("cutter", ("mm",), of_file=_program)
 ARCS = Declared("arcs", ("mm",), of_file=_program)
 RAPID = Declared("rapid", ("", "faults"), of_file=_program)
 DEPTH = Declared("depth", ("mm",), of_file=_program)
+FLOOR = Declared("floor", ("mm",), of_file=_pocketed)
 DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
 ENTRY = Declared("entry", ("deg",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
 GOUGE = Declared("gouge", ("mm",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
@@ -389,6 +401,7 @@ FORM_CLOSURE = Declared(
     own_field="verify.motion_error",
     remedy=remedies.looser,
     backlash=True,
+    between=True,
 )
 OUTPUT = Declared(
     "linkage-error",
@@ -455,7 +468,8 @@ def _of_figure(name: str, figure: Figure) -> Declared:
 
     former = LIMIT + FORMER[name] if name in FORMER else ""
     # the check itself says what would do
-    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", formerly=former)
+    between = name == BACKLASH
+    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", between=between, formerly=former)
 
 
 LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}

@@ -14,6 +14,7 @@ from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
     AT_SPEED,
     HOLLOW_RADIUS,
+    LAW_ERROR,
     LEAST_WALL,
     MOTION_ERROR,
     ON_RETURN,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
 
+MORE_HARMONICS = "a higher delta.harmonics, up to 31, or the same motion as cam.law"
 Entry: TypeAlias = dict[str, Any]
 """A check as a report has it, or the report itself: plain JSON."""
 Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
@@ -38,6 +40,11 @@ Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
 def smaller_swing(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
     """Tell of a motion that is too steep."""
     return SMALLER_SWING
+
+
+def more_harmonics(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
+    """Tell of a law that its series is too far from: the cam of the law itself follows it exactly."""
+    return MORE_HARMONICS
 
 
 def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
@@ -194,6 +201,8 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
     if figure == MOTION_ERROR:
         tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
         return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
+    if figure == LAW_ERROR:
+        return f"{MORE_HARMONICS}, or " if missed.bound > 0.0 else ""
     if figure not in STEEP or recipe.linkage is not None:
         return ""
     if figure == PRESSURE_ANGLE:

@@ -116,7 +116,7 @@ def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespac
     return OK if outcome.ok else FAILED, report
 
 
-def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
+def _pictures(recipe: Recipe, content: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
     """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
     from camgeo.report.page import svg
     from camgeo.report.page.scene import STEPS
@@ -124,11 +124,11 @@ def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -
     step = round(at_deg / 360.0 * STEPS) % STEPS
     made = {}
     if "svg" in forms:
-        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, recipe.name).encode("utf-8")
+        made[f"{PICTURE}.svg"] = svg.still(content.scene, step, recipe.name).encode("utf-8")
     if "png" in forms:
         from camgeo.report.page.png import png
 
-        made[f"{PICTURE}.png"] = png(found.scene, step)
+        made[f"{PICTURE}.png"] = png(content.scene, step)
     return made
 
 

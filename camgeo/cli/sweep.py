@@ -121,10 +121,10 @@ def _complain(ask: Ask, text: str) -> None:
 def _teller(progress: Progress) -> Listener:
     """Progress with the time left, from the speed so far."""
 
-    def tell(what: str, done: int, wanted: int, seconds: float) -> None:
-        left = f", {duration(seconds / done * (wanted - done))} left" if done else ""
-        speed = f", {done / seconds:,.0f} a second" if done > seconds > 0.0 else ""
-        progress(f"{done:,} of {wanted:,} {what}{speed}{left}")
+    def tell(what: str, count: int, total: int, seconds: float) -> None:
+        left = f", {duration(seconds / count * (total - count))} left" if count else ""
+        speed = f", {count / seconds:,.0f} a second" if count > seconds > 0.0 else ""
+        progress(f"{count:,} of {total:,} {what}{speed}{left}")
 
     return tell
 

@@ -106,12 +106,12 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def watch(
-    path: Path, exported: Callable[[], tuple[str | None, str]], said: Callable[[str], None], *, port: int = 0
+    path: Path, exported: Callable[[], tuple[str | None, str]], report: Callable[[str], None], *, port: int = 0
 ) -> None:
     """Export once and then at every saving of `path`, and serve the page, until interrupted; port 0 is any free one.
 
-    `exported` gives the page, None where there is none, and what is wrong, empty where nothing is; `said` hears of the
-    address. Raises KeyboardInterrupt in the end, OSError where the port is taken.
+    `exported` gives the page, None where there is none, and what is wrong, empty where nothing is; `report` hears of
+    the address. Raises KeyboardInterrupt in the end, OSError where the port is taken.
     """
     shown = Shown()
     server = ThreadingHTTPServer((HOST, port), partial(_Handler, shown))
@@ -119,7 +119,7 @@ def watch(
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
     thread.start()
     try:
-        said(f"http://{HOST}:{server.server_address[1]}/")
+        report(f"http://{HOST}:{server.server_address[1]}/")
         last: tuple[int, int, int] | None = (0, 0, 0)
         while True:
             now = _stamp(path)

@@ -59,9 +59,9 @@ def available() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def needed(wanted: int, items: int) -> int:
+def needed(processes: int, items: int) -> int:
     """Processes that are started where so many are wanted: no more than there are items, nor than the system allows."""
-    return max(1, min(wanted, items, MOST_ON_WINDOWS if sys.platform == "win32" else wanted))
+    return max(1, min(processes, items, MOST_ON_WINDOWS if sys.platform == "win32" else processes))
 
 
 @contextmanager

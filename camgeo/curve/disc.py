@@ -69,12 +69,14 @@ class _Face(ABC):
 class StraightFace(_Face):
     """A face on a stem, `base` mm from the shaft at S = 0, its normal turned ahead of travel by `tilt` (rad).
 
-    `offset` is the eccentricity of the stem: it moves the place of contact on the face, not the cam.
+    `offset` is the eccentricity of the stem: it moves the place of contact on the face, not the cam. The stem stands
+    `turned` ahead of the shaft angle, rad.
     """
 
     base: float
     tilt: float = 0.0
     offset: float = 0.0
+    turned: float = 0.0
 
     def __post_init__(self) -> None:
         if not abs(self.tilt) < 0.5 * math.pi:
@@ -89,14 +91,14 @@ class StraightFace(_Face):
 
     def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Give the face's distance and its normal's direction."""
-        return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + self.tilt
+        return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + (self.tilt + self.turned)
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Give both with their derivatives at shaft angles (n,), (order + 1, n) each."""
         p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
         p[0] += self.base
         t = np.zeros_like(p)
-        t[0], t[1] = tau + self.tilt, 1.0
+        t[0], t[1] = tau + (self.tilt + self.turned), 1.0
         return p, t
 
     @property

@@ -90,8 +90,8 @@ class Displacement:
         """The same motion, so much larger."""
         functions = tuple(_moved(f, 0.0, scale, 0.0) for f in self.over.functions)
         over = Piecewise(self.over.knots, functions, self.over.period, self.over.smooth_seam)
-        low, high = self.range
-        return Displacement(over, self.repeats, (scale * low, scale * high))
+        low, high = sorted(scale * end for end in self.range)
+        return Displacement(over, self.repeats, (low, high))
 
     @cached_property
     def rounding(self) -> float:
@@ -131,11 +131,12 @@ def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stre
 class Translating:
     """A stem whose line passes the shaft at `offset`, e > 0 on the side from which the surface comes; `foot` is d.
 
-    The centre is at d + S along the line, d^2 = Rp^2 - e^2.
+    The centre is at d + S along the line, d^2 = Rp^2 - e^2, which stands `turned` ahead of the shaft angle, rad.
     """
 
     foot: float
     offset: float = 0.0
+    turned: float = 0.0
 
     @staticmethod
     def on(prime: float, offset: float = 0.0) -> Translating:
@@ -167,7 +168,8 @@ class Translating:
 
     def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
         """Give the centre as complex numbers (n,) and the direction of travel (n,)."""
-        return np.exp(1j * theta) * (self.foot + s + 1j * self.offset), theta
+        travel = theta + self.turned if self.turned else theta
+        return np.exp(1j * travel) * (self.foot + s + 1j * self.offset), travel
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
         """Give b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""

@@ -110,6 +110,18 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     return shape if solid.drill is None else _drilled(shape, solid.drill)
 
 
+def raised(shape: Shape, z: float) -> Shape:
+    """The solid with its faces drawn anew at a height, mm: a place in the file would be read as an assembly's."""
+    if not z:
+        return shape
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Trsf, gp_Vec
+
+    up = gp_Trsf()
+    up.SetTranslation(gp_Vec(0.0, 0.0, z))
+    return BRepBuilderAPI_Transform(shape, up, True).Shape()
+
+
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
     """Walls on the outermost outline; its lowest and its highest loop."""
     if solid.chamfer is None:

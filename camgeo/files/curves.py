@@ -143,8 +143,8 @@ def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:
     return length, radius, flat
 
 
-def point(at: Sequence[float], z: float) -> Shape:
+def point(place: Sequence[float], z: float) -> Shape:
     """Return the kernel's point at a place and a height."""
     from OCP.gp import gp_Pnt
 
-    return gp_Pnt(float(at[0]), float(at[1]), z)
+    return gp_Pnt(float(place[0]), float(place[1]), z)

@@ -137,11 +137,11 @@ def write_dxf(
     _save(path, drawing, header, comments)
 
 
-def _draw_layer(space: Modelspace, one: LayerOutline, mm: float) -> Box:
+def _draw_layer(space: Modelspace, layered: LayerOutline, mm: float) -> Box:
     """Add an outline on its layer; returns its extremes in drawing units."""
-    if one.circle is None:
-        return _draw_outline(space, one.outline, mm, one.layer)[1]
-    return _draw_circle(space, Circle(one.layer, *one.circle), mm, one.layer)[1]
+    if layered.circle is None:
+        return _draw_outline(space, layered.outline, mm, layered.layer)[1]
+    return _draw_circle(space, Circle(layered.layer, *layered.circle), mm, layered.layer)[1]
 
 
 def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float) -> list[Box]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import io
 from contextlib import contextmanager
 from functools import reduce
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from camgeo.files.brep import need_kernel, solid_shape
+from camgeo.files.brep import Shape, need_kernel, raised, solid_shape
 from camgeo.files.curves import misfit
 from camgeo.files.precision import converted
 from camgeo.fit.bound import Bound
@@ -33,23 +33,31 @@ NUMBERS = {"write.surfacecurve.mode": 0, "write.precision.mode": 0, "write.step.
 REAL = "%.16E"
 
 
+class StepBody(NamedTuple):
+    """A solid in its outlines, outermost first, mm; its own name, and the height at which it stands, mm."""
+
+    outlines: Sequence[LayerOutline]
+    solid: Solid
+    name: str = ""
+    z: float = 0.0
+
+
 def write_step(
     path: Path,
-    outlines: Sequence[LayerOutline],
-    solid: Solid,
+    bodies: Sequence[StepBody],
     *,
     tolerance: float,
     units: Literal["mm", "inch"] = "mm",
     name: str = "",
     about: str = "",
 ) -> Bound:
-    """Write the solid in its outlines, mm, in a unit; returns the contours' bound as they are written, mm.
+    """Write solids in a unit, each a product of its own; returns the contours' bound as they are written, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
     `solid_shape` does; OSError as the file system does.
     """
     need_kernel()
-    fitted = [one.outline for one in outlines if one.circle is None]
+    fitted = [one.outline for body in bodies for one in body.outlines if one.circle is None]
     bound = reduce(Bound.wider, (outline.bound.widened(written_off(outline, units)) for outline in fitted))
     if not bound.worst <= tolerance:
         raise ToleranceError(
@@ -57,7 +65,9 @@ def write_step(
             "straight arcs are rounded",
             bound.worst,
         )
-    path.write_bytes(_text(solid_shape(outlines, solid), units, name, about))
+    shapes = [raised(solid_shape(body.outlines, body.solid), body.z) for body in bodies]
+    names = [f"{name} {body.name}".rstrip() for body in bodies]
+    path.write_bytes(_text(shapes, names, units, name, about))
     return bound
 
 
@@ -66,8 +76,8 @@ def written_off(outline: Outline, units: str) -> float:
     return misfit(outline) + (0.0 if units == "mm" else converted(outline))
 
 
-def _text(shape: Any, units: str, name: str, about: str) -> bytes:  # noqa: ANN401 - shapes of the kernel have no types
-    """Write a solid out, under a name."""
+def _text(shapes: Sequence[Shape], names: Sequence[str], units: str, name: str, about: str) -> bytes:
+    """Write solids out, each under its name."""
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
     from OCP.StepData import StepData_StepWriter
@@ -75,8 +85,9 @@ def _text(shape: Any, units: str, name: str, about: str) -> bytes:  # noqa: ANN4
     writer = STEPControl_Writer()  # brings the settings into being
     with _settings(Interface_Static, TEXTS | {"write.step.unit": units.upper()}), _quiet():
         model = writer.Model(True)
-        writer.Transfer(shape, STEPControl_StepModelType.STEPControl_ManifoldSolidBrep)
-        _named(model, name, about)
+        for shape in shapes:
+            writer.Transfer(shape, STEPControl_StepModelType.STEPControl_ManifoldSolidBrep)
+        _named(model, names, name, about)
         out = StepData_StepWriter(model)
         out.FloatWriter().SetFormat(REAL)
         out.SendModel(writer.WS().Protocol())
@@ -118,20 +129,22 @@ def _quiet() -> Iterator[None]:
             printer.SetTraceLevel(level)
 
 
-def _named(model: Any, name: str, about: str) -> None:  # noqa: ANN401 - the kernel has no types
-    """Name the product and its solid, and fill in the header."""
+def _named(model: Any, names: Sequence[str], name: str, about: str) -> None:  # noqa: ANN401 - the kernel has no types
+    """Name each product and its solid, in the order in which they were transferred, and fill in the header."""
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.StepBasic import StepBasic_Product
     from OCP.StepShape import StepShape_ManifoldSolidBrep
 
+    products, solids = iter(names), iter(names)
     for number in range(1, model.NbEntities() + 1):
         entity = model.Value(number)
         if isinstance(entity, StepBasic_Product):
-            entity.SetId(_string(name))
-            entity.SetName(_string(name))
+            own = _string(next(products))
+            entity.SetId(own)
+            entity.SetName(own)
             entity.SetDescription(_string(about))
         elif isinstance(entity, StepShape_ManifoldSolidBrep):
-            entity.SetName(_string(name))
+            entity.SetName(_string(next(solids)))
     header = APIHeaderSection_MakeHeader(model)
     header.SetName(_string(f"{name}.step"))
     header.SetTimeStamp(_string(TIME))

@@ -82,11 +82,11 @@ def write_svg(
     path.write_bytes("\n".join(lines).encode("utf-8"))
 
 
-def _box(one: LayerOutline) -> Box:
+def _box(layered: LayerOutline) -> Box:
     """Extremes of an outline, mm."""
-    if one.circle is None:
-        return one.outline.box()
-    (x, y), r = one.circle
+    if layered.circle is None:
+        return layered.outline.box()
+    (x, y), r = layered.circle
     return x - r, y - r, x + r, y + r
 
 

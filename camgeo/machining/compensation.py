@@ -79,7 +79,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         surfaces = [SurfaceDesign(one, one.curve if whole else None, ()) for one in exact.surfaces]
     else:
         surfaces = [sound(made, exact, surface) for surface in exact.surfaces]
-    discs = tuple(starmap(_with_body, zip(discs_of(surfaces), bodies, strict=True)))
+    discs = tuple(starmap(_with_body, zip(discs_of(surfaces, part, exact.gap), bodies, strict=True)))
     failed = tuple(check for surface in surfaces for check in surface.checks if not check.ok)
     return Compensated(made, replace(design, exact=exact, discs=discs, driven=None), failed)
 

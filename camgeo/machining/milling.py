@@ -17,6 +17,7 @@ from camgeo.synthesis.part.as_intent import holes_of
 from kin.judge.check import Check, failed
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Surface
     from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import ArcSpline
     from camgeo.machining.cutter import CutterPath, Fit
@@ -37,17 +38,21 @@ class RoundHole(NamedTuple):
     radius: float
 
 
-def path_of(recipe: Recipe, design: Design, further: float = 0.0) -> CutterPath:
-    """Path of the cutter's centre, or one `further` off the metal; raises as `cutter_path` does."""
-    contour, asked = _milled(recipe, design)
-    return cutter_path(contour, asked.radius + further)
+def paths_of(recipe: Recipe, design: Design, further: float = 0.0) -> tuple[CutterPath, ...]:
+    """Path of the cutter's centre along each surface, or one `further` off the metal; raises as `cutter_path` does."""
+    contours, asked = _milled(recipe, design)
+    return tuple(cutter_path(contour, asked.radius + further) for _, contour in contours)
 
 
-def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
-    contour = design.only_surface.contour
-    if contour is None or recipe.manufacture is None:
+def _milled(recipe: Recipe, design: Design) -> tuple[tuple[tuple[Surface, Curve], ...], Manufacture]:
+    if not design.contours or recipe.manufacture is None:
         raise ValueError(f"{recipe.name}: there is nothing to mill")
-    return contour, recipe.manufacture
+    return design.contours, recipe.manufacture
+
+
+def pocket_of(design: Design) -> float | None:
+    """Depth of what lies between two surfaces, mm; None of a cam that is cut through."""
+    return next((disc.body.pocket for disc in design.discs if disc.body is not None), None)
 
 
 def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
@@ -63,15 +68,23 @@ def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = 
         raise recipe.error("manufacture.cutter", f"the path of its centre: {error}", given, remedy) from error
 
 
-def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | None]:
-    """Check how deep metal is left where the cutter does not reach; its path, None where there is no single one."""
-    contour, asked = _milled(recipe, design)
+def reach_checks(recipe: Recipe, design: Design) -> list[tuple[Check, CutterPath | None]]:
+    """Check of each surface how deep metal is left where the cutter does not reach; its path, None of no single one."""
+    contours, asked = _milled(recipe, design)
+    found = []
+    for surface, contour in contours:
+        check, path = _reached(asked, design, surface, contour)
+        found.append((replace(check, surface=surface.name), path))
+    return found
+
+
+def _reached(asked: Manufacture, design: Design, surface: Surface, contour: Curve) -> tuple[Check, CutterPath | None]:
     told = "no hollow"
     if not no_hollow(contour):
-        radius, at = hollow_radius(design.only_surface.surface.side, contour)
+        radius, at = hollow_radius(surface.side, contour)
         told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
     try:
-        path = path_of(recipe, design)
+        path = cutter_path(contour, asked.radius)
     except UndercutError as error:
         return failed(REACH.name, f"{error}; {told}", unit="mm", limit=asked.unreached), None
     if not path.lost:
@@ -99,25 +112,27 @@ def clear_of_hub(recipe: Recipe) -> None:
         raise recipe.error("manufacture.safe_height", what, given, remedy)
 
 
-def few_passes(recipe: Recipe) -> None:
-    """Raise RecipeErrors for a depth of cut so slight that a program of it would not come to an end."""
-    thickness, asked = recipe.part.thickness, recipe.manufacture
-    if thickness is None or asked is None or asked.depth_of_cut is None:
+def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
+    """Raise RecipeErrors for a depth of cut so slight that a program of so many paths would not come to an end."""
+    asked = recipe.manufacture
+    if depth is None or asked is None or asked.depth_of_cut is None:
         return
-    count = thickness / asked.depth_of_cut
+    count = paths * depth / asked.depth_of_cut
     if count > MOST_PASSES:
         given = f"{asked.depth_of_cut / recipe.mm:.6g} {recipe.units}"
         what = f"makes {math.ceil(count)} passes, more than {MOST_PASSES}"
-        remedy = f"give at least {thickness / MOST_PASSES / recipe.mm:.6g} {recipe.units}"
+        remedy = f"give at least {paths * depth / MOST_PASSES / recipe.mm:.6g} {recipe.units}"
         raise recipe.error("manufacture.depth_of_cut", what, given, remedy)
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
-    """Name what of the part a program leaves unmade, with the reason: it cuts through a disc, straight down."""
+    """Name what of the part a program leaves unmade, with the reason: it cuts straight down into a disc."""
     part = recipe.part
     found = list(milled_holes(recipe, design)[1])
     if part.outer is not None:
         found.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
+    elif pocket_of(design) is not None:
+        found.append(("outline", "the stock comes with it"))
     if part.hub is not None:
         found.append(("hub", "the stock comes with it, its disc as thick as part.thickness"))
     if part.set_screw is not None:
@@ -149,12 +164,13 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
 
 def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
-    from kin.judge.milling import Milling
+    from kin.judge.intent import Milling
 
     _, asked = _milled(recipe, design)
-    check, path = reach_check(recipe, design)
-    lost = path is None or bool(path.lost)
-    meant = intended(recipe, design)
+    reached = reach_checks(recipe, design)
+    lost = [path is None or bool(path.lost) for _, path in reached]
+    meant, pocket = intended(recipe, design), pocket_of(design)
+    trimmed = [each.trimmed or less for each, less in zip(meant.surfaces, lost, strict=True)]
     found, _ = milled_holes(recipe, design)
     names = {hole.name for hole in found}
     hub = recipe.part.hub
@@ -166,9 +182,10 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
         thickness=recipe.part.thickness or 0.0,
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
-        standing=check.limit or 0.0 if lost else 0.0,
+        standing=asked.unreached if any(lost) else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
-        outline=recipe.part.outer is None,
+        outline=recipe.part.outer is None and pocket is None,
+        pocket=pocket,
     )
     return replace(
         meant,
@@ -176,6 +193,6 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
         holes=tuple(hole for hole in shaped if hole.name in names),
         layers=(),
         cross_holes=(),
-        surfaces=tuple(replace(surface, trimmed=surface.trimmed or lost) for surface in meant.surfaces),
+        surfaces=tuple(replace(each, trimmed=less) for each, less in zip(meant.surfaces, trimmed, strict=True)),
         milling=milling,
     )

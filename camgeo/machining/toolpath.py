@@ -14,10 +14,13 @@ from kin.contour.contour import Contour
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.recipe.machining import Manufacture
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
+BESIDE = 1.6  # of the cutter's radius: two paths lie no farther apart, so that nothing stands between them
 SAME = 1e-9  # mm: a path that begins this near to a joint begins in it
 QUARTER = math.tan(math.pi / 8.0)  # bulge of a quarter turn
 
@@ -82,10 +85,8 @@ def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
 
     Both touch the path in its first point, from without it (`side` 1) or from within (-1).
     """
-    points, bulges = path.points, path.bulges
-    first = float(Contour.from_bulges(points, bulges).directions[0][0])
-    if clockwise:
-        points, bulges = np.roll(points[::-1], 1, axis=0), -bulges[::-1]
+    first = float(Contour.from_bulges(path.points, path.bulges).directions[0][0])
+    points, bulges = _run(path, clockwise=clockwise)
     along = np.array([math.cos(first), math.sin(first)])
     away = np.array([along[1], -along[0]]) * side
     forward = -along if clockwise else along
@@ -101,15 +102,40 @@ def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
     )
 
 
+def plunged(path: ArcSpline, *, clockwise: bool) -> Loop:
+    """A closed counter-clockwise path, run the way asked for, in whose first point the cutter comes down."""
+    points, bulges = _run(path, clockwise=clockwise)
+    return Loop(np.concatenate([points, points[:1]]), bulges, 0, len(points))
+
+
+def _run(path: ArcSpline, *, clockwise: bool) -> tuple[Array, Array]:
+    """Points and bulges of a closed counter-clockwise path, run the way asked for."""
+    if not clockwise:
+        return path.points, path.bulges
+    return np.roll(path.points[::-1], 1, axis=0), -path.bulges[::-1]
+
+
+def side_by_side(near: float, far: float, radius: float, allowance: float) -> list[float]:
+    """Places from one flank's path to the other's at which a cutter clears what lies between, mm.
+
+    The middle comes first, then pairs outward; the last stand `allowance` off the flanks' paths, without one on them.
+    """
+    middle, half = 0.5 * (near + far), 0.5 * (far - near) - math.copysign(allowance, far - near)
+    if half * (far - near) <= 0.0:
+        return [middle]
+    steps = math.ceil(abs(half) / (BESIDE * radius))
+    return [middle, *(middle + sign * half * k / steps for k in range(1, steps + 1) for sign in (-1.0, 1.0))]
+
+
 def depths(thickness: float, depth_of_cut: float) -> list[float]:
     """Heights z of equal passes down to the thickness, none deeper than allowed."""
     count = max(math.ceil(thickness / depth_of_cut * (1.0 - 1e-12)), 1)
     return [-thickness * (k + 1) / count for k in range(count)]
 
 
-def passes(rough: Loop | None, fine: Loop, asked: Manufacture, thickness: float) -> list[Pass]:
-    """Passes down to the thickness: all round the finished path, or round a rough one and last the fine one."""
-    levels = depths(thickness, asked.depth_of_cut or thickness)
-    if rough is None:
-        return [Pass(z, fine) for z in levels]
-    return [*(Pass(z, rough) for z in levels), Pass(levels[-1], fine)]
+def passes(rough: Sequence[Loop], fine: Sequence[Loop], asked: Manufacture, depth: float) -> list[Pass]:
+    """Passes down to a depth: round all paths at each height, or round rough ones and last, with an allowance, fine."""
+    levels = depths(depth, asked.depth_of_cut or depth)
+    if not rough or asked.allowance is None:
+        return [Pass(z, loop) for z in levels for loop in (*rough, *fine)]
+    return [*(Pass(z, loop) for z in levels for loop in rough), *(Pass(levels[-1], loop) for loop in fine)]

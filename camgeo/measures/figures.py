@@ -10,6 +10,7 @@ from camgeo.checks.declared import (
     CHECKS,
     CLEARANCE,
     COLLISION,
+    LAW,
     LEAST_BACKLASH,
     PRESSURE,
     RATIO,
@@ -19,12 +20,16 @@ from camgeo.checks.declared import (
 )
 from camgeo.recipe.figures import (
     AT_SPEED,
+    BACKLASH,
     BASE_RADIUS,
     DWELL,
+    ECCENTRICITY,
     FACE_WIDTH,
     FIGURES,
     HOLLOW_RADIUS,
+    INERTIA,
     JAM_MARGIN,
+    MASS,
     OFFSET,
     ON_RETURN,
     ON_RISE,
@@ -35,6 +40,7 @@ from camgeo.recipe.figures import (
     RADIUS,
     ROLLER_SPEED,
     SIZE,
+    UNBALANCE,
 )
 from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width
 from kin.judge.verdict import UNREAD
@@ -47,6 +53,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Surface
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
+    from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, SurfaceDesign
@@ -59,7 +66,7 @@ if TYPE_CHECKING:
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
-_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE, COLLISION)}
+_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
 class Measured(NamedTuple):
@@ -241,6 +248,21 @@ def _pivot(_: Recipe, design: Design) -> Measured:
     return Measured(design.follower.pivot, "mm")
 
 
+def _of_mass(value: Callable[[Balance], float], unit: str) -> Callable[[Recipe, Design], Measured]:
+    """Make the measure of the discs' balance: the greatest of them."""
+
+    def measure(recipe: Recipe, design: Design) -> Measured:
+        from camgeo.measures.balance import balances
+
+        found = balances(recipe, design)
+        if not found:
+            return Measured(None, unit, detail="the part is no single body")
+        detail = f"without the {', '.join(found[0].without)}" if found[0].without else ""
+        return _greatest(Measured(value(one), unit, detail=detail, surface=one.surface) for one in found)
+
+    return measure
+
+
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
@@ -255,6 +277,10 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ROLLER_SPEED: _roller_speed,
     FACE_WIDTH: _face_width,
     JAM_MARGIN: _jam_margin,
+    MASS: _of_mass(lambda disc: disc.mass, "kg"),
+    ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
+    INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
+    UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
 }
 
 
@@ -340,9 +366,9 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     if name == "output-error":
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
-    if name == "backlash" and file.closures:
+    if name == BACKLASH and file.closures:
         return _greatest(_of_play(closure.play) for closure in file.closures)
-    if name == "backlash":
+    if name == BACKLASH:
         held = [
             one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash
         ]

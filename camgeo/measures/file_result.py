@@ -23,7 +23,8 @@ class FileResult(OfSurfaces):
 
     `body` is the one that it is judged as, `units` (mm) the unit of its numbers, None where there are none or nothing
     was read. `surfaces`, `closures` and `chains`, every closed contour as read, are those of its verdict: none of a
-    file that is not judged as the cam.
+    file that is not judged as the cam. `disc` is the one that the file holds, counted from 0, None for all; `uneven` as
+    of its verdict.
     """
 
     path: Path
@@ -36,6 +37,8 @@ class FileResult(OfSurfaces):
     surfaces: tuple[SurfaceVerdict, ...] = ()
     closures: tuple[ClosureVerdict, ...] = ()
     chains: tuple[Contour, ...] = ()
+    disc: int | None = None
+    uneven: float = 0.0
 
     @staticmethod
     def of(
@@ -43,8 +46,8 @@ class FileResult(OfSurfaces):
     ) -> FileResult:
         """Give what is known of a file by its verdict, and if it was `made` here number of pieces and proved bound."""
         pieces, bound = (verdict.pieces, None) if made is None else made
-        found = verdict.surfaces, verdict.closures, verdict.chains
-        return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *found)
+        read = verdict.surfaces, verdict.closures, verdict.chains
+        return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)
 
     @property
     def shows_cam(self) -> bool:

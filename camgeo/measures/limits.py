@@ -47,9 +47,12 @@ def limit_checks(
             for run, value in of_dynamics(name, dynamics, checks).items():
                 found += _held(recipe, limit, value, run)
         elif of == "file":
-            declared = EVERY[LIMIT + name].of_file
+            declared = EVERY[LIMIT + name]
+            closed = declared.between and len(design.discs) > 1
             for file in files:
-                if file.body == "cam" and declared is not None and declared(scene, file.request):
+                if closed and not file.closures:
+                    continue  # it stands on the last file of a pair
+                if file.body == "cam" and declared.of_file is not None and declared.of_file(scene, file.request):
                     value = of_file(name, file, checks)
                     found += _held(recipe, limit, value, file.path.name, file.tolerance)
     return found

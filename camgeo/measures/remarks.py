@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.checks.declared import MOTION, PRESSURE
+from camgeo.checks.declared import LAW, MOTION, PRESSURE
+from camgeo.checks.remedies import MORE_HARMONICS
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.figures import of_design
@@ -37,6 +38,7 @@ THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
 LASTS = 0.95  # of an intended dwell: so much of it the file's lasts at least
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
+NEAR = 0.05  # of the swing: the error of a series that follows a wanted law
 CLEAR = 0.05  # of the cam's size
 SHAFT = 0.02  # of the cam's size: the least radius of a shaft that drives it
 HALF = 0.5  # of the least convex radius of the pitch curve: the greatest roller by rule of thumb
@@ -61,6 +63,7 @@ RemarkName = Literal[
     "sizing",
     "thick",
     "thin",
+    "wanted-law",
     "wide-dwell-band",
 ]
 
@@ -89,6 +92,7 @@ def remarks_of(
         _cutter(recipe, design),
         _pivot(recipe, design),
         *_motion(recipe, design),
+        _law_error(recipe, design),
         _implied(recipe, design, checks, files),
         _acceleration(recipe, design.exact.joints),
         *_output(recipe, design),
@@ -253,6 +257,19 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
         error *= arm
         found.append(_share(recipe, "loose-motion-error", ("verify.motion_error", error), length))
     return found
+
+
+def _law_error(recipe: Recipe, design: Design) -> Remark | None:
+    """A swing that is far from the one wanted, where the recipe does not limit it."""
+    found = next((check for check in design.checks if check.name == LAW.name), None)
+    if found is None or found.value is None or any(limit.figure == LAW.name for limit in recipe.limits):
+        return None
+    swing = math.degrees(_stroke(design)[0])
+    if not 0.0 < NEAR * swing < found.value:
+        return None
+    off = f"the swing is off delta.law by up to {found.value:.4g} deg, {found.value / swing:.3g} times the swing"
+    told = f"{off}; {MORE_HARMONICS} would be nearer"
+    return Remark("wanted-law", found.value, NEAR * swing, "deg", told, found.at_deg)
 
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:

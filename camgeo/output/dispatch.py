@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.output.job import Made
-from camgeo.recipe.export import SOLIDS
+from camgeo.recipe.export import BY_DISC, SOLIDS, name_of_disc
 from kin.judge.check import about
 
 if TYPE_CHECKING:
@@ -13,10 +13,12 @@ if TYPE_CHECKING:
 
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
-    """Make the files of one request, the first at `path`, any others beside it.
+    """Make the files of one request, the first at `path` or of several discs each beside it, any others there too.
 
     Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
     or a missing extra stands in the way. A page is no such request: it reports on all other files.
@@ -28,15 +30,26 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
         from camgeo.output.mechanism import make_mechanism
 
         return make_mechanism(job, request, path)
+    if len(job.design.discs) == 1 or request.kind not in BY_DISC:
+        return _make(job, request, path)
+    paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(len(job.design.discs))]
+    return job.closed(request, [_make(one, request, there) for one, there in zip(job.single, paths, strict=True)])
+
+
+def _make(job: Job, request: FileRequest, path: Path) -> Made:
     match request.kind:
         case "dxf" | "svg":
             from camgeo.output.drawing import make_drawing
 
             return make_drawing(job, request, path)
-        case "stl" | "3mf":
-            from camgeo.output.solid import make_solid
+        case "stl":
+            from camgeo.output.solid import make_stl
 
-            return make_solid(job, request, path)
+            return make_stl(job, request, path)
+        case "3mf":
+            from camgeo.output.solid import make_3mf
+
+            return make_3mf(job, request, path)
         case "step":
             from camgeo.output.step import make_step
 
@@ -70,7 +83,7 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("stl", None): 2,
     ("3mf", None): 2,
     ("glb", None): 2,
-    ("gcode", None): 1,
+    ("gcode", None): 2,
     ("csv", "motion"): 2,
     ("csv", "contacts"): 2,
     ("csv", "polar"): 1,
@@ -78,22 +91,43 @@ SURFACES: dict[tuple[str, str | None], int] = {
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 
+DISCS: dict[tuple[str, str | None], int] = {
+    ("dxf", "arcs"): 2,
+    ("dxf", "polyline"): 2,
+    ("dxf", "spline"): 2,
+    ("svg", "arcs"): 2,
+    ("svg", "polyline"): 2,
+    ("svg", "spline"): 2,
+    ("step", "arcs"): 2,
+    ("step", "spline"): 2,
+    ("stl", None): 2,
+    ("3mf", None): 2,
+    ("glb", None): 2,
+    ("gcode", None): 2,
+    ("csv", "motion"): 2,
+    ("csv", "contacts"): 2,
+}
+"""How many discs on one shaft each form of a file is taught to hold, one where it does not stand here."""
 
-def demand_taught(job: Job, request: FileRequest) -> None:
-    """Raise RecipeErrors where a form of file is not taught as many surfaces as the cam has."""
-    count = len(job.design.exact.surfaces)
-    if count <= SURFACES.get((request.kind, request.as_), 1):
+
+def demand_taught(recipe: Recipe, design: Design, request: FileRequest) -> None:
+    """Raise RecipeErrors where a form of file is not taught as many surfaces or discs as the cam has."""
+    form, surfaces, discs = (request.kind, request.as_), len(design.exact.surfaces), len(design.discs)
+    if discs > DISCS.get(form, 1):
+        others, what = [other for other, most in DISCS.items() if most >= discs], f"{discs} discs"
+    elif discs == 1 and surfaces > SURFACES.get(form, 1):
+        others, what = [other for other, most in SURFACES.items() if most >= surfaces], f"{surfaces} surfaces"
+    else:
         return
-    form = request.kind if request.as_ is None else f"{request.kind} as {request.as_}"
-    forms = [form for form, most in SURFACES.items() if most >= count]
-    others = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in forms)
-    remedy = f"give {others}" if others else "leave it out"
-    raise job.recipe.error(job.field(request), f"{form} does not hold a cam of {count} surfaces", None, remedy)
+    held = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in others)
+    word = request.kind if request.as_ is None else f"{request.kind} as {request.as_}"
+    remedy = f"give {held}" if held else "leave it out"
+    raise recipe.error(recipe.field_of(request), f"{word} does not hold a cam of {what}", None, remedy)
 
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
-    demand_taught(job, request)
+    demand_taught(job.recipe, job.design, request)
     if request.parts == "all":
         from camgeo.output.mechanism import foresee_mechanism
 
@@ -102,4 +136,5 @@ def foresee(job: Job, request: FileRequest) -> None:
     if request.kind in SOLIDS - {"step"} and not failed:
         from camgeo.output.solid import aim
 
-        aim(job, request)
+        for single in job.single:
+            aim(single, request)

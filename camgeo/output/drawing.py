@@ -48,14 +48,13 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerO
     asked = job.recipe.manufacture
     if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
         return [], []
-    from camgeo.machining.milling import path_arcs, reach_check
+    from camgeo.machining.milling import path_arcs, reach_checks
 
     with job.clock.stage("cutter path"):
-        check, path = reach_check(job.recipe, job.design)
-        if path is None:
-            return [check], []
-        arcs = path_arcs(job.recipe, path, job.tolerance(request))
-    return [check], [LayerOutline("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
+        reached = reach_checks(job.recipe, job.design)
+        paths = [path_arcs(job.recipe, path, job.tolerance(request)) for _, path in reached if path is not None]
+    drawn = [arcs.mirrored() if job.recipe.rotation == "ccw" else arcs for arcs in paths]
+    return [check for check, _ in reached], [LayerOutline("TOOLPATH", arcs) for arcs in drawn]
 
 
 def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Path, tool: list[LayerOutline]) -> None:

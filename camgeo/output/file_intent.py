@@ -5,22 +5,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curve import CurveError
-from camgeo.synthesis.intent import intended
+from camgeo.synthesis.intent import closures_between, intended
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.intent import PartIntent
+    from kin.judge.intent import PartIntent, ShaftIntent
 
 
-def intent_of_file(
+def shaft_of_file(
     recipe: Recipe, design: Design, kind: str, by: Compensation | None = None, field: str = "export.files"
-) -> PartIntent:
-    """What kin is given of a file of some kind, whose part may be made different `by` something.
+) -> ShaftIntent:
+    """What kin is given of files of some kind, whose discs may be made different `by` something.
 
     Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.
     """
+    from kin.judge.intent import ShaftIntent
+
     if by is not None:
         from camgeo.machining.compensation import compensated
 
@@ -28,7 +31,18 @@ def intent_of_file(
             made = compensated(recipe, design, by, field)
         except CurveError as error:
             raise recipe.error(field, str(error)) from error
-        return intended(made.recipe, made.design)
+        recipe, design = made.recipe, made.design
+    if len(design.discs) == 1:
+        return ShaftIntent((intent_of_file(recipe, design, kind),))
+    parts = tuple(
+        replace(intent_of_file(recipe, single, kind), name=disc.name)
+        for single, disc in zip(design.single, design.discs, strict=True)
+    )
+    return ShaftIntent(parts, tuple(disc.z for disc in design.discs), closures_between(design))
+
+
+def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
+    """What kin is given of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several."""
     if kind != "gcode":
         return intended(recipe, design)
     if recipe.manufacture is None:

@@ -3,29 +3,46 @@
 from __future__ import annotations
 
 import math
+from functools import reduce
 from typing import TYPE_CHECKING
 
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+from camgeo.fit.bound import Bound
 from camgeo.fit.cache import Fits
 from camgeo.fit.pieces import ArcSpline
+from camgeo.machining.cutter import CutterPath
 from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_arcs, path_of, reach_check, unmilled
-from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes
+from camgeo.machining.milling import (
+    clear_of_hub,
+    few_passes,
+    milled_holes,
+    path_arcs,
+    paths_of,
+    pocket_of,
+    reach_checks,
+    unmilled,
+)
+from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes, plunged, side_by_side
 from camgeo.output.job import Made
 from kin.judge.check import about
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.curve.curve import Curve
-    from camgeo.machining.cutter import CutterPath
     from camgeo.machining.milling import RoundHole
     from camgeo.machining.toolpath import Loop, Pass
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Manufacture
+    from kin.law.contacts import Side
 
 FEATURE = "contour"
-ROUGH = 0.1  # of the allowance, within which the passes run that leave it
+ROUGH = 0.1  # of the allowance, or of what a rough path leaves, within which it runs
+ONE = 0.2  # of the tolerance: two paths that lie no farther apart are milled as one in their middle
+LEAD = 0.4  # of the room between two paths, at most, for the ways to either
+LEAST_LEAD = 1e-2  # mm: radius of a way in below which there is none
 
 
 def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
@@ -34,30 +51,27 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     if asked is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
     clear_of_hub(recipe)
-    few_passes(recipe)
+    few_passes(recipe, recipe.part.thickness)
     with job.refusals(request), job.clock.stage("cutter path"):
-        check, _ = reach_check(recipe, job.design)
-    check = about(check, path.name)
-    if not check.ok:
-        return Made((), (check,))
+        checks = tuple(about(check, path.name) for check, _ in reach_checks(recipe, job.design))
+    if not all(check.ok for check in checks):
+        return Made((), checks)
     mm = recipe.told_for(request).mm
-    count = places(job.tolerance(request), mm, _told_apart(job, asked))
     with job.refusals(request):
-        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, mm))
-        rough = None
-        if asked.allowance is not None:
-            rough = _outline(job, path_of(recipe, job.design, asked.allowance), ROUGH * asked.allowance)
+        places_apart, mill = _told_apart(job, asked), _contour if pocket_of(job.design) is None else _pocket
+        count = places(job.tolerance(request), mm, places_apart)
+        steps, fine = mill(job, asked, job.tolerance(request) - rounding(count, mm))
         with job.clock.stage("write gcode"):
-            features = [*_holes(job, asked), (FEATURE, _round(job, asked, rough, fine))]
-            _write(job, request, path, features, count)
-    bound = fine.bound.widened(rounding(count, mm))
-    made = job.judged(request, path, bound, fine.count)
-    return Made(made.files, (check, *made.checks))
+            _write(job, request, path, [*_holes(job, asked), (FEATURE, steps)], count)
+    bound = reduce(Bound.wider, (outline.bound for outline in fine)).widened(rounding(count, mm))
+    made = job.judged(request, path, bound, sum(outline.count for outline in fine))
+    return Made(made.files, (*checks, *made.checks))
 
 
 def _told_apart(job: Job, asked: Manufacture) -> list[float]:
     """Lengths by which places of the program lie apart, mm."""
-    step = -depths(job.recipe.part.thickness or 0.0, asked.depth_of_cut or math.inf)[0]
+    pocket, thickness = pocket_of(job.design), job.recipe.part.thickness or 0.0
+    step = -max(depths(depth, asked.depth_of_cut or math.inf)[0] for depth in (pocket or thickness, thickness))
     found, _ = milled_holes(job.recipe, job.design)
     lead = min([asked.lead, *(0.5 * (hole.radius - asked.radius) for hole in found)])
     return [length for length in (step, asked.safe_height, asked.allowance, lead) if length]
@@ -76,20 +90,61 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
     return path_arcs(job.recipe, path, tolerance, fitted)
 
 
-def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSpline) -> list[Pass]:
-    """Passes along the contour: round a disc, within a ring."""
-    thickness = job.recipe.part.thickness
+def _contour(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
+    """Passes along the contour, round a disc or within a ring, and the path that makes it."""
+    thickness, (surface, _) = job.recipe.part.thickness, job.design.contours[0]
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
-    side = job.design.only_surface.surface.side
+    (path,) = paths_of(job.recipe, job.design)
+    fine, rough = _outline(job, path, tolerance), list[ArcSpline]()
+    if asked.allowance is not None:
+        (path,) = paths_of(job.recipe, job.design, asked.allowance)
+        rough = [_outline(job, path, ROUGH * asked.allowance)]
+    loops = [_round(job, asked, outline, surface.side) for outline in (*rough, fine)]
+    return passes(loops[:-1], loops[-1:], asked, thickness), [fine]
 
-    def loop(path: ArcSpline) -> Loop:
-        begun = begun_at(path, asked.start)
-        drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-        lead = asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn))
-        return led(drawn, lead, side=side, clockwise=(asked.direction == "climb") == (side > 0))
 
-    return passes(None if rough is None else loop(rough), loop(fine), asked, thickness)
+def _round(job: Job, asked: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> Loop:
+    """A path along a surface with ways in and out, which have `room`, mm; where they would vanish it has none."""
+    begun = begun_at(path, asked.start)
+    drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
+    clockwise = (asked.direction == "climb") == (side > 0)
+    if LEAD * room < LEAST_LEAD:
+        return plunged(drawn, clockwise=clockwise)
+    lead = asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn))
+    return led(drawn, min(lead, LEAD * room), side=side, clockwise=clockwise)
+
+
+def _pocket(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
+    """Passes between two surfaces, down the middle first and along both last, and the paths that make them.
+
+    Where the paths along both are one within the tolerance, that in the middle makes both.
+    """
+    (inner, _), (outer, _) = job.design.contours
+    pitch, radius, depth = inner.base.shape, asked.radius, pocket_of(job.design)
+    if depth is None:
+        raise job.recipe.error("cam.track.groove.depth", "gcode needs the depth of the groove")
+    near, far = radius - inner.radius, outer.radius - radius  # without the pitch curve
+    room = far - near
+
+    def along(place: float, within: float) -> ArcSpline:
+        return _outline(job, CutterPath(Curve.whole(Parallel(pitch, -place)), radius), within)
+
+    reached = paths_of(job.recipe, job.design)
+    if room <= ONE * tolerance and not any(path.lost for path in reached):
+        middle = along(0.5 * (near + far), tolerance - 0.5 * max(room, 0.0))
+        fine = [replace(middle, bound=middle.bound.widened(0.5 * max(room, 0.0)))]
+        return passes([], [_round(job, asked, middle, inner.side, 0.0)], asked, depth), fine
+    ways = side_by_side(near, far, radius, asked.allowance or 0.0)
+    if not asked.allowance and len(ways) > 1:
+        del ways[-2:]  # the flanks' own
+    few_passes(job.recipe, depth, len(ways) + len(reached))
+    rough = [along(place, max(tolerance, ROUGH * min(place - near, far - place, radius))) for place in ways]
+    fine = [_outline(job, path, tolerance) for path in reached]
+    sides = [(inner if place - near < far - place else outer).side for place in ways]
+    first = [_round(job, asked, path, side, 0.0) for path, side in zip(rough, sides, strict=True)]
+    last = [_round(job, asked, path, each.side, room) for path, each in zip(fine, (inner, outer), strict=True)]
+    return passes(first, last, asked, depth), fine
 
 
 def _holes(job: Job, asked: Manufacture) -> list[tuple[str, list[Pass]]]:
@@ -107,8 +162,8 @@ def _hole(job: Job, asked: Manufacture, hole: RoundHole) -> list[Pass]:
         return led(path, min(asked.lead, 0.5 * radius), side=-1, clockwise=asked.direction != "climb")
 
     left = reach - (asked.allowance or 0.0)
-    rough = None if asked.allowance is None or left <= 0.5 * asked.allowance else loop(left)
-    return passes(rough, loop(reach), asked, job.recipe.part.thickness or 0.0)
+    rough = [] if asked.allowance is None or left <= 0.5 * asked.allowance else [loop(left)]
+    return passes(rough, [loop(reach)], asked, job.recipe.part.thickness or 0.0)
 
 
 def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str, list[Pass]]], count: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import MOTION, RATIO
@@ -15,12 +16,12 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
-from camgeo.output.file_intent import intent_of_file
+from camgeo.output.file_intent import intent_of_file, shaft_of_file
 from camgeo.synthesis.intent import permitted
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from camgeo.assembly.assembly import Assembly
@@ -87,6 +88,15 @@ class Job:
         if request.units is not None:  # a file's title tells lengths as its numbers do
             job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
         return job, ()
+
+    @property
+    def single(self) -> tuple[Job, ...]:
+        """The job for each disc, as a file with that disc alone shows it."""
+        fits = iter(self.fits)
+        return tuple(
+            replace(self, design=design, fits=tuple(islice(fits, len(design.surfaces))))
+            for design in self.design.single
+        )
 
     @property
     def clock(self) -> Clock:
@@ -172,6 +182,32 @@ class Job:
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def judged_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read back a file of several discs, each in its place, and hold it against the recipe's motion."""
+        from kin.judge.together import DiscFile, verify_set
+
+        recipe, tolerance = self.recipe, self.tolerance(request)
+        meant = shaft_of_file(recipe.told_for(request), self.design, request.kind)
+        with self.clock.stage(f"judge {request.kind}"):
+            (verdict,) = verify_set([DiscFile(path, None)], meant, recipe.verify.angles, permitted(recipe, tolerance))
+        file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
+        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def closed(self, request: FileRequest, made: Sequence[Made]) -> Made:
+        """Put together what was made of each disc, and judge what is left between them."""
+        from kin.judge.together import DiscsRead, left_between
+
+        files = [replace(file, disc=rank) for rank, each in enumerate(made) for file in each.files]
+        checks = [check for each in made for check in each.checks]
+        if not files:
+            return Made((), tuple(checks))
+        limits = permitted(self.recipe, self.tolerance(request))
+        with self.clock.stage(f"judge {request.kind}"):
+            read = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
+            closures, more = left_between(read, shaft_of_file(self.recipe, self.design, request.kind), limits)
+        files[-1] = replace(files[-1], closures=closures)
+        return Made(tuple(files), (*checks, *more))
 
     def _why_lost(self, check: Check) -> Check:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.common.clock import Clock
 from camgeo.measures.file_result import FileResult
-from camgeo.output.file_intent import intent_of_file
+from camgeo.output.file_intent import shaft_of_file
 from camgeo.report.document import Findings, document, encoded
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from camgeo.output.sets import FileSet
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
     from kin.judge.check import Check
+    from kin.judge.intent import ShaftIntent
 
 REPORT = "report.json"
 
@@ -103,9 +105,9 @@ def judged(
     `units`, mm, is that of files that state none; raises UnitsError where one states another. `second_opinion` asks
     other libraries about them too; SurroundingsError without those.
     """
+    from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
-    from kin.judge.verify import verify
-    from kin.read.files import kind_of
+    from kin.judge.together import DiscFile, verify_set
 
     clock = Clock()
     if second_opinion:
@@ -113,26 +115,38 @@ def judged(
 
         demand_libraries(recipe)
     design = designed(recipe, clock)
-    checks, files = list(design.checks), []
-    for path in paths:
+    checks, results = list(design.checks), dict[int, FileResult]()
+    skipped: list[Skipped] = []
+    for given in sets_of(recipe, paths, tolerance):
+        kind, asked, within = given.held.kind, given.held.asked, given.held.tolerance
         with clock.stage("judge"):
-            asked = recipe.request_of(path.name)
-            request = FileRequest(kind_of(path)) if asked is None else asked
-            within = (request.tolerance or recipe.export.tolerance) if tolerance is None else tolerance
+            request = FileRequest(kind) if asked is None else asked
             told = recipe if asked is None else recipe.told_for(asked)
-            meant = intent_of_file(told, design, kind_of(path), request.compensation, recipe.field_of(asked))
-            given = recipe.unstated(path) if units is None else units
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), given)
-        request = FileRequest(verdict.kind, compensation=request.compensation)
-        files.append(FileResult.of(path, request, within, verdict))
-        checks += verdict.checks
-    skipped: tuple[Skipped, ...] = ()
+            meant = shaft_of_file(told, design, kind, request.compensation, recipe.field_of(asked))
+            unstated = [recipe.unstated(path) if units is None else units for _, path, _ in given.files]
+            discs = [DiscFile(path, disc, mm) for (_, path, disc), mm in zip(given.files, unstated, strict=True)]
+            verdicts = verify_set(discs, meant, recipe.verify.angles, permitted(recipe, within))
+        for (place, path, disc), verdict in zip(given.files, verdicts, strict=True):
+            made = FileRequest(verdict.kind, compensation=request.compensation)
+            rank = disc if len(meant.parts) > 1 else None
+            results[place] = replace(FileResult.of(path, made, within, verdict), disc=rank)
+            checks += verdict.checks
+        skipped += _alone(given, meant)
+    files = [results[place] for place in sorted(results)]
     if second_opinion:
         from camgeo.output.second_opinion import second_opinion_on
 
         opinion = second_opinion_on(files, recipe, design, checks, clock)
-        checks, skipped = [*checks, *opinion.checks], opinion.skipped
-    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=skipped))
+        checks, skipped = [*checks, *opinion.checks], [*skipped, *opinion.skipped]
+    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped)))
+
+
+def _alone(given: FileSet, meant: ShaftIntent) -> list[Skipped]:
+    """What is not judged of a set that lacks a disc."""
+    lacking = [part.name for rank, part in enumerate(meant.parts) if not {rank, None} & given.discs]
+    names = " and ".join(path.name for _, path, _ in given.files)
+    why = f"{names} is judged alone: {' and '.join(lacking)} is not among the files that are given"
+    return [(closure.name, why) for closure in meant.closures if lacking]
 
 
 def _produced(
@@ -187,6 +201,8 @@ def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult
 def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
     from camgeo.report.page.content import content
 
+    if len(design.discs) > 1:
+        raise recipe.error("export.files", f"a page does not show a cam of {len(design.discs)} discs", None, "")
     with clock.stage("page"):
         return content(recipe, design, [file for file in found.files if file.shows_cam])
 
@@ -221,6 +237,7 @@ def _findings(
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
+    from camgeo.measures.balance import balances
     from camgeo.measures.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
@@ -237,4 +254,5 @@ def _findings(
         remarks=remarks,
         joints=design.exact.joints,
         contours={surface.name: measures(contour) for surface, contour in design.contours},
+        balances=balances(recipe, design),
     )

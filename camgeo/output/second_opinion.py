@@ -29,7 +29,7 @@ from camgeo.common.errors import SurroundingsError
 from camgeo.files.errors import demand_uninterrupted, install
 from camgeo.fit.nodes import MOST_PIECES, ToleranceError
 from camgeo.fit.pieces import Polygon
-from camgeo.output.file_intent import intent_of_file
+from camgeo.output.file_intent import shaft_of_file
 from camgeo.output.job import Job
 from camgeo.output.skipped import scene_of
 from kin.judge.check import Check, about, at_most, failed
@@ -39,11 +39,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from camgeo.common.clock import Clock
+    from camgeo.fit.cache import Fits
     from camgeo.measures.file_result import FileResult
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.contour.contour import Contour
+    from kin.judge.intent import PartIntent
     from kin.numeric.arrays import Array
 
 MOST_NAMED = 5  # faults named in a message
@@ -150,23 +152,31 @@ def _of_audit(_: Job, file: FileResult) -> list[Check]:
 
 
 def _of_contour(job: Job, file: FileResult) -> list[Check]:
-    """Hold the contour as read, cut into a polygon, against the exact one as a polygon: valid, area, distance."""
-    import shapely
-
-    tolerance = file.tolerance
-    if file.contour is None or tolerance is None:
+    """Hold each contour as read, cut into a polygon, against the exact one as a polygon: valid, area, distance."""
+    read = {one.name: one.contour for one in file.surfaces if one.contour is not None}
+    if not read or file.tolerance is None:
         raise _Skip("no contour could be read from the file")
     job, failures = job.of_file(file.request)
     if failures:
         raise _Skip("there is no exact contour to compare with")
-    try:
-        (fit,) = job.fits
-        exact = fit.within("polyline", SHARE * tolerance)
-        if not isinstance(exact, Polygon):
-            raise TypeError("the exact contour is compared as a polygon")
-        drawn = polygon_of(file.contour, SHARE * tolerance)
-    except (ToleranceError, ValueError) as error:
-        raise _Skip(f"no polygon within a tenth of the tolerance: {error}") from error
+    fits = {surface.name: fit for (surface, _), fit in zip(job.design.contours, job.fits, strict=True)}
+    found = []
+    for name, contour in read.items():
+        try:
+            checks = _held_by_shapely(fits[name], contour, file.tolerance)
+        except (ToleranceError, ValueError) as error:
+            raise _Skip(f"no polygon within a tenth of the tolerance: {error}") from error
+        found += [replace(check, surface=name) for check in checks]
+    return found
+
+
+def _held_by_shapely(fit: Fits, contour: Contour, tolerance: float) -> list[Check]:
+    import shapely
+
+    exact = fit.within("polyline", SHARE * tolerance)
+    if not isinstance(exact, Polygon):
+        raise TypeError("the exact contour is compared as a polygon")
+    drawn = polygon_of(contour, SHARE * tolerance)
     shape, meant = shapely.Polygon(drawn), shapely.Polygon(exact.vertices)
     area, reach = float(meant.area), float(meant.length)
     reason = "" if shape.is_valid else str(shapely.is_valid_reason(shape))
@@ -238,7 +248,7 @@ def _of_mesh(job: Job, file: FileResult) -> list[Check]:
     return [
         _held(MESH_WATERTIGHT.name, closed, "not every edge has two triangles"),
         _held(MESH_WINDING.name, turned and not inward, "the triangles face inward" if inward else "they differ"),
-        at_most(MESH_BODIES.name, bodies, 1, "bodies"),
+        at_most(MESH_BODIES.name, bodies, len(_discs_of(job, file)), "bodies"),
         *_volume(job, file, read),
         _held(MESH_STATUS.name, status == "NoError", status),
     ]
@@ -268,21 +278,33 @@ def _triangles(file: FileResult) -> int:
 
 
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
-    """Hold trimesh's volume against the exact one, as the judge holds its own."""
+    """Hold trimesh's volumes against the exact ones, as the judge holds its own; of several discs each body's."""
     from kin.judge.volume import layers_volume_check, volume_check
 
-    job, _ = job.of_file(file.request)
-    intent = intent_of_file(job.recipe, job.design, file.request.kind)
     mm, tolerance = file.units, file.tolerance
-    contours = [surface.contour for surface in file.surfaces if surface.contour is not None]
-    if not contours or mm is None or tolerance is None or intent.thickness is None:
+    parts = _discs_of(job, file)
+    bodies = [read] if len(parts) == 1 else sorted(read.split(only_watertight=False), key=lambda one: one.bounds[0][2])
+    if mm is None or tolerance is None or len(bodies) != len(parts):
         return []
-    volume = mm**3 * float(read.volume)
-    if intent.layers:
-        check = layers_volume_check(volume, contours, intent, tolerance)
-    else:
-        check = volume_check(volume, intent.thickness, contours, intent, tolerance)
-    return [replace(check, name=MESH_VOLUME.name)]
+    checks = []
+    for body, part in zip(bodies, parts, strict=True):
+        names, volume = {surface.name for surface in part.surfaces}, mm**3 * float(body.volume)
+        contours = [one.contour for one in file.surfaces if one.name in names and one.contour is not None]
+        if not contours or part.thickness is None:
+            continue
+        if part.layers:
+            check = layers_volume_check(volume, contours, part, tolerance)
+        else:
+            check = volume_check(volume, part.thickness, contours, part, tolerance)
+        checks.append(replace(check, name=MESH_VOLUME.name, surface=part.name))
+    return checks
+
+
+def _discs_of(job: Job, file: FileResult) -> tuple[PartIntent, ...]:
+    """The discs that a file holds, as kin is given them."""
+    job, _ = job.of_file(file.request)
+    parts = shaft_of_file(job.recipe, job.design, file.request.kind).parts
+    return parts if file.disc is None else (parts[file.disc],)
 
 
 ASKED: tuple[tuple[frozenset[str], Callable[[Job, FileResult], list[Check]]], ...] = (

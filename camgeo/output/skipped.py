@@ -46,7 +46,8 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
     elif "gcode" in wanted and recipe.manufacture is not None:
         from camgeo.machining.milling import unmilled
 
-        found += [(name, f"not milled: {why}") for name, why in unmilled(recipe, design)]
+        left = dict.fromkeys(each for single in design.single for each in unmilled(recipe, single))
+        found += [(name, f"not milled: {why}") for name, why in left]
     return found
 
 

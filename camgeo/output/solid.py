@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import reduce
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
+from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.output.part_geometry import contours_of, openings_of, part_mesh, rim_of
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -14,22 +19,30 @@ if TYPE_CHECKING:
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
 
 
-def make_solid(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge one solid."""
+def make_stl(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one disc."""
+    from camgeo.files.stl import write_stl
+
     mesh, facts = cam_mesh(job, request)
-    mm = job.recipe.told_for(request).mm
-    with job.clock.stage(f"write {request.kind}"):
-        if request.kind == "stl":
-            from camgeo.files.stl import write_stl
-
-            write_stl(path, mesh, mm=mm, about=job.recipe.name)
-        else:
-            from camgeo.files.three_mf import Item, write_3mf
-
-            write_3mf(path, [Item("cam", mesh)], title=job.recipe.name, mm=mm, about=job.recipe.about)
+    with job.clock.stage("write stl"):
+        write_stl(path, mesh, mm=job.recipe.told_for(request).mm, about=job.recipe.name)
     return job.judged(request, path, facts.bound, facts.vertices)
+
+
+def make_3mf(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge all discs, each in its place."""
+    from camgeo.files.three_mf import Item, write_3mf
+
+    meshed = cam_meshes(job, request)
+    items = [Item(name, mesh, place) for name, mesh, _, place in meshed]
+    with job.clock.stage("write 3mf"):
+        write_3mf(path, items, title=job.recipe.name, mm=job.recipe.told_for(request).mm, about=job.recipe.about)
+    bound = reduce(Bound.wider, (one.facts.bound for one in meshed))
+    judged = job.judged if len(meshed) == 1 else job.judged_together
+    return judged(request, path, bound, sum(one.facts.vertices for one in meshed))
 
 
 def precision_of(job: Job, request: FileRequest) -> Precision:
@@ -45,8 +58,6 @@ def aim(job: Job, request: FileRequest) -> float:
 
     Raises RecipeErrors where that is nothing.
     """
-    import numpy as np
-
     contours = (contour for _, contour in job.design.contours)
     size = max(float(np.abs(contour.sample(contour.cells.low).point).max()) for contour in contours)
     # between two samples the contour reaches a little farther
@@ -57,8 +68,34 @@ def aim(job: Job, request: FileRequest) -> float:
     return fine * job.body.fineness
 
 
+class DiscMesh(NamedTuple):
+    """A disc of a cam as a named mesh, and the place (4, 3) where it stands on the shaft, None for z = 0."""
+
+    name: str
+    mesh: Mesh
+    facts: MeshFacts
+    place: Array | None = None
+
+    @property
+    def standing(self) -> Mesh:
+        """The mesh where it stands."""
+        return self.mesh if self.place is None else replace(self.mesh, points=self.mesh.points + self.place[3])
+
+
+def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
+    """Every disc of the cam, within a request's tolerance and in its file's numbers; raises as `cam_mesh` does."""
+    discs = job.design.discs
+    if len(discs) == 1:
+        return [DiscMesh("cam", *cam_mesh(job, request))]
+    found = []
+    for disc, single in zip(discs, job.single, strict=True):
+        place = np.vstack([np.eye(3), [0.0, 0.0, disc.z]]) if disc.z else None
+        found.append(DiscMesh(disc.name, *cam_mesh(single, request), place))
+    return found
+
+
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
-    """The cam with everything that its part has, within a request's tolerance and in its file's numbers.
+    """A cam of one disc with everything that its part has, within a request's tolerance and in its file's numbers.
 
     Raises RecipeErrors and SurroundingsError as `make` does.
     """

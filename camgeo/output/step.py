@@ -16,23 +16,31 @@ if TYPE_CHECKING:
 
 def make_step(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
-    from camgeo.files.step import write_step, written_off
+    from camgeo.files.step import StepBody, write_step, written_off
 
     recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
     with job.refusals(request):
         need_kernel()
         form = request.as_ or "arcs"
-        contours = job.outlines_written(form, tolerance, lambda found: written_off(found, recipe.units))
+        discs = job.design.discs
+        names = [disc.name if len(discs) > 1 else "" for disc in discs]
+        drawn = [
+            one.outlines_written(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
+        ]
         with job.clock.stage("write step"):
             if recipe.part.thickness is None:
                 raise recipe.error("part.thickness", "a solid needs a thickness")
+            bodies = [
+                StepBody([*rim_of(one.body), *contours_of(one.design, contours)], solid_of(one.body), name, disc.z)
+                for one, contours, name, disc in zip(job.single, drawn, names, discs, strict=True)
+            ]
             bound = write_step(
                 path,
-                [*rim_of(job.body), *contours_of(job.design, contours)],
-                solid_of(job.body),
+                bodies,
                 tolerance=tolerance,
                 units=recipe.units,
                 name=recipe.name,
                 about=recipe.about,
             )
-    return job.judged(request, path, bound, sum(outline.count for outline in contours))
+    judged = job.judged if len(discs) == 1 else job.judged_together
+    return judged(request, path, bound, sum(outline.count for contours in drawn for outline in contours))

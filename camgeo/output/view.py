@@ -11,7 +11,7 @@ from camgeo.common.units import UNIT_MM
 from camgeo.files.glb import Actor, write_glb
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
-from camgeo.output.solid import cam_mesh
+from camgeo.output.solid import cam_meshes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,16 +19,17 @@ if TYPE_CHECKING:
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
 
-COLOUR = "#d08a3c"
+COLOURS = "#d08a3c", "#5b8aa6"  # of the first disc, and of one above it
 STEPS = 8  # of a turn: between two a viewer turns steadily, as the shaft does
 
 
 def make_view(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit and write the cam; raises as `make` does."""
-    mesh, _ = cam_mesh(job, request)
+    discs = cam_meshes(job, request)
     sense = 1.0 if job.recipe.rotation == "ccw" else -1.0
     pose = np.zeros((STEPS + 1, 3))
     pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
     with job.clock.stage("write glb"):
-        write_glb(path, [Actor("cam", mesh, pose, COLOUR)], title=job.recipe.name)
+        actors = [Actor(one.name, one.standing, pose, COLOURS[k % 2]) for k, one in enumerate(discs)]
+        write_glb(path, actors, title=job.recipe.name)
     return Made((FileResult(path, request, units=UNIT_MM["m"]),))

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 CAMS: Mapping[str, Table] = OnDemand(tuple(FAMILIES), lambda kind: FAMILIES[kind].table)
 MADE = (
-    "cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an arm "
-    "(disc), for a yoke of two parallel faces (constant-breadth, support) or two opposite rollers (constant-diameter), "
-    "for two rollers on one oscillating arm (double-roller) and for two faces on one (flat-pair); conjugate and "
-    "cylindrical cams are not made"
+    "cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an arm, "
+    "or for two on conjugate discs (disc), for a yoke of two parallel faces (constant-breadth, support) or two "
+    "opposite rollers (constant-diameter), for two rollers on one oscillating arm (double-roller) and for two faces on "
+    "one (flat-pair); cylindrical cams are not made"
 )
 """Which followers there are cams for, in the error of a kind that is none."""
 

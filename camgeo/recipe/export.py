@@ -41,6 +41,10 @@ SOLIDS = frozenset({"stl", "3mf", "step", "glb"})
 """Kinds of file that hold a solid, which needs a thickness."""
 
 
+BY_DISC = frozenset({"dxf", "svg", "stl", "gcode"})
+"""Kinds of file of which each disc on a shaft has one of its own; of others one has all."""
+
+
 ALL_PARTS: dict[FileKind, str] = {"stl": "cam", "3mf": "parts", "glb": "assembly"}
 """Ends of the name of the first file of all bodies."""
 
@@ -89,6 +93,19 @@ class FileRequest:
         if len(alike) > 1 and self.units and self.parts == "cam":
             parts.append(self.units)
         return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
+
+    def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
+        """Name every file with a cam of that many discs: one for all, or one for each disc."""
+        whole = self.filename(name, requests)
+        if discs == 1 or self.kind not in BY_DISC:
+            return (whole,)
+        return tuple(name_of_disc(whole, k) for k in range(discs))
+
+
+def name_of_disc(filename: str, disc: int) -> str:
+    """Name the file of one disc, counted from 0, after that of the cam: `<name>-1.dxf` for `<name>.dxf`."""
+    stem, dot, suffix = filename.rpartition(".")
+    return f"{stem}-{disc + 1}{dot}{suffix}"
 
 
 @dataclass(frozen=True)

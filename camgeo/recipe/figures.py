@@ -41,7 +41,7 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density", "wanted"]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -64,7 +64,9 @@ NEEDS: dict[Needs, str] = {
     "stem": "a stem that a cam of kind disc works",
     "stem-face": "a flat face on a stem",
     "guide": "dynamics.guide",
+    "wanted": "cam.delta.law",
     "speed": "a follower without a linkage, and dynamics.rpm",
+    "density": "part.density, and in a sweep no linkage",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
 
@@ -80,9 +82,10 @@ RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "p
 
 
 PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
+LAW_ERROR = "law-error"
 
 
-BACKLASH_LEFT = "least-backlash"
+BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
 
 
 FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
@@ -98,6 +101,9 @@ def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]
 
 
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
+
+
+MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "unbalance"
 
 
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
@@ -166,6 +172,7 @@ FIGURES: dict[str, Figure] = {
     VELOCITY_RATIO: Figure(
         "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, "least", "swings"
     ),
+    LAW_ERROR: Figure("greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", "wanted"),
     CONTACT_TRAVEL: Figure("how far the contact travels along the face", Kind.LENGTH, "least", "face"),
     FACE_WIDTH: Figure(
         "least width of a face, centred on the stem's axis, that the contact does not leave",
@@ -198,13 +205,19 @@ FIGURES: dict[str, Figure] = {
     OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", "stem"),
     PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", "arm"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
+    MASS: Figure("mass of a disc, kg", Kind.NUMBER, "least", "density", per="kg"),
+    ECCENTRICITY: Figure("distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", "density"),
+    INERTIA: Figure("moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", "density", "kg mm^2"),
+    UNBALANCE: Figure(
+        "mass of a disc times the distance of its centre of mass, kg mm", Kind.NUMBER, "least", "density", "kg mm"
+    ),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
     "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
-    "backlash": _of_file(
+    BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
@@ -269,8 +282,10 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "linkage" not in given
         case "speed":
             return "linkage" not in given and "dynamics.rpm" in given
-        case "guide":
-            return "dynamics.guide" in given
+        case "guide" | "wanted":
+            return NEEDS[needs] in given
+        case "density":
+            return "part.density" in given
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
         case "stem":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM
 from camgeo.recipe.cam import CAM, CAMS, check_cam
+from camgeo.recipe.discs import check_discs
 from camgeo.recipe.dynamics import DYNAMICS, check_train
 from camgeo.recipe.export import EXPORT, check_files
 from camgeo.recipe.figures import LIMITS, check_limits
@@ -137,6 +138,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_linkage(values, reader)
     check_part(values.get("part", {}), reader)
     check_track(values, reader)
+    check_discs(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)
     check_allowance(values.get("manufacture", {}), reader)

@@ -115,7 +115,7 @@ class Part:
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
     given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
     edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
-    the cam.
+    the cam. `density` is in kg/m^3.
     """
 
     thickness: float | None = None
@@ -133,6 +133,7 @@ class Part:
     mark: Mark | None = None
     wall: float | None = None
     outer: float | None = None
+    density: float | None = None
 
     @property
     def plain(self) -> bool:
@@ -143,6 +144,7 @@ class Part:
 
 
 MOST_HOLES = 60
+DENSEST = 30_000  # kg/m^3; osmium has 22 590
 LEAST_SIZE = 1e-3  # mm: of what is cut, drilled or stands; a file's reader takes much less for nothing
 THINNEST = 1e-6  # mm: of a body; the kernel of STEP takes points within 1e-7 mm as one
 _NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as little as one likes
@@ -314,6 +316,14 @@ PART = mapping(
         "outer", "diameter of the outline of a ring, with `track: internal`, or of a groove's blank", default="none"
     ),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
+    Field(
+        "density",
+        Kind.NUMBER,
+        "density of the material, kg/m³, for mass, inertia and unbalance",
+        default="none",
+        above=0,
+        at_most=DENSEST,
+    ),
     later=(("follower", ""),),
 )
 
@@ -326,6 +336,7 @@ def check_part(part: Values, reader: Reader) -> None:
     _needs(reader, "chamfer", "thickness", "a chamfer runs along the edges of the disc")
     _needs(reader, "set_screw", "hub", "its hole goes through the hub")
     _needs(reader, "set_screw", "bore", "its hole leads into the bore")
+    _needs(reader, "density", "thickness", "the mass is that of a solid")
     bore = part.get("bore")
     if isinstance(bore, float):
         _round(part, bore, reader)
@@ -442,7 +453,7 @@ def build_part(values: Values) -> Part:
     name = next((name for name in SIDES if name in form), "")
     width = form[name] if name else bore
     features: Values = {name: feature(**values[name]) for name, feature in FEATURES.items() if name in values}
-    features |= {name: values[name] for name in ("thickness", "outer", "chamfer", "wall") if name in values}
+    features |= {name: values[name] for name in ("thickness", "outer", "chamfer", "wall", "density") if name in values}
     if "mark" in values:
         features["mark"] = Mark(**{"kind" if key == "as" else key: item for key, item in values["mark"].items()})
     shape = {"bore": width, "sides": SIDES.get(name, 0), "bore_at": form.get("at", 0.0)}

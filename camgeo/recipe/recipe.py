@@ -124,10 +124,13 @@ class Recipe(Document):
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
+    def filenames(self, request: FileRequest) -> tuple[str, ...]:
+        """Name the files of a request that hold the cam: one, or one for each of its discs."""
+        return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
+
     def request_of(self, filename: str) -> FileRequest | None:
-        """Give the request whose file has this name, the first of all bodies' files, or None."""
-        files = self.export.files
-        return next((request for request in files if request.filename(self.name, files) == filename), None)
+        """Give the request one of whose files has this name, the first of all bodies' files, or None."""
+        return next((request for request in self.export.files if filename in self.filenames(request)), None)
 
     def unstated(self, path: Path) -> float | None:
         """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""

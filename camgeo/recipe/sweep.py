@@ -254,9 +254,10 @@ def _figures(sweep: Values, reader: Reader) -> None:
     asked = [(limit["at"], limit["figure"]) for limit in limits]
     if "rank" in sweep:
         asked.append(("sweep.rank", sweep["rank"]))
+    given = set(reader.marks) - ({"part.density"} if "linkage" in reader.marks else set())  # designs are not weighed
     for path, name in asked:
         needs = FIGURES[name].needs
-        if not there(needs, reader.offers, set(reader.marks)):
+        if not there(needs, reader.offers, given):
             remedy = f"give {NEEDS[needs]}, or take another figure"
             reader.fault_at(path, f"{name} needs {NEEDS[needs]}", None, remedy)
 

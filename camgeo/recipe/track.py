@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
 OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
 """Keys of a part that a ring cannot have."""
+SAME = 1e-12  # share by which a cutter may be wider than the groove through rounding
 DEEP = frozenset({"stl", "3mf", "step", "glb"})
 """Files in which a groove has its depth."""
 
@@ -63,8 +64,7 @@ def _check_groove(values: Values, reader: Reader) -> None:
         reader.fault_at("cam.track.groove.clearance", "a roller in a groove needs clearance", None, remedy)
     if "depth" in groove and not groove["depth"] < part.get("thickness", groove["depth"] + 1.0):
         reader.fault_at(depth, "not below the thickness", None, "give a depth below part.thickness")
-    if values.get("manufacture", {}).get("layer"):
-        reader.fault_at("manufacture.layer", "no cutter's path is made for a groove", None, "leave it out")
+    _check_cutter(values, groove.get("clearance", 0.0), reader)
     if "dynamics" in values:
         reader.fault_at("dynamics", "forces on the two flanks of a groove are not found", None, "leave it out")
     for file in values.get("export", {}).get("files", []):
@@ -75,7 +75,7 @@ def _check_groove(values: Values, reader: Reader) -> None:
                 reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
         if file.get("parts") == "all":
             reader.fault_at(path, "the bodies round a groove are not made", None, "leave `parts: all` out")
-        elif kind in DEEP and "depth" not in groove:
+        elif kind in DEEP | {"gcode"} and "depth" not in groove:
             reader.fault_at(path, f"{kind} needs the depth of the groove", None, f"give {depth}, or leave {kind} out")
         elif kind in DEEP and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"
@@ -86,3 +86,15 @@ def _check_groove(values: Values, reader: Reader) -> None:
             what = "hub" if "hub" in part else "mark"
             remedy = f"leave {kind} out, or part.{what}"
             reader.fault_at(path, f"{kind} of a groove is made without a hub or an engraved mark", None, remedy)
+
+
+def _check_cutter(values: Values, clearance: float, reader: Reader) -> None:
+    """Note a cutter that does not go into the groove."""
+    radius, cutter = values["cam"].get("follower", {}).get("radius"), values.get("manufacture", {}).get("cutter")
+    if radius is None or cutter is None:
+        return
+    width = 2.0 * radius + clearance
+    if cutter > width * (1.0 + SAME):
+        given = f"{cutter / reader.mm:.9g} {reader.units}"
+        remedy = f"give {width / reader.mm:.9g} {reader.units} or less"
+        reader.fault_at("manufacture.cutter", "wider than the groove", given, remedy)

@@ -14,12 +14,14 @@ from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
+from kin.judge.verdict import UNREAD
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from camgeo.curve.measures import Measures
+    from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
@@ -48,6 +50,7 @@ class Findings:
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     contours: Mapping[str, Measures] = field(default_factory=dict)
+    balances: tuple[Balance, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -69,6 +72,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
         "contour": _contours(recipe, found.contours),
+        **({"balance": [_balance(recipe, one) for one in found.balances]} if found.balances else {}),
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
         "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
@@ -156,10 +160,14 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
     }
-    if len(file.surfaces) < 2:
-        return entry | _surface(recipe, file.surface)
-    entry["surfaces"] = [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]
-    return entry | {"play": [_play(recipe, one) for one in file.closures]}
+    rows = [(one.name, _surface(recipe, one)) for one in file.surfaces or (UNREAD,)]
+    if len(rows) > 1:
+        entry["surfaces"] = [{"name": name, **row} for name, row in rows]
+    for name, row in rows if len(rows) == 1 else ():  # flat keys, where there is one
+        entry |= row | ({"surface": name} if name else {})
+    if file.closures or "surfaces" in entry:
+        entry["play"] = [_play(recipe, one) for one in file.closures]
+    return entry
 
 
 def _play(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
@@ -184,6 +192,20 @@ def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any
     """Perimeter and area of the exact contour, of several by the names of their surfaces."""
     told = {name: _measures(recipe, one.perimeter, one.area) for name, one in measures.items()}
     return told.get("", told) or None
+
+
+def _balance(recipe: Recipe, disc: Balance) -> dict[str, Any]:
+    """Mass and its moments of a disc: kg and mm whatever the recipe's unit, but for the place of the centre."""
+    return {
+        **({"surface": disc.surface} if disc.surface else {}),
+        "mass_kg": disc.mass,
+        "centre": [value / recipe.mm for value in disc.centre],
+        "inertia_kg_mm2": disc.inertia,
+        "unbalance_kg_mm": disc.unbalance,
+        "unbalance_deg": disc.direction,
+        "error": disc.error,
+        **({"without": list(disc.without)} if disc.without else {}),
+    }
 
 
 def _measures(recipe: Recipe, perimeter: float | None, area: float | None) -> dict[str, float | None]:
@@ -227,9 +249,9 @@ def summary(report: dict[str, Any]) -> str:
         text = escaped(file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"])
         if file.get("pieces"):
             text += f" {file['pieces']} {pieces_word(file)}"
-        motion = file.get("motion")
-        if motion and motion["max"] is not None:
-            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
+        motion, on = _worst(file)
+        if motion:
+            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}{on}"
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
@@ -243,6 +265,16 @@ def summary(report: dict[str, Any]) -> str:
     if failed:
         line += "\n" + "\n".join(f"  {text}" for text in failed)
     return line
+
+
+def _worst(file: dict[str, Any]) -> tuple[dict[str, Any] | None, str]:
+    """The greatest motion error of a file, and on which of several surfaces it is."""
+    found = [
+        (one["motion"], f" on {one['name']}" if "name" in one else "")
+        for one in file.get("surfaces") or [file]
+        if one.get("motion") and one["motion"]["max"] is not None
+    ]
+    return max(found, key=lambda each: each[0]["max"], default=(None, ""))
 
 
 def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:

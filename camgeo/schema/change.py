@@ -98,10 +98,10 @@ def _entry(node: Node, step: str | int) -> Node | None:
     return entries(node).get(step) if isinstance(node, Mapping) else None
 
 
-def _added(source: Source, node: Node, at: str, steps: list[str | int], value: Value) -> str:
+def _added(source: Source, node: Node, target: str, steps: list[str | int], value: Value) -> str:
     """Add an entry to the mapping at a path; the mappings between come to be with it."""
     whole = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
-    path = f"{at}{'' if whole.startswith('[') or not at else '.'}{whole}"
+    path = f"{target}{'' if whole.startswith('[') or not target else '.'}{whole}"
     for step in reversed(steps[1:]):
         if isinstance(step, int):
             raise _refused(source, path, "the entry does not exist", "give the whole list by its own path")
@@ -112,7 +112,7 @@ def _added(source: Source, node: Node, at: str, steps: list[str | int], value: V
         raise _refused(source, path, f"the {held} does not exist", "give a value to a field or an entry that is there")
     text = f"{name}: {_flow(value, path, source.file, 0)}"
     if not isinstance(node, Mapping):
-        return changed(source, at, {name: value})
+        return changed(source, target, {name: value})
     if node.flow:
         end = source.index(node.entries[-1][1].end) if node.entries else source.index(node.end) - 1
         return f"{source.text[:end]}{', ' if node.entries else ''}{text}{source.text[end:]}"

@@ -70,11 +70,11 @@ def shown(text: str) -> str:
     return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
 
 
-def suggestion(word: str, known: Iterable[str], near: float = NEAR) -> str:
+def suggestion(word: str, words: Iterable[str], near: float = NEAR) -> str:
     """Name the nearest of the known words, if one is as near as `near`, of 1 for the same word."""
     from difflib import get_close_matches  # for the message alone
 
     if len(word) > _LONGEST_WORD:
         return ""
-    found = get_close_matches(word.lower(), list(known), n=1, cutoff=near)
+    found = get_close_matches(word.lower(), list(words), n=1, cutoff=near)
     return f"did you mean {found[0]}?" if found else ""

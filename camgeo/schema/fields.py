@@ -10,17 +10,17 @@ from __future__ import annotations
 
 import re
 from enum import Enum
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from kin.numeric.records import KW_ONLY, dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
 
 Schema: TypeAlias = dict[str, Any]  # a JSON schema
+R = TypeVar("R")  # who reads recipes by these tables, of whom they know nothing
 
 MOST = 2e6  # of lengths as written, two kilometres in mm: a bound against slips, far above any cam
 _SLIPS = (MOST, MOST**2)
@@ -69,7 +69,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Form:
+class Form(Generic[R]):
     """What a field of `Kind.OWN` holds, as the topic that knows it declares it.
 
     `noun` and `wanted` are for messages; `read` gives None for what is faulty and has noted the fault; `schema` makes
@@ -79,7 +79,7 @@ class Form:
 
     noun: str
     wanted: str
-    read: Callable[[Reader, Field, Node, str], Any]
+    read: Callable[[R, Field, Node, str], Any]
     schema: Callable[[Field], Schema]
     tables: Mapping[str, Table] | None = None
     group: str = ""
@@ -109,7 +109,7 @@ class Field:
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
     unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
-    form: Form | None = None  # of a field of Kind.OWN
+    form: Form[Any] | None = None  # of a field of Kind.OWN
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     formerly: str = ""
     former_choices: tuple[tuple[str, str], ...] = ()
@@ -204,9 +204,9 @@ class Table:
         return next(item for item in self.fields if item.name == name)
 
 
-def not_yet(made: str) -> str:
+def not_yet(product: str) -> str:
     """Say that a key is known and refused: `grooves are not made yet`."""
-    return f"{made} are not made yet" if made else "not available in this version"
+    return f"{product} are not made yet" if product else "not available in this version"
 
 
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
@@ -265,7 +265,7 @@ def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | N
     return field, ".".join(parts)
 
 
-def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
+def elsewhere(root: Table, name: str, keys: tuple[str, ...]) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
     if name in root.keys:
         return "it belongs at the top level"
@@ -278,7 +278,7 @@ def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
         return f"it belongs under {', or under '.join(places)}"
-    return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
+    return f"the keys here are {either(keys, 'and')}" if keys else "there are no keys here"
 
 
 def of_other_kind(root: Table, path: str) -> bool:
@@ -289,7 +289,7 @@ def of_other_kind(root: Table, path: str) -> bool:
 
 def _grouped(table: Table) -> list[tuple[str, str, Table]]:
     """Every table that a kind chooses: files before cams, linkages and their dyads."""
-    forms: dict[str, Form] = {}
+    forms: dict[str, Form[Any]] = {}
 
     def walk(within: Table) -> None:
         for item in within.fields:

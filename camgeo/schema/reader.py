@@ -188,10 +188,10 @@ class Reader:
                     near = ""  # it is no slip for another word, unless it is a part of that one
                 self.fault(key.mark, below, "unknown key", None, near or elsewhere(self.root, name, known))
 
-    def _refuse_alternatives(self, table: Table, given: dict[str, Node], node: Mapping, path: str) -> None:
+    def _refuse_alternatives(self, table: Table, nodes: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
-        chosen = [name for name, _ in table.alternatives if name in given]
-        if names and not chosen and not _asks_later(table, given):
+        chosen = [name for name, _ in table.alternatives if name in nodes]
+        if names and not chosen and not _asks_later(table, nodes):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
             problem = f"cannot be combined with {self._key(path, chosen[0])}"
@@ -200,14 +200,14 @@ class Reader:
             return
         companions = dict(table.alternatives)
         for name in companions[chosen[0]]:
-            if name not in given:
+            if name not in nodes:
                 field = table.field(name)
                 remedy = f"{self.wanted(field)}: {field.about}"
                 self.fault(
                     node.mark, join(path, name), f"missing, needed with {self._key(path, chosen[0])}", None, remedy
                 )
         for name in dict.fromkeys(name for others in companions.values() for name in others):
-            if name in given and name not in companions[chosen[0]]:
+            if name in nodes and name not in companions[chosen[0]]:
                 problem = f"cannot be combined with {self._key(path, chosen[0])}"
                 self.fault_at(join(path, name), problem, None, "leave it out")
 
@@ -258,11 +258,11 @@ class Reader:
         return node.items
 
 
-def _other_measure(name: str, node: Node, known: collections.abc.Collection[str]) -> str:
+def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]) -> str:
     """Say which radius is meant by a diameter, or which diameter by a radius, with its value; empty for other keys."""
     for own, other, factor in (("diameter", "radius", 0.5), ("radius", "diameter", 2.0)):
         wanted = name.replace(own, other)
-        if own in name and wanted in known and isinstance(node, Scalar):
+        if own in name and wanted in names and isinstance(node, Scalar):
             text, unit = parted(node.text)
             with suppress(Complaint):
                 return f"give {wanted}: {factor * read_number(text):.12g} {unit}".rstrip()
@@ -270,9 +270,9 @@ def _other_measure(name: str, node: Node, known: collections.abc.Collection[str]
     return ""
 
 
-def _asks_later(table: Table, given: dict[str, Node]) -> bool:
+def _asks_later(table: Table, nodes: dict[str, Node]) -> bool:
     """Whether a mapping is of something that is not made yet: what it lacks besides is not missed."""
-    return any(name in given for name, _ in table.later)
+    return any(name in nodes for name, _ in table.later)
 
 
 def kind_of(node: Node | None, tables: collections.abc.Mapping[str, Table]) -> str:

@@ -44,7 +44,7 @@ READERS: Readers = {
 }
 
 
-def form_of_kinds(noun: str, tables: Mapping[str, Table], group: str = "", others: str = "") -> Form:
+def form_of_kinds(noun: str, tables: Mapping[str, Table], group: str = "", others: str = "") -> Form[Reader]:
     """Make the form of a mapping whose `kind` says which table has its keys; see `Form` for `group` and `others`."""
     return Form(
         f"a {noun}",

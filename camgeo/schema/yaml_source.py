@@ -163,9 +163,9 @@ def join(path: str, key: str | int) -> str:
     return f"{path}.{name}" if path else name
 
 
-def is_within(path: str, of: str) -> bool:
+def is_within(path: str, outer: str) -> bool:
     """Tell whether a path is another or lies below it."""
-    return path == of or path.startswith((f"{of}.", f"{of}["))
+    return path == outer or path.startswith((f"{outer}.", f"{outer}["))
 
 
 def as_written(path: str, renamed: collections.abc.Mapping[str, str]) -> str:

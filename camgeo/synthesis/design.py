@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.curve.curvature import Least
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut
+    from camgeo.recipe.part import Part
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven
     from camgeo.synthesis.part.body import Body
@@ -63,10 +64,19 @@ class SurfaceDesign:
 
 @dataclass(frozen=True)
 class Disc:
-    """A body on the shaft: its surfaces, and what the part has besides them; None where it is not made."""
+    """A body on the shaft: its surfaces, and what the part has besides them; None where it is not made.
+
+    `z` is the height of its lower face above that of the first one, mm.
+    """
 
     surfaces: tuple[SurfaceDesign, ...]
     body: Body | None = None
+    z: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """What tells it from other discs: the names of its surfaces."""
+        return " and ".join(made.surface.name for made in self.surfaces)
 
     @property
     def contours(self) -> tuple[tuple[Surface, Curve], ...]:
@@ -97,6 +107,11 @@ class Design:
         """Each surface with its contour; empty where a check forbids the cam: it is made whole or not at all."""
         discs = [disc.contours for disc in self.discs]
         return tuple(chain.from_iterable(discs)) if all(discs) else ()
+
+    @property
+    def single(self) -> tuple[Design, ...]:
+        """The design for each disc, as a file with that disc alone shows it."""
+        return tuple(replace(self, discs=(disc,)) for disc in self.discs)
 
     @property
     def openings(self) -> tuple[Opening, ...]:
@@ -159,7 +174,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         checks += driven.checks
     try:
         with clock.stage("part"):
-            bodied = [_with_body(recipe, disc, exact) for disc in discs_of(sounded)]
+            bodied = [_with_body(recipe, disc, exact) for disc in discs_of(sounded, recipe.part, exact.gap)]
     except CurveError as error:
         raise recipe.error("part.chamfer", str(error)) from error
     discs = tuple(disc for disc, _ in bodied)
@@ -167,10 +182,12 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     return Design(exact, discs, tuple(checks), driven)
 
 
-def discs_of(surfaces: Sequence[SurfaceDesign]) -> tuple[Disc, ...]:
-    """The discs that surfaces are on, in their order, as yet without their bodies."""
-    ranks = sorted({made.surface.disc for made in surfaces})
-    return tuple(Disc(tuple(made for made in surfaces if made.surface.disc == rank)) for rank in ranks)
+def discs_of(surfaces: Sequence[SurfaceDesign], part: Part, gap: float) -> tuple[Disc, ...]:
+    """The discs that surfaces are on, in their order from below, as yet without their bodies."""
+    ranks, pitch = sorted({made.surface.disc for made in surfaces}), (part.thickness or 0.0) + gap
+    return tuple(
+        Disc(tuple(made for made in surfaces if made.surface.disc == rank), None, rank * pitch) for rank in ranks
+    )
 
 
 def _plate(exact: ExactCam) -> Lift:
@@ -332,6 +349,8 @@ def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[
         checks = part_checks(body, looks, part.wall, shaft_deg)
     else:
         checks = [] if part.bore is None else [bore_check(part.bore, looks, part.wall, shaft_deg)]
+    if len(disc.surfaces) < len(exact.surfaces):  # of one of several discs, which its surface tells
+        checks = [replace(check, surface=disc.surfaces[0].surface.name) for check in checks]
     if all(check.ok for check in checks):
         return replace(disc, body=body), checks
-    return Disc(tuple(replace(made, contour=None) for made in disc.surfaces)), checks
+    return replace(disc, surfaces=tuple(replace(made, contour=None) for made in disc.surfaces)), checks

@@ -29,14 +29,16 @@ class Foreseen(NamedTuple):
 
 def foreseen(recipe: Recipe, *, second_opinion: bool = False) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
-    scene, files = Scene(recipe, _follower(recipe), second_opinion=second_opinion), recipe.export.files
+    scene = Scene(recipe, _follower(recipe), second_opinion=second_opinion)
     found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
     in_turn = sorted(EVERY.values(), key=lambda one: one.backlash or one.exact is not None)
-    for request in files:
-        file = request.filename(recipe.name, files)
-        made = (one.name for one in in_turn if one.of_file is not None and one.of_file(scene, request))
-        found += [Foreseen(name, file) for name in made]
+    for request in recipe.export.files:
+        names = recipe.filenames(request)
+        for file in names:
+            made = (one for one in in_turn if one.of_file is not None and one.of_file(scene, request))
+            # what is left between discs is told of the last file
+            found += [Foreseen(one.name, file) for one in made if file == names[-1] or not one.between]
     return tuple(found)
 
 

@@ -10,16 +10,25 @@ from camgeo.recipe.linkage import output_slides
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
-    from kin.judge.intent import Limits, PartIntent
+    from camgeo.synthesis.design import Design, Disc
+    from kin.judge.intent import ClosureIntent, Limits, PartIntent
 
 
 def intended(recipe: Recipe, design: Design) -> PartIntent:
-    """What kin is given of the part: the follower with its law, and how the part is drawn."""
-    from kin.judge.intent import ClosureIntent, DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
+    """What kin is given of a part that is one disc; raises ValueError for a cam of several."""
+    (intent,) = intents(recipe, design)
+    return intent
+
+
+def intents(recipe: Recipe, design: Design) -> tuple[PartIntent, ...]:
+    """What kin is given of each disc: the follower with its law, and how the part is drawn."""
+    return tuple(_intended(recipe, design, disc) for disc in design.discs)
+
+
+def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
+    from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
     driven, asked, linkage = design.driven, recipe.dwell, None
-    closures: tuple[ClosureIntent, ...] = ()
     exact = design.exact
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
@@ -31,13 +40,10 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
             one.surface.layer if one.surface.name else "",
             side=one.surface.side,
             trimmed=one.trimmed,
-            follower=exact.running[one.surface.name] if one.surface.name else None,
+            follower=exact.running.get(one.surface.name),
         )
-        for one in design.surfaces
+        for one in disc.surfaces
     )
-    if len(surfaces) > 1 and design.follower.closure:
-        pushes, stops = (surface.name for surface in surfaces)
-        closures = (ClosureIntent(pushes, stops, design.follower.closure),)
     intent = PartIntent(
         surfaces=surfaces,
         mm=recipe.mm,
@@ -46,15 +52,25 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
         thickness=recipe.part.thickness,
         outline=recipe.part.outer,
         linkage=linkage,
-        closures=closures,
+        closures=closures_between(design) if len(surfaces) > 1 else (),
     )
-    (disc,) = design.discs
     if recipe.part.plain or disc.body is None:
         return intent
     from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
 
     body = disc.body
     return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
+
+
+def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
+    """What is left between the surfaces of a cam: of two the first pushes the follower out, the other stops it."""
+    from kin.judge.intent import ClosureIntent
+
+    surfaces = design.exact.surfaces
+    if len(surfaces) < 2 or not design.follower.closure:
+        return ()
+    pushes, stops = (surface.name for surface in surfaces)
+    return (ClosureIntent(pushes, stops, design.follower.closure),)
 
 
 def permitted(recipe: Recipe, tolerance: float) -> Limits:

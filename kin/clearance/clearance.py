@@ -164,10 +164,10 @@ class _Cells(NamedTuple):
     level: int = 0
     pairs: Pairs | None = None
 
-    def within(self, kept: Mask) -> _Cells:
+    def within(self, mask: Mask) -> _Cells:
         """Return the intervals kept (m,)."""
-        pairs = self.pairs and self.pairs.within(kept)
-        return self._replace(phi=self.phi[kept], half=self.half[kept], lower=self.lower[kept], pairs=pairs)
+        pairs = self.pairs and self.pairs.within(mask)
+        return self._replace(phi=self.phi[mask], half=self.half[mask], lower=self.lower[mask], pairs=pairs)
 
     def halved(self) -> _Cells:
         """Both halves of each interval: all first halves, then all second ones."""
@@ -271,12 +271,12 @@ class _Search:
         size = (np.abs(seen.value) + seen.doubt)[open_]
         return [left._replace(pairs=meeting.near(size, left.half))]
 
-    def _take(self, phi: Array, seen: Seen) -> None:
-        k = int(np.argmin(seen.value))
-        if seen.value[k] < self.least:
-            self.least, self.at = float(seen.value[k]), float(phi[k])
+    def _take(self, phi: Array, samples: Seen) -> None:
+        k = int(np.argmin(samples.value))
+        if samples.value[k] < self.least:
+            self.least, self.at = float(samples.value[k]), float(phi[k])
             pose = self.home.motion.over(phi[k : k + 1], np.zeros(1)).pose
-            x, y = (turned(seen.place[k : k + 1], pose[:, 2]) + pose[:, :2])[0].tolist()
+            x, y = (turned(samples.place[k : k + 1], pose[:, 2]) + pose[:, :2])[0].tolist()
             self.place = (x, y)
 
     def clearance(self) -> Clearance:

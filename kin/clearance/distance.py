@@ -130,10 +130,10 @@ class Pairs(NamedTuple):
             np.concatenate([j, j[more_i], j[more_j] + 1, j[both] + 1])[order],
         )
 
-    def within(self, kept: Mask) -> Pairs:
+    def within(self, mask: Mask) -> Pairs:
         """Return the pairs of the intervals kept (m,), which are numbered anew."""
-        chosen = self.take(kept[self.cell])
-        return chosen._replace(cell=(np.cumsum(kept) - 1)[chosen.cell])
+        chosen = self.take(mask[self.cell])
+        return chosen._replace(cell=(np.cumsum(mask) - 1)[chosen.cell])
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,10 +278,10 @@ def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: 
     return value, place
 
 
-def _deepest(region: Region, arcs: Arcs, row: Indices, known: Array, precision: float) -> tuple[Array, Array]:
-    """Least signed distance from the region, of the pieces of each row, and where; what is above `known` is left."""
-    value, place = np.full(len(known), np.inf), np.zeros((len(known), 2))
-    limit = known.copy()
+def _deepest(region: Region, arcs: Arcs, row: Indices, floor: Array, precision: float) -> tuple[Array, Array]:
+    """Least signed distance from the region, of the pieces of each row, and where; what is above `floor` is left."""
+    value, place = np.full(len(floor), np.inf), np.zeros((len(floor), 2))
+    limit = floor.copy()
     for _ in range(ROUNDS):
         middle = arcs.points(0.5 * arcs.length)
         piece, distance = region.nearest(middle)

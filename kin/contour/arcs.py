@@ -117,6 +117,13 @@ class Arcs:
         """Return the pieces in reverse order, each run backwards: of a closed chain what lay left lies right."""
         return Arcs(self.ends, -self.end_tangents, -self.curvature, self.length).take(np.arange(len(self))[::-1])
 
+    def turned(self, angle: float) -> Arcs:
+        """The pieces turned counter-clockwise about the origin by an angle, rad."""
+        if not angle:
+            return self
+        by = np.full(len(self), angle)
+        return Arcs(turned(self.start, by), turned(self.tangent, by), self.curvature, self.length)
+
     def turns(self) -> Array:
         """Turn of the tangent at the start of each piece of a chain, counter-clockwise, in [-pi, pi] (n,)."""
         before = np.roll(self.end_tangents, 1, axis=0)

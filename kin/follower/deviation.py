@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.follower.envelope import Envelope
-    from kin.follower.projection import Feet
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.extrema import Extremes
+    from kin.numeric.feet import Feet
 
 LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
 TIGHT = 4.0  # a radius of curvature below so many widths of the tube makes a tight corner

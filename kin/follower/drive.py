@@ -31,17 +31,16 @@ class Excitation(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """sign * drive + offset, where the shaft stands `turned` ahead, radians."""
+    """sign * drive + offset."""
 
     drive: Excitation
     sign: float = 1.0
     offset: float = 0.0
-    turned: float = 0.0
 
     @property
     def breaks(self) -> Array:
         """The drive's."""
-        return self.drive.breaks - self.turned if self.turned else self.drive.breaks
+        return self.drive.breaks
 
     @property
     def smooth(self) -> bool:
@@ -50,6 +49,6 @@ class Shifted:
 
     def rows(self, phi: Array) -> Array:
         """See `Excitation`."""
-        rows = self.sign * self.drive.rows(phi + self.turned if self.turned else phi)
+        rows = self.sign * self.drive.rows(phi)
         rows[0] += self.offset
         return rows

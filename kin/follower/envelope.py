@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right, unit
-from kin.follower.projection import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.angles import TURN
+from kin.numeric.feet import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -71,11 +71,12 @@ class FacePitch(Protocol):
 class LiftPitch:
     """A face on a line of travel, its normal `tilt` ahead of that, rad; the parameter is the shaft angle.
 
-    `along` is its distance from the shaft along that line, mm.
+    `along` is its distance from the shaft along that line, mm, which stands `turned` ahead of the shaft angle, rad.
     """
 
     along: Lift
     tilt: float = 0.0
+    turned: float = 0.0
 
     @property
     def breaks(self) -> Array:
@@ -83,10 +84,10 @@ class LiftPitch:
         return self.along.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give r = cos(tilt) along and t = tau + tilt."""
+        """Give r = cos(tilt) along and t = tau + tilt + turned."""
         r: Array = np.cos(self.tilt) * self.along.derivatives(tau, order, side)
         t = np.zeros_like(r)
-        t[0], t[1:2] = tau + self.tilt, 1.0
+        t[0], t[1:2] = tau + (self.tilt + self.turned), 1.0
         return r, t
 
 

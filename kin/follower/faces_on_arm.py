@@ -18,13 +18,13 @@ import numpy as np
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
-from kin.follower.projection import grid
 from kin.follower.rests import dwell_angles
 from kin.follower.support import Bearing, bearing_of
 from kin.law.contacts import Flat, Oscillating
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.extrema import Extremes, extremes
+from kin.numeric.feet import grid
 from kin.numeric.newton import zeros
 from kin.numeric.records import dataclass, replace
 

@@ -18,13 +18,13 @@ from kin.follower.motion_error import Judged, MotionError, Play, motion_error, w
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
 from kin.law.contacts import Flat
+from kin.law.support_function import Lift
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.law.support_function import Lift
     from kin.numeric.arrays import Array, Indices
 
 
@@ -58,7 +58,8 @@ class FlatFace(Follower):
     """A flat face on a line of travel, its normal ahead of that by its tilt; of a yoke the first of two.
 
     Its position, of which `lift` is the intended one, is its distance from the shaft along the travel, mm: p over the
-    tilt's cosine. Where beside the shaft the line runs moves the place of contact on the face, not the face.
+    tilt's cosine; that of a lone face whose sense is -1 is what its distance leaves of its zero. Where beside the shaft
+    the line runs moves the place of contact on the face, not the face.
     """
 
     lift: Lift
@@ -74,25 +75,38 @@ class FlatFace(Follower):
         return tuple(dwells(self.lift))
 
     @property
-    def ahead(self) -> float:
+    def tilt(self) -> float:
         """Angle by which the face's normal stands ahead of the line of travel, radians."""
         touch = self.contacts[0].touch
         return touch.tilt if isinstance(touch, Flat) else 0.0
 
     @property
+    def ahead(self) -> float:
+        """Angle by which the first face's normal stands ahead of the shaft angle, radians."""
+        return self.tilt + self.contacts[0].turned
+
+    @cached_property
+    def distance(self) -> Lift:
+        """Intended distance of the first face from the shaft along the line of travel, mm."""
+        first = self.contacts[0]
+        if first.sense < 0:
+            return Lift(self.lift.law.taken_from(first.zero))
+        return Lift(self.lift.law.raised(first.zero)) if first.zero else self.lift
+
+    @property
     def _share(self) -> float:
         """Distance of the face from the shaft for one along the line of travel."""
-        return float(np.cos(self.ahead))
+        return float(np.cos(self.tilt))
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
         """The exact contour; its parameter is the shaft angle."""
-        return FlatEnvelope(LiftPitch(self.lift, self.ahead))
+        return FlatEnvelope(LiftPitch(self.distance, self.tilt, self.contacts[0].turned))
 
     def drives(self, contour: Contour) -> list[OfFace]:
         """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)
-        return [OfFace(bearing, self.ahead + one.turned, self._share) for one in self.contacts]
+        return [OfFace(bearing, self.tilt + one.turned, self._share) for one in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
@@ -103,14 +117,14 @@ class FlatFace(Follower):
     def _error(self, bearing: Bearing, theta: Array, reach: Extremes) -> MotionError:
         (worst, at), share, ahead = reach.worst, self._share, self.ahead
         angle = with_steps(theta)
-        position = bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share
+        position = self.contacts[0].position(bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share)
         ranges = [lift_range(bearing, begin + ahead, end + ahead) / share for begin, end in self.rests]
         errors = position - self.intended(angle)
         return motion_error((worst / share, at), errors, max(ranges, default=None), "mm")
 
     def _reach(self, bearing: Bearing) -> Extremes:
         """Extremes over the shaft angle of how far the contour reaches beyond the intended face, along its normal."""
-        lift, share, ahead = self.lift, self._share, self.ahead
+        lift, share, ahead = self.distance, self._share, self.ahead
         nodes = bearing.nodes(0.0, TURN, lift.breaks, ahead)
         stretch, at_low, at_high = bearing.between(nodes, ahead)
         intended = share * lift.derivatives(nodes, 2)

@@ -19,11 +19,17 @@ if TYPE_CHECKING:
     from kin.law.transmission_law import Transmission
 
 
-def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, side: Side = 1) -> Follower:
+def follower_of(
+    contacts: Sequence[Contact[Guide, Touch]],
+    law: Piecewise | Transmission,
+    side: Side = 1,
+    datum: Contact[Guide, Touch] | None = None,
+) -> Follower:
     """Make the follower of contacts by its intended motion; the metal lies inside the contour (1) or outside (-1).
 
     `law` is the follower's position over the shaft angle, mm or rad, and of two contacts on one arm the transmission.
-    Raises ValueError for contacts whose motion is not known here: whatever is given is judged, or refused.
+    Its positions count from where the contact `datum` would reach the shaft, that is the first of these where none is
+    given. Raises ValueError for contacts whose motion is not known here: whatever is given is judged, or refused.
     """
     first, *others = contacts
     flat, arm = isinstance(first.touch, Flat), isinstance(first.guide, Oscillating)
@@ -37,12 +43,16 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
             return DoubleRoller(tuple(contacts), side, law)
         _demand(all(one.datum == 0.5 * math.pi for one in contacts), "the faces of a pair count from across the line")
         return FlatPair(tuple(replace(one, datum=one.apart) for one in contacts), law)
-    _demand(first.sense == 1 and first.turned == 0.0, "contact 1 pushes the follower out, where the shaft stands")
+    alone = not others and side > 0 and not (flat and arm)
+    pushes = first.sense == 1 and first.turned == 0.0
+    _demand(alone or pushes, "contact 1 pushes the follower out, where the shaft stands")
     _demand(not (isinstance(first.touch, Flat) and arm and first.touch.tilt), "a face on an arm stands along it")
     if flat and not arm:
         first, *others = (_through_shaft(one) for one in contacts)
-    held = tuple(one.raised(first.zero).away_from(side) for one in (first, *others))
-    raised = law.raised(first.zero)
+        datum = datum and _through_shaft(datum)
+    zero = (datum or first).zero
+    held = tuple(one.raised(zero).away_from(side) for one in (first, *others))
+    raised = law.raised(zero)
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
         if flat:
@@ -70,8 +80,10 @@ def followers_of(
     contact that touches none of them or a surface that nothing touches.
     """
     _demand({one.surface for one in contacts} == set(sides), "each touches one of the surfaces, and each is touched")
+    first = contacts[0] if len(sides) > 1 else None
     return {
-        name: follower_of([one for one in contacts if one.surface == name], law, side) for name, side in sides.items()
+        name: follower_of([one for one in contacts if one.surface == name], law, side, first)
+        for name, side in sides.items()
     }
 
 

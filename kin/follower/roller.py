@@ -24,11 +24,11 @@ from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
-from kin.follower.projection import grid
 from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
+from kin.numeric.feet import grid
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -150,7 +150,8 @@ class _Rollers(Moved):
         """
         obstacle, steps = self._obstacle(contour), with_steps(phi)
         each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
-        held = [held_on(obstacle, guide, looked, one.zero, one.sense) for one, guide, looked in each]
+        # a roller that stands turned meets the contour as one that does not meets it turned back
+        held = [held_on(obstacle.turned(-one.turned), guide, at, one.zero, one.sense) for one, guide, at in each]
         place = [one.position(there.position[: len(steps)]) for (one, _, _), there in zip(each, held, strict=True)]
         errors = np.stack(place) - self.course.rows(steps)[0]
         worst, remainder = settled(held, self.course, errors, few=len(obstacle) <= MOST_PIECES)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.follower.base import Closure
-from kin.follower.drive import Shifted
 from kin.follower.motion_error import ContactError, Play
 from kin.judge.check import Check, failed
 from kin.judge.contour_checks import fine, play_checks
@@ -67,7 +66,7 @@ def _judged(
 ) -> tuple[ClosureVerdict, list[Check]]:
     gauges = tuple(surface.gauge for surface, _ in pair)
     finer = [fine(contour, limits.tolerance) for _, contour in pair]
-    rests = [_rests(surface, surface.gauge, one.contour) for (surface, _), one in zip(pair, finer, strict=True)]
+    rests = [_rests(gauge, one.contour) for gauge, one in zip(gauges, finer, strict=True)]
     size = max(float(np.abs(contour.vertices).max()) for _, contour in pair)
 
     def limit(tolerance: float) -> float:
@@ -78,7 +77,7 @@ def _judged(
     play = between
     if any(surface.follower is not None for surface, _ in pair):
         first, second = (
-            _rests(surface, surface.follower or surface.gauge, one.contour)
+            _rests(surface.follower or surface.gauge, one.contour)
             for (surface, _), one in zip(pair, finer, strict=True)
         )
         play = _play(first, second, gauges[0], size).less_sure(off)
@@ -90,13 +89,10 @@ def _judged(
     return ClosureVerdict(closure.pushes, closure.stops, between, play), checks
 
 
-def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Excitation:
+def _rests(follower: Follower, contour: Contour) -> Excitation:
     """Position of the follower, metres or radians, as it rests on a surface."""
     (rest,) = follower.resting(contour)
-    contact = surface.contact
-    if contact is None:
-        return rest
-    return Shifted(rest, float(contact.sense), -contact.sense * follower.si * contact.zero, contact.turned)
+    return rest
 
 
 def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:

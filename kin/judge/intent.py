@@ -10,8 +10,7 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
-    from kin.judge.milling import Milling
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Side
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
 
@@ -27,7 +26,6 @@ class SurfaceIntent:
     side      on which the metal lies: 1 within the contour, -1 round it
     trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     follower  that runs on it, where the gauge is larger by a clearance; None for the gauge itself
-    contact   of the follower there, where its position does not count as the gauge's does: on the second of two discs
     """
 
     gauge: Follower
@@ -37,7 +35,6 @@ class SurfaceIntent:
     side: Side = 1
     trimmed: bool = False
     follower: Follower | None = None
-    contact: Contact[Guide, Touch] | None = None
 
 
 @dataclass(frozen=True)
@@ -75,6 +72,30 @@ class LinkageIntent:
 
 
 @dataclass(frozen=True)
+class Milling:
+    """How a part is meant to be milled, mm.
+
+    radius        of the cutter
+    thickness     of the stock, which is cut through
+    depth_of_cut  that one pass may have at most
+    climb         a right-handed cutter meets the metal climbing
+    standing      how far metal may stand outside the contour where the cutter does not reach
+    hub           radius and height of the metal about the shaft that stands on the stock; None without
+    outline       the outline is milled; of round stock, as of a ring, it is not
+    pocket        depth of what lies between two surfaces; None where contours are cut through
+    """
+
+    radius: float
+    thickness: float
+    depth_of_cut: float
+    climb: bool = True
+    standing: float = 0.0
+    hub: tuple[float, float] | None = None
+    outline: bool = True
+    pocket: float | None = None
+
+
+@dataclass(frozen=True)
 class PartIntent:
     """What a disc in a file is meant to be.
 
@@ -89,6 +110,7 @@ class PartIntent:
     milling     how a program mills it
     linkage     that it drives; None for a plain follower
     closures    what is left between its surfaces
+    name        by which checks tell it from other discs on its shaft; empty where there is no other
     """
 
     surfaces: tuple[SurfaceIntent, ...]
@@ -103,11 +125,26 @@ class PartIntent:
     milling: Milling | None = None
     linkage: LinkageIntent | None = None
     closures: tuple[ClosureIntent, ...] = ()
+    name: str = ""
 
     @property
     def featured(self) -> bool:
         """Whether the part has more than a round bore."""
         return bool(self.holes or self.layers)
+
+
+@dataclass(frozen=True)
+class ShaftIntent:
+    """Discs on one shaft, in a file each or together in one.
+
+    parts     the discs, the lowest first; alone in a file each stands on z = 0
+    levels    height of the lower face of each in a file that holds all of them, mm
+    closures  what is left between surfaces of two of them
+    """
+
+    parts: tuple[PartIntent, ...]
+    levels: tuple[float, ...] = (0.0,)
+    closures: tuple[ClosureIntent, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.follower.projection import grid
+from kin.numeric.feet import grid
 
 if TYPE_CHECKING:
     from collections.abc import Callable

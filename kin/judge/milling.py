@@ -1,71 +1,37 @@
 """What a milling program leaves of the stock: its closed paths moved by the cutter's radius; what goes wrong on it.
 
-z is 0 at the top of the stock and falls into it. A cut is what the cutter does between coming down and going up again:
-an arc of entry, a closed path, an arc of exit. The deepest path of each contour decides what it is; the one that holds
-all others is milled from outside, the others are holes. Of stock that comes with its outline all are holes.
+z is 0 at the top of the stock and falls into it. How a program is taken apart is told in `kin.judge.cuts`.
 """
 
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import cross, dot
-from kin.contour.intersections import boxes, overlapping
+from kin.contour.arcs import cross, dot, left
 from kin.contour.nearest import nearest, signed_distance
-from kin.contour.offset import TightError, parallel
-from kin.contour.region import gaps
 from kin.judge.check import Check, at_most, failed
+from kin.judge.cuts import across, at_the_floor, cuts_of, features_of, rounds, trace
+from kin.judge.gouge import least_distance
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
-from kin.read.nesting import Chain, Nest, counter_clockwise
+from kin.read.nesting import Chain, Nest
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
-    from kin.contour.contour import Contour
-    from kin.numeric.arrays import Array
+    from kin.judge.cuts import Edge, Feature, Key
+    from kin.judge.intent import Milling
     from kin.read.gcode import Move, Program
 
-FINE = 0.05  # of the tolerance: what joints of the path may be snapped by
+STEP = 0.05  # of the cutter's radius: places at which two paths side by side are looked at
 KINK = 0.5  # degrees between the ways in and out and the path: what rounding makes of a tangent on a small part
-LOOKS = 40  # halvings of a path that is held against a contour
 MOST_NAMED = 3
 _CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)")
-
-
-@dataclass(frozen=True)
-class Milling:
-    """How a part is meant to be milled, mm.
-
-    radius        of the cutter
-    thickness     of the stock, which is cut through
-    depth_of_cut  that one pass may have at most
-    climb         a right-handed cutter meets the metal climbing
-    standing      how far metal may stand outside the contour where the cutter does not reach
-    hub           radius and height of the metal about the shaft that stands on the stock; None without
-    outline       the outline is milled; of round stock, as of a ring, it is not
-    """
-
-    radius: float
-    thickness: float
-    depth_of_cut: float
-    climb: bool = True
-    standing: float = 0.0
-    hub: tuple[float, float] | None = None
-    outline: bool = True
-
-
-class Cut(NamedTuple):
-    """Moves at one height: on the way to the closed path, round it, and away from it."""
-
-    z: float
-    entry: list[Move]
-    loop: list[Move]
-    exit: list[Move]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,99 +43,29 @@ class Milled(Nest):
 
 def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     """Simulate a program; raises ReadError where no closed contour comes of it."""
-    path, radius = program.path, milling.radius
-    cuts = list(_cuts(program))
+    cuts = list(cuts_of(program))
     if not cuts:
-        raise ReadError("empty", "the program cuts nothing below the top of the stock", path)
-    features = _features(cuts, radius)
-    last = [feature[-1] for feature in features]
-    loops = [arcs_of(cut.loop) for cut in last]
-    sizes = [abs(_area(loop)) for loop in loops]
-    outer = int(np.argmax(sizes)) if milling.outline else None
-    edges = []
-    for k, (cut, loop) in enumerate(zip(last, loops, strict=True)):
-        inward = 1.0 if (_area(loop) > 0.0) == (k == outer) else -1.0
-        try:
-            edge = parallel(loop, inward * radius, FINE * tolerance)
-        except TightError as error:
-            raise ReadError("open", f"the cutter's path from line {cut.loop[0].line}: {error}", path) from error
-        edges.append(counter_clockwise(edge))
-    chains = [Chain(edge, pieces=len(cut.loop)) for edge, cut in zip(edges, last, strict=True)]
-    falling = sorted(range(len(chains)), key=lambda k: (k != outer, -edges[k].area))
+        raise ReadError("empty", "the program cuts nothing below the top of the stock", program.path)
+    features = list(features_of(program, cuts, milling, tolerance))
+    edges = [edge for feature in features for edge in feature.edges]
+    chains = [Chain(edge.contour, pieces=len(edge.cut.loop)) for edge in edges]
+    falling = sorted(range(len(chains)), key=lambda k: (not _is_outline(edges[k], milling), -edges[k].contour.area))
     checks = (
         _cutter_check(program, milling),
         _arcs_check(program),
         _rapid_check(program, milling),
         _depth_check(features, milling, tolerance),
-        _direction_check(features, outer, milling),
+        *(() if milling.pocket is None else (_floor_check(features, milling.radius, tolerance),)),
+        _direction_check(features, milling),
         _entry_check(features),
-        _hub_check(program, milling) or _gouge_check(features, edges, outer, milling, tolerance),
+        _hub_check(program, milling) or _gouge_check(features, milling, tolerance),
     )
     return Milled(tuple(chains[k] for k in falling), checks)
 
 
-def _cuts(program: Program) -> list[Cut]:
-    """What the cutter does below the top of the stock, each time it is down."""
-    found: list[Cut] = []
-    down: list[Move] = []
-    plunge: Move | None = None
-    for move in (*program.moves, None):
-        if move is not None and not move.rapid and move.start[2] == move.end[2] < 0.0:
-            if move.start != move.end or move.centre is not None:
-                down.append(move)
-            continue
-        if move is not None and not move.rapid and min(move.start[2], move.end[2]) < 0.0 and _across(move):
-            raise _unread(program, move, "cuts along a slope")
-        if down:
-            found.append(_cut(program, down))
-        elif plunge is not None:
-            raise _unread(program, plunge, "goes down where nothing is cut")
-        down, plunge = [], None
-        if move is not None and not move.rapid and min(move.start[2], move.end[2]) < 0.0:
-            plunge = move if move.end[2] < move.start[2] else None
-    return found
-
-
-def _across(move: Move) -> bool:
-    return move.start[:2] != move.end[:2]
-
-
-def _unread(program: Program, move: Move, what: str) -> ReadError:
-    return ReadError("unsupported", f"line {move.line} {what}, which is not read", program.path)
-
-
-def _cut(program: Program, down: list[Move]) -> Cut:
-    """Take a path apart where it comes back to a place it has been at."""
-    places: dict[tuple[float, float], int] = {}
-    best = (0, 0)
-    for i, move in enumerate(down):
-        places.setdefault(move.start[:2], i)
-        begin = places.get(move.end[:2])
-        if begin is not None and i + 1 - begin > best[1] - best[0]:
-            best = (begin, i + 1)
-    if best[1] == 0:
-        line, (x, y, _) = down[0].line, down[0].start
-        raise ReadError("open", f"line {line}: the path from {place_text(x, y)} does not close", program.path)
-    return Cut(down[0].start[2], down[: best[0]], down[best[0] : best[1]], down[best[1] :])
-
-
-def _features(cuts: list[Cut], radius: float) -> list[list[Cut]]:
-    """Cuts about the same contour together, in order; two paths about one are nearer to each other than the radius."""
-    found: list[tuple[Arcs, list[Cut]]] = []
-    for cut in reversed(cuts):
-        place = np.array([cut.loop[0].start[:2]])
-        mine = next((group for chain, group in found if float(nearest(chain, place)[1][0]) < radius), None)
-        if mine is None:
-            found.append((arcs_of(cut.loop), [cut]))
-        else:
-            mine.insert(0, cut)
-    return [group for _, group in reversed(found)]
-
-
-def _area(loop: Arcs) -> float:
-    """Area of the polygon through the starts of a closed path's pieces, positive counter-clockwise."""
-    x, y = loop.start.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+def _is_outline(edge: Edge, milling: Milling) -> bool:
+    """Whether an edge is that of the part itself."""
+    return milling.outline and edge.side > 0
 
 
 def _cutter_check(program: Program, milling: Milling) -> Check:
@@ -195,7 +91,7 @@ def _rapid_check(program: Program, milling: Milling) -> Check:
     bad = [f"line {move.line} moves fast into the hub" for move in _into_hub(program, milling) if move.rapid]
     for move in program.moves:
         low = min(move.start[2], move.end[2])
-        if move.rapid and low <= 0.0 and (_across(move) or move.end[2] < move.start[2]):
+        if move.rapid and low <= 0.0 and (across(move) or move.end[2] < move.start[2]):
             bad.append(f"line {move.line} moves fast at z = {low:.6g} mm")
     return _counted("rapid", bad)
 
@@ -217,7 +113,7 @@ def _into_hub(program: Program, milling: Milling) -> list[Move]:
 
 def _from_shaft(move: Move) -> float:
     """Least distance of a move from the shaft in the plane."""
-    if not _across(move) and move.centre is None:
+    if not across(move) and move.centre is None:
         return float(np.hypot(*move.start[:2]))
     return float(nearest(arcs_of([move]), np.zeros((1, 2)))[1][0])
 
@@ -227,28 +123,55 @@ def _counted(name: str, faults: list[str]) -> Check:
     return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
 
 
-def _depth_check(features: list[list[Cut]], milling: Milling, tolerance: float) -> Check:
-    """Check that each contour is cut through, and that no pass goes deeper than it may below the one before.
+def _depth_check(features: list[Feature], milling: Milling, tolerance: float) -> Check:
+    """Check that each contour is as deep as it must be, and no pass goes deeper than it may below those before.
 
-    Only a path that follows the last one all round, no farther off than the cutter's radius, makes way for it.
+    Only a path along this one all round, no farther off than the cutter's radius, makes way for it.
     """
     worst, detail = 0.0, ""
-    for feature in features:
-        line = feature[-1].loop[0].line
-        bottom = feature[-1].z
-        if abs(bottom + milling.thickness) > tolerance:
-            what = (
-                f"the last pass, from line {line}, is at z = {bottom:.6g} mm, the part {milling.thickness:.6g} mm thick"
-            )
+    for cuts, depth, _ in features:
+        cut = min(cuts, key=lambda cut: cut.z) if milling.pocket == depth else cuts[-1]
+        if abs(cut.z + depth) > tolerance:
+            meant = f"the groove is to be {depth:.6g} mm deep" if milling.pocket == depth else ""
+            what = f"the last pass, from line {cut.loop[0].line}, is at z = {cut.z:.6g} mm, "
+            what += meant or f"the part {depth:.6g} mm thick"
             return failed("depth", what, unit="mm", limit=milling.depth_of_cut)
-        reached = 0.0
-        for cut in feature:
-            step = reached - cut.z
+        reached: dict[Key, tuple[Arcs, float]] = {}
+        along: dict[tuple[Key, Key], bool] = {}
+        for cut in cuts:
+            key, loop = cut.key, cut.path
+            before = 0.0
+            for other, (path, z) in reached.items():
+                if (other, key) not in along:
+                    along[other, key] = other == key or _follows(path, loop, milling.radius)
+                before = min(before, z) if along[other, key] else before
+            step = before - cut.z
             if step >= worst:
-                worst, detail = step, f"from z = {reached:.6g} to {cut.z:.6g} mm, line {cut.loop[0].line}"
-            if _follows(arcs_of(cut.loop), arcs_of(feature[-1].loop), milling.radius):
-                reached = min(reached, cut.z)
+                worst, detail = step, f"from z = {before:.6g} to {cut.z:.6g} mm, line {cut.loop[0].line}"
+            reached[key] = loop, min(cut.z, reached[key][1] if key in reached else 0.0)
     return at_most("depth", worst, milling.depth_of_cut, "mm", detail=detail, slack=tolerance)
+
+
+def _floor_check(features: list[Feature], radius: float, tolerance: float) -> Check:
+    """Check that nothing stands on the floor between two paths side by side: what one leaves the other reaches.
+
+    What the path without leaves begins one radius within it. Places there are looked at: they lie within the other
+    path, or no farther without than its radius; between two of them by no more than these lie apart.
+    """
+    worst, detail = 0.0, ""
+    for feature in (feature for feature in features if len(feature.edges) > 1):
+        for inside, outside in pairwise(at_the_floor(feature.cuts, tolerance)):
+            path = outside.path
+            parts, _ = path.cut(np.ceil(path.length / (STEP * radius)).astype(np.intp))
+            inward = radius if outside.area > 0.0 else -radius
+            edge = parts.start + inward * left(parts.tangent)
+            apart = float(np.hypot(*(np.roll(edge, -1, axis=0) - edge).T).max())
+            without = float(np.copysign(1.0, inside.area)) * signed_distance(inside.path, edge)
+            stands = float(without.max()) + apart - radius
+            if stands > worst:
+                lines = f"from lines {inside.loop[0].line} and {outside.loop[0].line}"
+                worst, detail = stands, f"metal may stand between the paths {lines}"
+    return at_most("floor", worst, 0.0, "mm", detail=detail)
 
 
 def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
@@ -256,32 +179,32 @@ def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
     points = np.concatenate([loop.start, loop.points(0.5 * loop.length)])
     near = nearest(last, points)[1].max() <= radius
     middle = last.start.mean(axis=0)
-    return bool(near) and abs(_rounds(loop, middle)) == abs(_rounds(last, middle))
+    return bool(near) and abs(rounds(loop, middle)) == abs(rounds(last, middle))
 
 
-def _rounds(loop: Arcs, middle: Array) -> int:
-    """How often a closed path runs round a point, by the starts of its pieces."""
-    away = loop.start - middle
-    after = np.roll(away, -1, axis=0)
-    return round(float(np.arctan2(cross(away, after), dot(away, after)).sum()) / (2.0 * np.pi))
+def _direction_check(features: list[Feature], milling: Milling) -> Check:
+    """Check on which side the cutter meets the metal: to climb it goes clockwise round metal, not so within it.
 
-
-def _direction_check(features: list[list[Cut]], outer: int | None, milling: Milling) -> Check:
-    """Check on which side the cutter meets the metal: to climb it goes clockwise round the part, not so in holes."""
-    bad = []
-    for k, feature in enumerate(features):
-        for cut in feature:
-            clockwise = _area(arcs_of(cut.loop)) < 0.0
-            if clockwise != (milling.climb == (k == outer)):
-                bad.append(f"the path from line {cut.loop[0].line} runs the wrong way round")
+    In a pocket the paths along its edges count; of one that makes both, the metal within.
+    """
+    bad, seen = [], set[int]()
+    for cuts, _, edges in features:
+        for edge in edges:
+            for cut in cuts:
+                if (len(edges) > 1 and cut.key != edge.cut.key) or cut.loop[0].line in seen:
+                    continue
+                seen.add(cut.loop[0].line)
+                clockwise = cut.area < 0.0
+                if clockwise != (milling.climb == (edge.side > 0)):
+                    bad.append(f"the path from line {cut.loop[0].line} runs the wrong way round")
     return _counted("direction", bad)
 
 
-def _entry_check(features: list[list[Cut]]) -> Check:
+def _entry_check(features: list[Feature]) -> Check:
     """Check that the cutter comes to each path and leaves it along its tangent, so that it leaves no mark."""
     worst, detail = 0.0, ""
-    for cut in (cut for feature in features for cut in feature):
-        loop = arcs_of(cut.loop)
+    for cut in (cut for feature in features for cut in feature.cuts):
+        loop = cut.path
         pairs = []
         if cut.entry:
             pairs.append((arcs_of(cut.entry).end_tangents[-1], loop.tangent[0], cut.entry[-1].line))
@@ -294,92 +217,20 @@ def _entry_check(features: list[list[Cut]]) -> Check:
     return at_most("entry", worst, KINK, "deg", detail=detail)
 
 
-def _gouge_check(
-    features: list[list[Cut]], edges: list[Contour], outer: int | None, milling: Milling, tolerance: float
-) -> Check:
-    """Check that on all its ways below the top the cutter keeps clear of the edge that it is to leave."""
+def _gouge_check(features: list[Feature], milling: Milling, tolerance: float) -> Check:
+    """Check that on all its ways below the top the cutter keeps clear of the edges that it is to leave."""
     worst, detail = -np.inf, ""
-    for k, (feature, edge) in enumerate(zip(features, edges, strict=True)):
-        chain, side = edge.as_arcs()[0], 1.0 if k == outer else -1.0
-        seen = {_trace(move) for move in feature[-1].loop}  # of these the edge itself is made
-        for cut in feature:
+    for cuts, edge in ((feature.cuts, edge) for feature in features for edge in feature.edges):
+        chain = edge.contour.as_arcs()[0]
+        seen = {trace(move) for move in edge.cut.loop}  # of these the edge itself is made
+        for cut in cuts:
             for moves in (cut.entry, cut.loop, cut.exit):
-                fresh = [move for move in moves if _trace(move) not in seen]
+                fresh = [move for move in moves if trace(move) not in seen]
                 if not fresh:
                     continue
-                seen |= {_trace(move) for move in fresh}
-                near, place = _least(arcs_of(fresh), chain, side, milling.radius, tolerance)
+                seen |= {trace(move) for move in fresh}
+                near, place = least_distance(arcs_of(fresh), chain, float(edge.side), milling.radius, tolerance)
                 if milling.radius - near > worst:
                     worst = milling.radius - near
                     detail = f"the path from line {fresh[0].line} near {place_text(place[0], place[1])}"
     return at_most("gouge", max(worst, 0.0), tolerance, "mm", detail=detail if worst > tolerance else "")
-
-
-def _trace(move: Move) -> tuple[object, ...]:
-    return (*move.start[:2], *move.end[:2], move.centre, move.sweep > 0.0)
-
-
-def _least(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: float) -> tuple[float, Array]:
-    """Least distance of a path outside (side 1) or inside (-1) a chain, and where; sharp below the radius.
-
-    A path that keeps clear of the chain is measured piece against piece, in closed form: one that runs beside it would
-    have to be halved without end. Of one that meets it the depth is found within a hundredth.
-    """
-    arcs, chain = _bent_little(arcs), _bent_little(chain)
-    middle = arcs.points(0.5 * arcs.length)
-    distance = side * signed_distance(chain, middle)
-    low = int(np.argmin(distance))
-    best, place = float(distance[low]), middle[low]
-    near = distance - 0.5 * arcs.length < min(best, radius)
-    if best <= 0.0:
-        return _deepest(arcs.take(near), chain, side, radius, tolerance)
-    beside, where = _beside(arcs.take(near), chain, min(best, radius)) if near.any() else (np.inf, place)
-    if beside == 0.0:
-        return _deepest(arcs.take(near), chain, side, radius, tolerance)
-    return (beside, where) if beside < best else (best, place)
-
-
-def _bent_little(arcs: Arcs) -> Arcs:
-    """The same pieces, cut so that none turns by more than a quarter of a turn."""
-    turn = np.abs(arcs.curvature) * arcs.length
-    return arcs.cut(np.maximum(np.ceil(turn / (0.5 * np.pi)), 1.0).astype(np.intp))[0]
-
-
-def _beside(arcs: Arcs, chain: Arcs, reach: float) -> tuple[float, Array]:
-    """Least distance below `reach` of pieces from a chain, and where; infinite without any."""
-    grown = [(low - reach, high + reach) for low, high in boxes(arcs)]
-    best, place = np.inf, arcs.start[0]
-    for i, j in overlapping(grown, boxes(chain), mirrored=False):
-        one, other = arcs.take(i), chain.take(j)
-        away = one.points(0.5 * one.length) - other.points(0.5 * other.length)
-        near = np.hypot(away[:, 0], away[:, 1]) - 0.5 * (one.length + other.length) < min(best, reach)
-        if near.any():
-            found = gaps(one.take(near), other.take(near))
-            k = int(np.argmin(found.distance))
-            if found.distance[k] < best:
-                best, place = float(found.distance[k]), found.first[k]
-    return best, place
-
-
-def _deepest(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: float) -> tuple[float, Array]:
-    """Least distance of a path that meets the chain or lies beyond it, and where.
-
-    A piece no point of which can come nearer than the nearest found, or than the radius, by a hundredth of the
-    tolerance or of the depth needs no closer look. Where some still do after all looks, the least is what they cannot
-    come below.
-    """
-    best, place, floor = np.inf, arcs.start[0], np.inf
-    for _ in range(LOOKS):
-        middle = arcs.points(0.5 * arcs.length)
-        distance = side * signed_distance(chain, middle)
-        low = int(np.argmin(distance))
-        if distance[low] < best:
-            best, place = float(distance[low]), middle[low]
-        bound = distance - 0.5 * arcs.length
-        near = bound < min(best, radius) - 0.01 * max(tolerance, radius - best)
-        if not near.any():
-            return best, place
-        floor = float(bound.min())
-        arcs = arcs.take(near)
-        arcs, _ = arcs.cut(np.full(len(arcs), 2, dtype=np.intp))
-    return min(best, floor), place

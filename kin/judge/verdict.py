@@ -114,6 +114,7 @@ class Verdict(OfSurfaces):
     closures  what is left between them
     units     mm in a unit of the file as it was read: as the file states, or else as it was given or meant
     chains    every closed contour of the drawing, section or program that holds the first surface, outermost first
+    uneven    by how much a solid's other sections differ from its surfaces, mm, where only rounding is behind it
     """
 
     kind: Kind
@@ -122,6 +123,7 @@ class Verdict(OfSurfaces):
     closures: tuple[ClosureVerdict, ...] = ()
     units: float | None = None
     chains: tuple[Contour, ...] = ()
+    uneven: float = 0.0
 
     @property
     def ok(self) -> bool:
@@ -130,5 +132,5 @@ class Verdict(OfSurfaces):
 
     @property
     def pieces(self) -> int | None:
-        """Of the first surface, as the file counts them."""
-        return self.surface.pieces
+        """Of all surfaces, as the file counts them; None where it cannot be read."""
+        return sum(surface.pieces or 0 for surface in self.surfaces) or None

@@ -21,16 +21,17 @@ from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
 from kin.numeric.places import place_text
+from kin.read.bodies import Sought
 from kin.read.errors import ReadError
-from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
+from kin.read.files import SOLIDS, kind_of, read_bodies, read_drawing, read_solid
 from kin.read.nesting import Chain, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from kin.contour.contour import Contour
-    from kin.judge.intent import Limits, PartIntent
+    from kin.judge.intent import Limits, PartIntent, ShaftIntent
     from kin.read.drawing.drawing import Drawing
     from kin.read.files import AnySolid
 
@@ -60,33 +61,50 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     another unit than `units`, and ValueError for another suffix or no angles.
     """
     kind = kind_of(path)
+    read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
+    return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
+
+
+def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits) -> Verdict:
+    """Judge a 3MF or STEP that holds all discs of a shaft, each in its place, as `verify` does one that holds one."""
+    return _verdict(path, lambda: _of_solids(path, shaft, limits), angles, limits)
+
+
+def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], angles: int, limits: Limits) -> Verdict:
+    """Judge the surfaces of every part that is read from a file, and what is left between those of one part."""
+    kind = kind_of(path)
     if angles < 1:
         raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
-        read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
-        file = read(path, part, limits, units)
+        files = read()
     except ReadError as error:
         if kind in SOLIDS:
             unread = "readable" if error.reason in NOT_READ else "watertight"
         else:
             unread = "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
-    checks, surfaces = list(file.checks), list[SurfaceVerdict]()
-    standing = part.milling.standing if part.milling is not None else 0.0
-    for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
-        found, more = judge_contour(chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
-        checks += [replace(check, surface=surface.name) for check in more]
-        surfaces.append(found)
-    closures: tuple[ClosureVerdict, ...] = ()
-    if part.closures:
-        from kin.judge.closure import judge_closures  # most cams have one surface
+    checks, surfaces, closures = list[Check](), list[SurfaceVerdict](), list[ClosureVerdict]()
+    for part, file in files:
+        checks += file.checks
+        standing = part.milling.standing if part.milling is not None else 0.0
+        for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
+            found, more = judge_contour(
+                chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage
+            )
+            checks += [replace(check, surface=surface.name) for check in more]
+            surfaces.append(found)
+        if part.closures:
+            from kin.judge.closure import judge_closures  # most cams have one surface
 
-        pairs = [(surface, chain.contour) for chain, surface in zip(file.surfaces, part.surfaces, strict=True)]
-        closures, more = judge_closures(pairs, part.closures, limits, file.uneven)
-        checks += more
-    told = tuple(about(check, path.name) for check in checks)
-    return Verdict(kind, told, tuple(surfaces), closures, file.units, tuple(chain.contour for chain in file.chains))
+            pairs = [(surface, chain.contour) for chain, surface in zip(file.surfaces, part.surfaces, strict=True)]
+            left, more = judge_closures(pairs, part.closures, limits, file.uneven)
+            closures += left
+            checks += more
+    named = tuple(about(check, path.name) for check in checks)
+    chains = tuple(chain.contour for _, file in files for chain in file.chains)
+    units, uneven = files[0][1].units, max(file.uneven for _, file in files)
+    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, chains, uneven)
 
 
 class _Read(NamedTuple):
@@ -189,16 +207,41 @@ def _count_check(name: str, faults: list[str]) -> Check:
 
 
 def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
-    """Read a solid: the checks on it, and its surfaces, each in the section that it is found in."""
+    """Read a solid of one part: the checks on it, and its surfaces, each in the section that it is found in."""
+    sought = _sought(part)
+    solid = read_solid(path, sought.heights, units, sought.deepest)
+    _demand_same(solid.units_mm, units, path)
+    return _solid_read(solid, part, limits, path, units)
+
+
+def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[PartIntent, _Read]]:
+    """Read the solids of all parts of a shaft from one file; each one's checks are told by its name."""
+    solids = read_bodies(path, [_sought(part) for part in shaft.parts], shaft.levels)
+    found = []
+    for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
+        file = _solid_read(solid, part, limits, path, None)
+        above = f"heights are counted from z = {level:.9g} mm, where {part.name} belongs" if level else ""
+        checks = [replace(check, surface=part.name, detail=_joined(check.detail, above)) for check in file.checks]
+        found.append((part, file._replace(checks=checks)))
+    return found
+
+
+def _joined(detail: str, more: str) -> str:
+    return f"{detail}; {more}" if more and ("z = " in detail or detail.startswith("z ")) else detail
+
+
+def _sought(part: PartIntent) -> Sought:
+    """What is sought of a part's solid: the sections of its layers, the plain disc's first, and of its surfaces."""
     levels: list[float] = []
     if part.layers:
         from kin.judge.part_checks import levels_of
 
         levels = levels_of(part)
-    own = [surface.z for surface in part.surfaces if surface.z is not None]
-    solid = read_solid(path, [*levels, *own], units, deepest(part))
-    _demand_same(solid.units_mm, units, path)
-    if len(solid.sections) < len(levels) + len(own):
+    return Sought([*levels, *(surface.z for surface in part.surfaces if surface.z is not None)], deepest(part))
+
+
+def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, units: float | None) -> _Read:
+    if len(solid.sections) < len(_sought(part).heights):
         told = "the solid has no section where the part has its layers"
         if solid.units_mm is None:
             told += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"

@@ -135,6 +135,11 @@ class Contact(Generic[G_co, T_co]):
         sense: Side = 1 if self.sense == side else -1
         return replace(self, datum=side * self.datum, apart=side * self.apart, sense=sense)
 
+    @property
+    def place(self) -> Contact[Guide, Touch]:
+        """Where the touch is, whatever it is and touches: one roller in one place may touch two surfaces."""
+        return Contact(self.guide, KnifeEdge(), self.datum, self.sense, self.apart, self.turned)
+
     def raised(self, by: float) -> Contact[G_co, T_co]:
         """The contact for positions of the follower that count from `by` below their zero."""
         return replace(self, datum=self.datum - self.sense * by)
@@ -158,11 +163,16 @@ def on_one_arm(
 
 @dataclass(frozen=True)
 class Arrangement:
-    """What a recipe says of a follower before anything is computed: guide, touch, the greatest number of contacts."""
+    """What a recipe says of a follower before anything is computed: guide, touch, the greatest number of contacts.
+
+    `discs` are those that the contacts touch: two on one disc have one law of their own between them, two on two discs
+    each have that of one contact.
+    """
 
     guide: type[Guide]
     touch: type[Touch]
     contacts: int = 1
+    discs: int = 1
 
     @property
     def unit(self) -> Unit:
@@ -182,7 +192,7 @@ class Arrangement:
         roller: round about a centre; rolling: a roller that the cam turns; stem, arm: one such contact; face,
         stem-face: flat.
         """
-        stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > 1
+        stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > self.discs
         swings, plate = two and not stem, two and stem and flat
         held = {
             "swings": swings,

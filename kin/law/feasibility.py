@@ -37,11 +37,16 @@ def demand_ratio(lam: int, mu: int, arm: float) -> None:
         raise IntentError(f"the denominator of {lam}/{mu} is even: the pitch curve would cross itself (W 3)", "ratio")
 
 
-def checked(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> Transmission:
-    """Return the law, given its stretches over delta, if psi exists and it is possible and joins; else IntentError."""
+def checked(
+    law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str, *, corners: bool = False
+) -> Transmission:
+    """Return the law, given its stretches over delta, if psi exists and it is possible and joins; else IntentError.
+
+    With `corners` psi joins, and its slope need not.
+    """
     try:
         _demand_possible(law, knots, functions, field)
-        _demand_joined(law, field)
+        _demand_joined(law, field, corners=corners)
     except DomainError as error:
         raise IntentError(f"the law is not defined: {error.operation}", field) from error
     return law
@@ -68,7 +73,7 @@ def _demand_possible(law: Transmission, knots: Sequence[float], functions: Seque
         raise too_wide(law, at, swing, field)
 
 
-def too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentError:
+def too_wide(law: Transmission, angle: float, swing: float, field: str) -> IntentError:
     """Say that the swing (rad), reached at tau, leads out of 0 < r < 2l."""
     limit = min(law.alpha, math.pi - law.alpha)
     end = "2l" if law.alpha < math.pi / 2 else "0"
@@ -76,7 +81,7 @@ def too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentEr
         f"the follower would swing {math.degrees(swing):.6g} degrees to each side; below {math.degrees(limit):.6g} is "
         f"possible with lam/mu = {law.lam}/{law.mu}, there roller A's distance from the shaft reaches {end}",
         field,
-        _shaft_deg(law, at),
+        _shaft_deg(law, angle),
     )
 
 
@@ -105,8 +110,8 @@ def too_steep(law: Transmission, field: str) -> IntentError:
     )
 
 
-def _demand_joined(law: Transmission, field: str) -> None:
-    """Refuse a jump of psi, or of its slope psi'(phi), between stretches."""
+def _demand_joined(law: Transmission, field: str, *, corners: bool) -> None:
+    """Refuse a jump of psi, or without `corners` of its slope psi'(phi), between stretches."""
     knots = law.psi.knots[:-1]
     both = law.at(np.tile(knots, 2), 1, np.repeat([1, -1], knots.size))
     (phi, phi_left), (psi, psi_left) = (np.hsplit(rows, 2) for rows in both)
@@ -116,7 +121,7 @@ def _demand_joined(law: Transmission, field: str) -> None:
         if abs(psi[0, i] - psi_left[0, i]) > JOIN:
             before, after = math.degrees(psi_left[0, i]), math.degrees(psi[0, i])
             raise IntentError(f"psi jumps from {before:.9g} to {after:.9g} degrees at {at:.6g} degrees", field, at)
-        if abs(slope[i] - slope_left[i]) > _SLOPE_JOIN * (1 + abs(slope[i])):
+        if not corners and abs(slope[i] - slope_left[i]) > _SLOPE_JOIN * (1 + abs(slope[i])):
             raise IntentError(
                 f"psi'(phi) jumps from {slope_left[i]:.9g} to {slope[i]:.9g} at a shaft angle of {at:.6g} degrees: the "
                 "pitch curve would have a corner",

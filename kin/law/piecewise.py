@@ -200,6 +200,14 @@ class Piecewise:
         )
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
+    def taken_from(self, whole: float) -> Piecewise:
+        """What the function leaves of a constant; of constants that it has again constants."""
+        functions = tuple(
+            Constant(whole - f.value) if isinstance(f, Constant) else Affine.of(f, offset=whole, scale=-1.0)
+            for f in self.functions
+        )
+        return Piecewise(self.knots, functions, self.period, self.smooth_seam)
+
     def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
         """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).
 

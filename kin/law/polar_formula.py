@@ -146,10 +146,10 @@ def _runs_on(function: FromExpression, period: float) -> bool:
     return bool((np.abs(jets[1] - jets[0]) <= _SAME * (1 + np.abs(jets[0]).max())).all())
 
 
-def _at_rest(function: FromExpression, at: float) -> Stretch:
+def _at_rest(function: FromExpression, angle: float) -> Stretch:
     """Return the stretch, or the rest that it is if the formula does not depend on t there."""
-    enclosed = function.formula.ball(at, at + 1e-3, 1)
+    enclosed = function.formula.ball(angle, angle + 1e-3, 1)
     if enclosed.mid[1].any() or enclosed.rad[1].any():
         return function
-    psi = float(function(Jet.variable(at, 0)).c[0, 0])
+    psi = float(function(Jet.variable(angle, 0)).c[0, 0])
     return Constant(0.0 if abs(psi) <= JOIN else psi)

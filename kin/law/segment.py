@@ -15,6 +15,7 @@ from kin.numeric.elementary import BallJet, Jet, cos, sin
 from kin.numeric.records import dataclass
 
 Series = TypeVar("Series", Jet, BallJet)
+_MANY = 4  # harmonics: of more the terms are enclosed together
 
 
 class Stretch(Protocol):
@@ -110,6 +111,8 @@ class Harmonics:
         """Sum the series."""
         if isinstance(t, Jet) and len(self.terms) > 0 and not t.c[2:].any():
             return self._at_points(t)
+        if isinstance(t, BallJet) and len(self.terms) > _MANY:
+            return self._on_intervals(t)
         total = t.constant(self.mean)
         for k, a, b in self.terms:
             angle = t * float(k) if k > 1 else t
@@ -132,3 +135,23 @@ class Harmonics:
             c[order] = (power * (odd if order % 2 else even)).sum(axis=0) * (scale if order % 4 < 2 else -scale)
             power = power * k
         return Jet(c)
+
+    def _on_intervals(self, t: BallJet) -> BallJet:
+        """Sum the series over intervals (n,): all terms side by side, added up by halves."""
+        k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)
+        order, n = t.mid.shape
+        side = (order, len(k) * n)
+        wide = [np.broadcast_to(rows[:, None, :], (order, len(k), n)).reshape(side) for rows in (t.mid, t.rad)]
+        angle = BallJet(*wide) * np.repeat(k, n)
+        total = cos(angle) * np.repeat(a, n) + sin(angle) * np.repeat(b, n)
+        while (count := total.mid.shape[1] // n) > 1:
+            half = count // 2 * n
+            first, second, odd = (BallJet(total.mid[:, part], total.rad[:, part]) for part in _halves(half))
+            total = first + second
+            total = BallJet(np.hstack([total.mid, odd.mid]), np.hstack([total.rad, odd.rad]))
+        return total + self.mean if self.mean else total
+
+
+def _halves(half: int) -> tuple[slice, slice, slice]:
+    """The first so many columns, as many after them, and what is left."""
+    return slice(half), slice(half, 2 * half), slice(2 * half, None)

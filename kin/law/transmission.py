@@ -106,13 +106,15 @@ def from_law(
     swing_of: Literal["arm", "pair"] = "arm",
     *,
     share: float = 1.0,
+    corners: bool = False,
+    field: str = "law",
 ) -> Transmission:
     """Make the law that a programme prescribes over the first delta of shaft angle, from psi = 0 (W 4.9, 4.10).
 
     With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2; `share` of it is taken. Raises
     IntentError if the ratio is excluded, psi does not end at 0, its slopes do not join (psi' at delta must be
     -psi'(0)/(1 - psi'(0))), an arm would meet the shaft, or psi'(phi) is not below 1; ValueError unless the programme
-    covers delta.
+    covers delta. With `corners` slopes need not join: no cam follows such a law, but it can be wanted.
     """
     demand_ratio(lam, mu, arm)
     delta = math.pi / lam
@@ -121,10 +123,11 @@ def from_law(
     scale = share * (2.0 if swing_of == "pair" else 1.0)
     end = scale * float(programme.at_end(0)[0])
     if abs(end) > JOIN:
-        raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", "law")
+        raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", field)
     functions = [_scaled(f, scale) for f in programme.motion.functions]
     psi, lean = over_period(delta, programme.motion.knots.tolist(), functions, (0.0, 1.0))
-    return checked(Transmission(lam, mu, arm, psi, lean, 0.0), programme.motion.knots.tolist(), functions, "law")
+    knots = programme.motion.knots.tolist()
+    return checked(Transmission(lam, mu, arm, psi, lean, 0.0), knots, functions, field, corners=corners)
 
 
 def _scaled(function: Stretch, scale: float) -> Stretch:

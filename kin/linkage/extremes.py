@@ -92,8 +92,8 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], brea
     of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
     by = dict(zip(Rows._fields, (pieces(of, row) for row in range(len(Rows._fields))), strict=True))
 
-    def place(found: tuple[float, float]) -> Place:
-        value, at = found
+    def place(extreme: tuple[float, float]) -> Place:
+        value, at = extreme
         at = at % TURN
         turned = shaft(at) % TURN
         return Place(value, at, 0.0 if turned >= TURN else turned)
@@ -109,10 +109,10 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], brea
             return least[1]
         return greatest[1] if greatest[0] <= 0 else float(of.crossings(0.0)[0])
 
-    def acute(name: str, at: float) -> Place:
-        here = rows(np.array([at % TURN]))
+    def acute(name: str, angle: float) -> Place:
+        here = rows(np.array([angle % TURN]))
         sine, cosine = (abs(float(getattr(here, f"{name}_{part}")[0])) for part in ("sine", "cosine"))
-        return place((math.atan2(sine, cosine), at))
+        return place((math.atan2(sine, cosine), angle))
 
     return Figures(
         least=place(by["output"].least()),

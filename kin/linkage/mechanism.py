@@ -52,9 +52,9 @@ _SETTLED = 1e-9  # rad: after a Newton step below this the next is lost in round
 class PlaceError(BindingError):
     """A mechanism that binds, or would turn its shaft back, at the relative angle `at`, rad."""
 
-    def __init__(self, message: str, at: float, indices: Indices) -> None:
+    def __init__(self, message: str, angle: float, indices: Indices) -> None:
         super().__init__(message, indices)
-        self.at = at
+        self.at = angle
 
     def __str__(self) -> str:
         return f"{self.message}, at a relative angle of {math.degrees(self.at % TURN):.6g} degrees"

@@ -100,17 +100,17 @@ def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) ->
     return pieces(cells(lambda x: f(x)[None], between(0.0, TURN, breaks.tolist()), resolution))
 
 
-def _below(of: Pieces, level: float) -> tuple[Span, ...]:
+def _below(pieces: Pieces, level: float) -> tuple[Span, ...]:
     """Spans of a turn in which a function is at or below a level."""
-    places = of.crossings(level).tolist()
+    places = pieces.crossings(level).tolist()
     if len(places) > 1 and places[0] + TURN - places[-1] <= _BESIDE:
         places.pop()  # 0, found again at 2 pi
     if not places:
-        return ((0.0, TURN),) if of.values[0] <= level else ()
+        return ((0.0, TURN),) if pieces.values[0] <= level else ()
     ends = np.array([*places, places[0] + TURN])
     middle = np.mod(0.5 * (ends[:-1] + ends[1:]), TURN)
-    piece = np.clip(np.searchsorted(of.x, middle, side="right") - 1, 0, len(of.coefficients) - 1)
-    low = of.at(piece, middle) <= level
+    piece = np.clip(np.searchsorted(pieces.x, middle, side="right") - 1, 0, len(pieces.coefficients) - 1)
+    low = pieces.at(piece, middle) <= level
     return _merged([(float(a), float(b)) for a, b, inside in zip(ends[:-1], ends[1:], low, strict=True) if inside])
 
 

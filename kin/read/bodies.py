@@ -1,8 +1,8 @@
-"""Bodies that do not belong to a part: which, where and how large they are, in one error for every format."""
+"""How many bodies a solid's file holds: what is sought of each, and one error where others are there."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,16 +14,34 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-__all__ = ["MOST_BODIES", "beside"]
+__all__ = ["MOST_BODIES", "Sought", "beside", "missing"]
 
 MOST_BODIES = 5  # that are named in a message
 
 
-def beside(bodies: Sequence[tuple[str, tuple[Array, Array] | None]], count: int, path: Path) -> ReadError:
+class Sought(NamedTuple):
+    """What is sought of one body: its sections at heights, mm, and how many others a closed chain may lie inside."""
+
+    heights: Sequence[float] = ()
+    deepest: int = 1
+
+
+def missing(count: int, expected: int, path: Path) -> ReadError:
+    """Make the error for a file of fewer bodies than are expected."""
+    holds = f"it holds {count} {'body' if count == 1 else 'bodies'}, where {expected} are expected"
+    return ReadError("several", f"{holds}, one above the other", path)
+
+
+def beside(
+    bodies: Sequence[tuple[str, tuple[Array, Array] | None]], count: int, path: Path, expected: int = 1
+) -> ReadError:
     """Make the error for a file of `count` bodies, of which some are given: names, and boxes (3,), (3,), mm, if known.
 
-    The one with the largest box is taken for the part, the others for what does not belong there.
+    Where one is expected, that with the largest box is taken for the part, the others for what does not belong there.
     """
+    if expected > 1:
+        named = "; ".join(told(*body) for body in bodies)
+        return ReadError("several", f"it holds {count} bodies, where {expected} are expected: {named}", path)
     sizes = [-1.0 if box is None else float(np.prod(box[1] - box[0])) for _, box in bodies]
     part = int(np.argmax(sizes))
     others = [told(*one) for k, one in enumerate(bodies) if k != part]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.read.bodies import Sought
     from kin.read.drawing.drawing import Drawing
     from kin.read.mesh.stl import Solid
     from kin.read.step.step import StepSolid
@@ -75,4 +76,40 @@ def read_solid(
         sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
         faces=tuple(units * z for z in found.faces),
         uneven=units * found.uneven,
+    )
+
+
+def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
+    """Read several solids from one 3MF or STEP, the lowest first; raises as `read_3mf` and `read_step` do.
+
+    Heights are those above each one's own level, mm, and so they are in what is returned. ValueError for an STL, whose
+    triangles are one body.
+    """
+    if kind_of(path) not in {"step", "3mf"}:
+        raise ValueError(f"{Path(path).name}: it holds one body")
+    above = list(zip(sought, levels, strict=True))
+    shifted = [one._replace(heights=[level + z for z in one.heights]) for one, level in above]
+    found: list[AnySolid] = []
+    if kind_of(path) == "step":
+        from kin.read.step.step import read_step_bodies
+
+        found += read_step_bodies(path, shifted)
+    else:
+        from kin.read.mesh.threemf import read_3mf_bodies
+
+        found += read_3mf_bodies(path, shifted)
+    return [_lowered(solid, one.heights, level) for solid, (one, level) in zip(found, above, strict=True)]
+
+
+def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySolid:
+    """The solid with its heights counted from a level, mm; those of its sections as they were asked for."""
+    from kin.read.mesh.stl import Section
+
+    return replace(
+        solid,
+        z_min=solid.z_min - level,
+        z_max=solid.z_max - level,
+        height=solid.height - level,
+        sections=tuple(Section(one.chains, z) for z, one in zip(heights, solid.sections, strict=False)),
+        faces=tuple(z - level for z in solid.faces),
     )

@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 
 VERIFY = "verify: {angles: 120}\nexport: {files: [dxf]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n" + VERIFY
+WANTED = ROLLER.replace(
+    "{cos: {1: 625}}",
+    "{harmonics: 3, law: [{rise: 4, over: 20, law: cycloidal}, {return: 4, over: 25, law: cycloidal}]}",
+)
 PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}\n" + VERIFY
 FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t) + cos(3*t)}\npart: {thickness: 8, bore: 10}\n" + VERIFY
 YOKE = """\
@@ -87,6 +91,7 @@ HAVE = {
     **dict.fromkeys(("peak-velocity-at-speed", "peak-acceleration-at-speed", "peak-jerk-at-speed"), STEM),
     **dict.fromkeys(("pivot-clearance", "pivot"), ARM),
     "face-width": FACE,
+    "law-error": WANTED,
     "least-backlash": YOKE + VERIFY + LOOSE,
     "dwell-error": YOKE + VERIFY,
     **dict.fromkeys(("dwell", "dwell-relative", "transmission-angle", "force-angle"), LINKED + VERIFY),
@@ -326,6 +331,7 @@ FINE = "export: {tolerance: 0.0001, "
         (ROLLER, "pressure-angle", "at_most: 45", "a smaller swing", ("625", "300")),
         (SLIGHT, "pressure-angle", "at_most: 20", "stays below 22.5 deg", ("4/3", "6/5")),
         (ROLLER, "velocity-ratio", "at_most: 0.4", "a smaller swing", ("625", "300")),
+        (WANTED, "law-error", "at_most: 0.05", "a higher delta.harmonics", ("harmonics: 3", "harmonics: 7")),
         (
             ROLLER,
             "radius-of-curvature",

@@ -27,6 +27,10 @@ LINKED = """\
 cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 """
+WANTED = (
+    "cam: {kind: flat-pair, ratio: 2, arm: 60, delta: {harmonics: %d, law: [{rise: 0.5, over: 45, law: harmonic}, "
+    "{return: 0.5, over: 45, law: harmonic}]}}\n"
+)
 INCH = "units: inch\ncam: {kind: support, p: 1.5 + 0.1*cos(2*t)}\n"
 KEYED = "part: {bore: %s, keyway: %s}\n"
 
@@ -63,6 +67,9 @@ def test_a_sound_recipe_has_none(text: str) -> None:
         (FLAT + "verify: {motion_error: 0.61}\n", ["loose-motion-error"]),
         (ROLLER + "verify: {motion_error: 1.99}\nlimits: {pressure-angle: {at_most: 80}}\n", []),
         (ROLLER + "verify: {motion_error: 2.01}\nlimits: {pressure-angle: {at_most: 80}}\n", ["loose-motion-error"]),
+        (WANTED % 1, ["wanted-law"]),
+        (WANTED % 1 + "limits: {law-error: {at_most: 3}}\n", []),
+        (WANTED % 3, []),
         (LINKED + "verify: {output_error: 5}\n", ["loose-output-error"]),
         (LINKED + "dwell: {band: 5}\n", ["wide-dwell-band"]),
         (FLAT + "part: {thickness: 65}\n", []),

@@ -464,3 +464,21 @@ def rim_closed():
     far = half * np.cos(PI / 6) - np.sqrt(75.0**2 - (half * np.sin(PI / 6)) ** 2) + 75.0
     near = far * 0.5 + np.sqrt(14_400.0 - far**2) * np.sqrt(0.75)
     return float(near - 8.0 - 60.0)
+
+
+def wanted_off():
+    """Greatest distance of w-wanted-law's swing from w-law's, deg, at fine shaft angles over the law's period; and how
+    many of its extremes come within a thousandth of that, a place and its image by W 4.9 once."""
+    made, wanted = pair("w-wanted-law"), pair("w-law")
+    phi = np.linspace(0.0, 2.0 * wanted.delta, 18_001)[:-1]
+    size = np.degrees(np.abs(made.psi(phi) - wanted.psi(phi)))
+    tops = np.flatnonzero((size > np.roll(size, 1)) & (size >= np.roll(size, -1)) & (size > 0.999 * size.max()))
+    places = np.sort(made.polar(phi[tops])[0] % wanted.delta)
+    apart = np.diff(places, append=places[0] + wanted.delta) > 2e-3
+    return float(size.max()), int(apart.sum())
+
+
+def law_error(name):
+    """What the product's check of that name proves, deg."""
+    checks = pair(name).design.checks
+    return next(check.value for check in checks if check.name == "law-error")

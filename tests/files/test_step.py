@@ -20,7 +20,7 @@ from camgeo.files.curves import FLATTEST, misfit
 from camgeo.files.errors import MissingExtraError
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.solid import Solid
-from camgeo.files.step import write_step
+from camgeo.files.step import StepBody, write_step
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.output import pipeline
@@ -52,7 +52,7 @@ def written(recipe, folder):
     job = Job.of(recipe, designed(recipe))
     path = folder / "part.step"
     contours = contours_of(job.design, job.outlines("arcs", 0.001))
-    write_step(path, [*rim_of(job.body), *contours], solid_of(job.body), tolerance=0.001, name="part")
+    write_step(path, [StepBody([*rim_of(job.body), *contours], solid_of(job.body))], tolerance=0.001, name="part")
     return path
 
 
@@ -321,8 +321,7 @@ def test_a_tolerance_below_rounding_is_refused(tmp_path):
     with pytest.raises(ToleranceError, match=r"more than 1e-10 mm: circles of nearly straight arcs"):
         write_step(
             tmp_path / "x.step",
-            [LayerOutline("CUT", outline)],
-            Solid(5.0, 0.0, 5.0, None, None, [], None),
+            [StepBody([LayerOutline("CUT", outline)], Solid(5.0, 0.0, 5.0, None, None, [], None))],
             tolerance=1e-10,
         )
 
@@ -386,11 +385,11 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
     recipe.write_text(f"{CAM}part: {{thickness: 8}}\nexport: {{files: [step]}}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 3
     assert "a STEP file needs Open CASCADE: pip install '.[step]' in a clone of camgeo" in capsys.readouterr().err
+    circle = ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0))
     with pytest.raises(MissingExtraError):
         write_step(
             tmp_path / "x.step",
-            [LayerOutline("CUT", ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0)))],
-            Solid(5.0, 0.0, 5.0, None, None, [], None),
+            [StepBody([LayerOutline("CUT", circle)], Solid(5.0, 0.0, 5.0, None, None, [], None))],
             tolerance=1e-3,
         )
 

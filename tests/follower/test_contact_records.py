@@ -36,9 +36,11 @@ HALF = "[{rise: 8, over: 120, law: cycloidal}, {dwell: 60}]"
 GROOVE = "{groove: {clearance: 0.03}}"
 
 
-def disc(follower: str, motion: str = MOTION, track: str = "external") -> str:
+def disc(follower: str, motion: str = MOTION, track: str = "external", conjugate: str = "") -> str:
     part = "part: {outer: 160}\n" if track == "internal" else ""
-    return f"{part}cam: {{kind: disc, base_radius: 40, track: {track}, follower: {{{follower}}}, motion: {motion}}}"
+    more = f"conjugate: {{{conjugate}}}, " * bool(conjugate)
+    cam = f"base_radius: 40, track: {track}, {more}follower: {{{follower}}}, motion: {motion}"
+    return f"{part}cam: {{kind: disc, {cam}}}"
 
 
 ARM = "arm: {length: 65, pivot: 80}"
@@ -54,6 +56,17 @@ RECIPES = {
     "ring on an arm": disc(f"kind: roller, radius: 10, {ARM}", SWING, "internal"),
     "groove on a stem": disc("kind: roller, radius: 10, offset: 6", MOTION, GROOVE),
     "groove on an arm": disc(f"kind: roller, radius: 10, {ARM}", SWING, GROOVE),
+    "conjugate rollers on a stem": disc(
+        "kind: roller, radius: 10, offset: 6", MOTION, conjugate="radius: 12, distance: 118"
+    ),
+    "conjugate shoes on a stem": disc("kind: shoe, radius: 20", MOTION, conjugate="distance: 130, gap: 2"),
+    "conjugate rollers on a bell crank": disc(
+        f"kind: roller, radius: 10, {ARM}", SWING, conjugate="radius: 9, length: 60, angle: 95"
+    ),
+    "conjugate rollers on a leading bell crank": disc(
+        f"kind: roller, radius: 10, {ARM[:-1]}, side: leading}}", SWING, conjugate="length: 70, angle: 90"
+    ),
+    "conjugate flat faces": disc("kind: flat, offset: 3", MOTION, conjugate="distance: 90"),
     "flat on a stem": disc("kind: flat"),
     "tilted flat on a stem": disc("kind: flat, tilt: 8, offset: 5"),
     "flat on a trailing arm": disc("kind: flat, arm: {pivot: 90, face: 5}", SWING.replace("12,", "6,")),

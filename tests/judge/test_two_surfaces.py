@@ -13,6 +13,7 @@ from support import followers
 from support.camfiles import arcs_through, solid_triangles, write_stl
 from support.heavy import ezdxf
 
+from kin.follower.follower import followers_of
 from kin.follower.guide import Arm, Line
 from kin.judge.closure import judge_closures
 from kin.judge.intent import ClosureIntent, Limits, PartIntent, SurfaceIntent
@@ -236,10 +237,13 @@ def test_the_flanks_of_an_arm(tmp_path):
 def test_two_discs_in_two_files(tmp_path, back):
     """Two flat faces D apart on two eccentric discs: p2(t + pi) = D - p1(t), and disc 2 may stand back."""
     apart = 100.0
-    one, two = (lift_from_formula(Formula(text)) for text in ("45 + 5*cos(t)", "55 + 5*cos(t)"))
-    first = SurfaceIntent(followers.flat_face(one), "disc 1")
-    record = Contact(Translating(), Flat(), apart, -1, turned=math.pi)
-    second = SurfaceIntent(followers.flat_face(two), "disc 2", contact=record)
+    one = lift_from_formula(Formula("45 + 5*cos(t)"))
+    contacts = (
+        Contact(Translating(), Flat(), surface="disc 1"),
+        Contact(Translating(), Flat(), apart, -1, turned=math.pi, surface="disc 2"),
+    )
+    gauges = followers_of(contacts, one.law, {"disc 1": 1, "disc 2": 1})
+    first, second = (SurfaceIntent(gauge, name) for name, gauge in gauges.items())
     read = []
     for surface, radius in ((first, 45.0), (second, 55.0 - back)):
         document = ezdxf.new("R2010")

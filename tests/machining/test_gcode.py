@@ -25,8 +25,8 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 from kin.contour.nearest import signed_distance
-from kin.judge.intent import Limits
-from kin.judge.milling import Milling, milled
+from kin.judge.intent import Limits, Milling
+from kin.judge.milling import milled
 from kin.judge.verify import verify
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, read_gcode

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pytest
 
-from kin.numeric.records import dataclass, field, replace
+from kin.numeric.records import KW_ONLY, dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,3 +80,51 @@ def test_no_field_is_set_twice_and_none_is_added(make: Callable[[float], Point],
     with pytest.raises(dataclasses.FrozenInstanceError, match=f"'{name}'"):
         delattr(record, name)
     assert record == make(1.0)
+
+
+@dataclass(frozen=True)
+class Late:
+    """Fields by place and by key, some of them with defaults, and what is done at the end."""
+
+    x: float
+    _: KW_ONLY
+    y: float
+    z: float = 3.0
+    ends: list[float] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.ends.append(self.z)
+
+
+class Heir(Late):
+    """Not decorated itself."""
+
+
+@pytest.mark.parametrize("make", [Late, Heir])
+def test_arguments_are_taken_by_place_by_key_and_by_default(make: Callable[..., Late]) -> None:
+    assert (make(1.0, y=2.0).z, make(1.0, y=2.0).ends) == (3.0, [3.0])
+    assert make(y=2.0, x=1.0, ends=[4.0]).ends == [4.0, 3.0]
+    assert make(1.0, y=2.0) == make(1.0, y=2.0, z=3.0)
+    for wrong, text in (((1.0,), "'y'"), ((1.0, 2.0), "positional")):
+        with pytest.raises(TypeError, match=rf"Late.__init__\(\).*{text}"):
+            make(*wrong)
+    with pytest.raises(TypeError, match="'w'"):
+        make(1.0, y=2.0, w=3.0)
+
+
+def test_the_standard_library_sees_a_class_before_and_after_its_first_record() -> None:
+    for first in (True, False):
+
+        @dataclass(frozen=True, kw_only=True)
+        class Fresh(Point):
+            """Never seen before."""
+
+            z: float = field(default=5.0, repr=False)
+
+        assert Fresh.z == 5.0
+        if first:
+            assert Fresh(1.0).z == 5.0
+        assert [entry.name for entry in dataclasses.fields(Fresh)] == ["x", "y", "seen", "z"]
+        assert Fresh.__match_args__ == ("x", "y")
+        assert replace(Fresh(1.0), z=2.0) == Fresh(1.0, z=2.0) != Fresh(1.0)
+        assert repr(Fresh(1.0, z=2.0)).endswith("Fresh(x=1.0, y=0.0)")

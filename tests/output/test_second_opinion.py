@@ -49,7 +49,7 @@ def triangles(vertices: Any = VERTICES) -> Any:
 
 
 def write_3mf(path: Path, mesh: Any) -> Path:
-    return in_3mf(path, mesh, "3D/3dmodel.model")  # the one name by which trimesh finds it
+    return in_3mf(path, mesh, model_name="3D/3dmodel.model")  # the one name by which trimesh finds it
 
 
 def rows(report: Any) -> dict[str, Any]:

@@ -74,9 +74,9 @@ REFUSED = {
     "all": (
         "[dxf]", "[{3mf: {parts: all}}]", "export.files[0]", "the bodies round a groove are not made",
     ),
-    "layer": (
-        "export:", "manufacture: {cutter: 6, layer: true}\nexport:", "manufacture.layer",
-        "no cutter's path is made for a groove",
+    "cutter": (
+        "export:", "manufacture: {cutter: 16.1}\nexport:", "manufacture.cutter",
+        "wider than the groove",
     ),
     "train": (
         "export:", "dynamics: {mass: 1.2, stiffness: 2.0e6, preload: 200, rpm: 300}\nexport:", "dynamics",

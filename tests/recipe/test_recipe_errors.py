@@ -21,7 +21,7 @@ KEYS = (
     "name, about, units, rotation, cam, linkage, part, export, verify, limits, mechanism, dwell, sweep, dynamics "
     "and manufacture"
 )
-PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer and wall"
+PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer, wall and density"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
@@ -552,6 +552,27 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ["1:63: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199"],
         ),
         (
+            "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {harmonics: 33, law: [{dwell: 90}]}}",
+            ["1:62: cam.delta.harmonics: above 31, given 33; give an odd whole number from 1 to 31"],
+        ),
+        (
+            "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {harmonics: 3}}",
+            ["1:62: cam.delta.harmonics: cannot stand without a law; leave it out, or give delta.law"],
+        ),
+        (
+            "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 9}, law: [{dwell: 90}]}}",
+            ["1:56: cam.delta.cos: cannot stand beside law; leave one of them out"],
+        ),
+        (
+            "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {law: [{dwell: 45}]}}",
+            [
+                (
+                    "1:56: cam.delta.law: the segments do not fill their angle, given 45 degrees; "
+                    "let them cover 180/2 degrees; an angle may be a fraction such as 180/7"
+                )
+            ],
+        ),
+        (
             "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {}, sin: {}}}",
             ["1:50: cam.delta: no harmonics, so no motion; give some, such as {cos: {1: 625}}"],
         ),
@@ -638,7 +659,6 @@ def test_cams(body: str, messages: list[str]) -> None:
 @pytest.mark.parametrize(
     ("lines", "place"),
     [
-        ("  conjugate: {radius: 11, distance: 120}\n", "4:3: cam.conjugate: conjugate cams"),
         ("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n", "4:1: camshaft: camshafts"),
     ],
 )

@@ -53,14 +53,14 @@ def text(path: Path, triangles: np.ndarray) -> Path:
     return path
 
 
-def in_3mf(path: Path, triangles: np.ndarray, model_name: str = "m.model") -> Path:
-    points, numbers = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
-    rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in numbers.reshape(-1, 3).tolist())
+def in_3mf(path: Path, *bodies: np.ndarray, model_name: str = "m.model", place: np.ndarray | None = None) -> Path:
+    """Bodies in the order of the build, all in one place (4, 3) on the plate."""
+    objects = "".join(_object(k, triangles) for k, triangles in enumerate(bodies, start=1))
+    there = "" if place is None else f' transform="{" ".join(map(repr, place.ravel().tolist()))}"'
+    items = "".join(f'<item objectid="{k}"{there}/>' for k in range(1, len(bodies) + 1))
     model = (
         '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
-        f'<object id="1" name="cam"><mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles></mesh></object>'
-        '</resources><build><item objectid="1"/></build></model>'
+        f"{objects}</resources><build>{items}</build></model>"
     )
     link = (
         '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
@@ -70,3 +70,12 @@ def in_3mf(path: Path, triangles: np.ndarray, model_name: str = "m.model") -> Pa
         archive.writestr("_rels/.rels", link)
         archive.writestr(model_name, model)
     return path
+
+
+def _object(number: int, triangles: np.ndarray) -> str:
+    points, corners = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
+    rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in corners.reshape(-1, 3).tolist())
+    name = "cam" if number == 1 else f"body {number}"
+    mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles></mesh>"
+    return f'<object id="{number}" name="{name}">{mesh}</object>'

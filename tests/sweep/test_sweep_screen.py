@@ -146,7 +146,7 @@ def test_what_acts_otherwise_is_worked_out_anew():
         (
             "kind: double-roller, ratio: 2, arm: 60, roller_radius: 8, delta: {cos: {1: 40}}",
             "cam.arm",
-            "velocity-ratio is",
+            "its contour is not",
         ),
         (f"undercut: trim, {CAMS['roller'][0]}", "cam.base_radius", "undercut is trimmed"),
         ("kind: support, reuleaux: {sides: 3, breadth: 60, rounding: 0}", "cam.reuleaux.breadth", "its contour is not"),
@@ -156,6 +156,16 @@ def test_what_is_not_screened_says_why(cam, path, why):
     one = recipe(cam, {path: (40, 80)}, sweep=f"method: random, count: {EXACT + 1}, rank: size")
     assert Ask.of(one).unscreened.startswith(why)
     assert not Ask.of(one).screened
+
+
+@pytest.mark.parametrize(("rank", "why"), [("size", ""), ("mass", "mass is not sampled")])
+def test_what_is_weighed_is_worked_out(rank, why):
+    text = f"cam: {{{CAMS['roller'][0].replace('LAW', 'cycloidal')}}}\npart: {{thickness: 8, density: 7.85}}\nsweep: "
+    text += f"{{vary: {{cam.base_radius: {{from: 40, to: 45}}}}, rank: {rank}, method: random, count: {EXACT + 1}}}\n"
+    asked = Ask.of(load_text(text, "a.yaml"))
+    assert asked.unscreened == why
+    assert "mass" in asked.all_figures
+    assert ("mass" in asked.figures) == bool(why)
 
 
 def test_few_designs_are_all_exact():

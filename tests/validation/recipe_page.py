@@ -77,7 +77,7 @@ def spans(of_cams):
     """What each motion is of: the unit of its strokes, and the greatest angle of a segment."""
     lines = ["| cam | motion | stroke | segment up to |", "| --- | --- | --- | --- |"]
     for name, motion in of_cams.items():
-        kind, key = name.removeprefix("cam ").split(".")
+        kind, _, key = name.removeprefix("cam ").partition(".")
         rise, over = motion.inner.field("rise"), motion.inner.field("over")
         lines.append(f"| `{kind}` | `{key}` | {UNITS[rise.unit or rise.kind]} | {over.at_most:g} deg |")
     return "\n".join(lines)

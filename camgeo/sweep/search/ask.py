@@ -10,14 +10,18 @@ from camgeo.recipe.export import Export
 from camgeo.recipe.figures import (
     AT_SPEED,
     CONTACT_TRAVEL,
+    ECCENTRICITY,
     FACE_WIDTH,
     HOLLOW_RADIUS,
+    INERTIA,
     JAM_MARGIN,
+    MASS,
     ON_RETURN,
     ON_RISE,
     PEAKS,
     PIVOT_CLEARANCE,
     ROLLER_SPEED,
+    UNBALANCE,
 )
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import output_slides
@@ -42,7 +46,7 @@ if TYPE_CHECKING:
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
-_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN)
+_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN, MASS, ECCENTRICITY, INERTIA, UNBALANCE)
 EXACT = 100  # designs: of no more each is worked out, which takes seconds
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
@@ -89,10 +93,22 @@ class Ask:
         Limits on the cheap ones so leave what is computed as it is. Designs with a linkage that are made one by one
         get all, which then cost next to nothing.
         """
-        asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
-        if self.screened or (self.recipe.linkage is not None and Evaluator.of(self.recipe, self.paths).slow):
+        if self.screened:
+            return self._estimated
+        if self.recipe.linkage is not None and Evaluator.of(self.recipe, self.paths).slow:
             return self.all_figures
-        return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
+        return tuple(name for name in self.all_figures if name in self._asked or name not in _DEAR)
+
+    @property
+    def _asked(self) -> set[str]:
+        return {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
+
+    @property
+    def _estimated(self) -> tuple[str, ...]:
+        """The figures that can be estimated, and those that must be."""
+        from camgeo.sweep.screen.screen import FIGURES as KNOWN
+
+        return tuple(name for name in self.all_figures if name in KNOWN or name in self._asked)
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -109,7 +125,7 @@ class Ask:
         """Why figures are not estimates but come from each design; empty where they are estimates."""
         if self.plan.count <= EXACT:
             return f"up to {EXACT} designs are all worked out"
-        screen = Evaluator.of(self.recipe, self.paths, figures=self.all_figures, screened=True).screen
+        screen = Evaluator.of(self.recipe, self.paths, figures=self._estimated, screened=True).screen
         return screen if isinstance(screen, str) else ""
 
     def exactly(self, values: Floats) -> Found:
@@ -133,12 +149,13 @@ class Ask:
         was computed as it is.
         """
         timed = any(FIGURES[name].needs in {"speed", "guide"} for name in figures)
+        weighed = any(FIGURES[name].needs == "density" for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
             self.recipe,
             name="",
             about="",
-            part=Part(),
+            part=self.recipe.part if weighed else Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
             dynamics=self.recipe.dynamics if timed else None,

@@ -79,6 +79,8 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
     if recipe.dynamics is not None:
         given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
+    if recipe.part.density is not None and recipe.linkage is None:
+        given.add("part.density")
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from camgeo.checks.declared import BENT, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
+from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
 
+CUT = BENT | {UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
 _ROUND = 720  # angles at which faces are held against the shaft
 
 
@@ -67,16 +70,17 @@ def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | 
 def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:
     """Figures by name, (m,) each, lengths in mm and angles in degrees, and what is wrong (m,).
 
-    Of the part there is nothing but the contour: a bore has no bearing on these.
+    Of the part there is nothing but the contour, as a bore has no bearing on these, unless its mass is wanted.
     """
     from camgeo.measures.figures import of_design
     from camgeo.synthesis.design import designed
 
-    m = len(values)
+    m, weighed = len(values), any(FIGURES[name].needs == "density" for name in names)
     figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
-            made = replace(recipe_with(recipe, paths, row), part=Part(), manufacture=None)
+            made = replace(recipe_with(recipe, paths, row), manufacture=None)
+            made = made if weighed else replace(made, part=Part())
             design = designed(made)
         except RecipeErrors:
             continue
@@ -85,7 +89,8 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
             fault[i] = OUTSIDE
             continue
         if not design.contours:
-            fault[i] = UNDERCUT
+            undercut = any(not check.ok and check.name in CUT for check in design.checks)
+            fault[i] = UNDERCUT if undercut else IMPOSSIBLE  # there is no room for its openings
             continue
         for name, measured in of_design(made, design, design.checks, names).items():
             figures[name][i] = np.nan if measured.value is None else measured.value

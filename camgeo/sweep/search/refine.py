@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from camgeo.common.rounding import downward
 from camgeo.sweep.screen.certify import slack
-from camgeo.sweep.search.figures import DWELLS, Evaluator, asked_of
+from camgeo.sweep.search.figures import DWELLS, Evaluator
 from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
 from kin.numeric.errors import KinError
 from kin.numeric.records import dataclass, replace
@@ -104,7 +104,7 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
         goal, found = _settled(ask, goal)
         designs = np.stack([start, found, _rounded(goal, found)])
     # all figures, in the end; the search itself looks at those that rank or limit
-    whole = replace(goal.evaluator, recipe=_unlimited(ask), wanted=asked_of(ask.recipe), screened=False)
+    whole = replace(goal.evaluator, recipe=_unlimited(ask), wanted=ask.all_figures, screened=False)
     figures = whole.found(designs).figures
     lost = replace(goal, limits=ask.sweep.limits).loss_of(figures)
     loss = lost if goal.evaluator.estimator else np.where(lost < _FAR, goal.loss(designs), lost)

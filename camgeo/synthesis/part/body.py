@@ -190,11 +190,11 @@ def _greatest(fits: Callable[[float], bool]) -> float:
     return low
 
 
-def _placed(mark: Mark, looks: Looks, asked: float | None, edge: float) -> Opening | None:
+def _placed(mark: Mark, looks: Looks, room: float | None, edge: float) -> Opening | None:
     """The mark, with this wall or its own width between it and the contour; None without room."""
     depth = mark.depth if mark.kind == "engrave" else None
     layer: Layer = "ENGRAVE" if mark.kind == "engrave" else "MARK"
-    wall = (asked or mark.width) + edge
+    wall = (room or mark.width) + edge
 
     def at(outer: float) -> Opening:
         return Opening("mark", layer, slot(outer - mark.length, outer, mark.width), depth=depth)

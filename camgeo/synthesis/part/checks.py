@@ -206,13 +206,13 @@ def _to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Poss
     return Possible(at_least - edge, pair)
 
 
-def _outside(one: Opening, other: Opening) -> Pair:
-    return Pair(one.name, other.name, outside_gap(other.chain, one.chain))
+def _outside(opening: Opening, other: Opening) -> Pair:
+    return Pair(opening.name, other.name, outside_gap(other.chain, opening.chain))
 
 
-def _sure(one: str, other: str, gap: Gap) -> Possible:
+def _sure(name: str, other: str, gap: Gap) -> Possible:
     """A wall that is known."""
-    return Possible(gap.wall, lambda: Pair(one, other, gap))
+    return Possible(gap.wall, lambda: Pair(name, other, gap))
 
 
 def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:

@@ -46,17 +46,17 @@ class Placed:
         return 0.25 * math.pi * sum(d * d for d in self.diameters)
 
 
-def lightened(wanted: Lightening, looks: Looks, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
+def lightened(lightening: Lightening, looks: Looks, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
     """Holes in a contour round openings and hub that are there, `edge` more from the contour for its chamfer."""
-    room = _Room(looks, there, wanted.wall, edge)
-    least = 2.0 * wanted.wall if wanted.least is None else wanted.least
-    if wanted.ring is not None:
-        found = _ring(room, wanted.ring, wanted.start, least)
+    room = _Room(looks, there, lightening.wall, edge)
+    least = 2.0 * lightening.wall if lightening.least is None else lightening.least
+    if lightening.ring is not None:
+        found = _ring(room, lightening.ring, lightening.start, least)
     else:
-        found = _largest(room, wanted.largest or 0, least)
-    asked = wanted.ring or wanted.largest or 0
+        found = _largest(room, lightening.largest or 0, least)
+    asked = lightening.ring or lightening.largest or 0
     holes = [disc(f"lightening hole {k + 1}", "HOLES", centre, 0.5 * d) for k, (centre, d) in enumerate(found)]
-    return holes, Placed(asked, tuple(d for _, d in found), wanted.wall, wanted.ring is not None)
+    return holes, Placed(asked, tuple(d for _, d in found), lightening.wall, lightening.ring is not None)
 
 
 Found = list[tuple[tuple[float, float], float]]

@@ -74,28 +74,28 @@ def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) ->
     return Opening(name, layer, ArcSpline(points, np.ones(2), EXACT), (centre, radius))
 
 
-def keyed(radius: float, width: float, depth: float, at: float) -> ArcSpline:
+def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
     """Circle about the origin with a keyway of this width, its floor `depth` beyond the circle (DIN 6885 t2)."""
     half = 0.5 * width
     floor, corner = radius + depth, math.sqrt(radius * radius - half * half)
     sweep = 2.0 * (math.pi - math.asin(half / radius))
     points = np.array([[corner, half], [corner, -half], [floor, -half], [floor, half]])
-    return ArcSpline(_turned(points, at), np.array([math.tan(0.25 * sweep), 0.0, 0.0, 0.0]), EXACT)
+    return ArcSpline(_turned(points, angle), np.array([math.tan(0.25 * sweep), 0.0, 0.0, 0.0]), EXACT)
 
 
-def flattened(radius: float, across: float, at: float) -> ArcSpline:
-    """Circle about the origin with a flat, `across` from its opposite side; the flat's normal points to `at`."""
+def flattened(radius: float, across: float, angle: float) -> ArcSpline:
+    """Circle about the origin with a flat, `across` from its opposite side; the flat's normal points to `angle`."""
     height = across - radius
     half = math.sqrt(radius * radius - height * height)
     sweep = 2.0 * (math.pi - math.acos(height / radius))
     points = np.array([[height, half], [height, -half]])
-    return ArcSpline(_turned(points, at), np.array([math.tan(0.25 * sweep), 0.0]), EXACT)
+    return ArcSpline(_turned(points, angle), np.array([math.tan(0.25 * sweep), 0.0]), EXACT)
 
 
-def polygonal(sides: int, across: float, at: float) -> ArcSpline:
-    """Regular polygon about the origin, `across` from flat to flat, one flat's normal pointing to `at`."""
+def polygonal(sides: int, across: float, normal: float) -> ArcSpline:
+    """Regular polygon about the origin, `across` from flat to flat, one flat's normal pointing to `normal`."""
     corner = 0.5 * across / math.cos(math.pi / sides)
-    angle = at + (2.0 * np.arange(sides) - 1.0) * math.pi / sides
+    angle = normal + (2.0 * np.arange(sides) - 1.0) * math.pi / sides
     points = corner * np.column_stack([np.cos(angle), np.sin(angle)])
     return ArcSpline(points, np.zeros(sides), EXACT)
 
@@ -107,11 +107,11 @@ def slot(inner: float, outer: float, width: float) -> ArcSpline:
     return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
-def strip(reach: float, width: float, at: float) -> ArcSpline:
+def strip(reach: float, width: float, angle: float) -> ArcSpline:
     """Rectangle of this width along a ray, from the origin to a radius."""
     half = 0.5 * width
     points = np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])
-    return ArcSpline(_turned(points, at), np.zeros(4), EXACT)
+    return ArcSpline(_turned(points, angle), np.zeros(4), EXACT)
 
 
 def polar(radius: float, angle: float) -> tuple[float, float]:
@@ -120,9 +120,9 @@ def polar(radius: float, angle: float) -> tuple[float, float]:
     return radius * c + 0.0, radius * s + 0.0
 
 
-def _turned(points: Array, at: float) -> Array:
+def _turned(points: Array, angle: float) -> Array:
     """Turn points (n, 2) about the origin; by nothing or quarter turns exactly."""
-    c, s = _direction(at)
+    c, s = _direction(angle)
     turned: Array = points @ np.array([[c, s], [-s, c]])
     return turned
 

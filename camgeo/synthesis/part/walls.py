@@ -122,10 +122,10 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
     return Gap(wall, _place(point[least]), float(nodes[least]))
 
 
-def outside_gap(one: Arcs, other: Arcs) -> Gap:
+def outside_gap(chain: Arcs, other: Arcs) -> Gap:
     """Wall between two closed chains, each to lie outside the other; negative where they cross or one holds another."""
-    gap = _chain_gap(one, other, 1.0)
-    held = float(signed_distance(one, other.start[:1])[0])
+    gap = _chain_gap(chain, other, 1.0)
+    held = float(signed_distance(chain, other.start[:1])[0])
     return gap if held > 0.0 else Gap(min(gap.wall, held), _place(other.start[0]))
 
 
@@ -134,10 +134,10 @@ def inside_gap(inner: Arcs, outer: Arcs) -> Gap:
     return _chain_gap(inner, outer, -1.0)
 
 
-def _chain_gap(one: Arcs, other: Arcs, side: float) -> Gap:
+def _chain_gap(chain: Arcs, other: Arcs, side: float) -> Gap:
     """Least signed distance of the points of one chain outside (side 1) or inside (-1) the other."""
-    turns = np.abs(one.curvature) * one.length
-    parts, _ = one.cut(np.maximum(np.ceil(turns / PART_TURN), PARTS).astype(np.intp))
+    turns = np.abs(chain.curvature) * chain.length
+    parts, _ = chain.cut(np.maximum(np.ceil(turns / PART_TURN), PARTS).astype(np.intp))
     falls = side * _from_chain(other, parts.start, parts.tangent)
     rises = side * _from_chain(other, parts.ends, parts.end_tangents)
     turning = np.flatnonzero((falls < 0.0) & (rises > 0.0))
@@ -175,7 +175,7 @@ def winds(ring: Array) -> bool:
     return abs(float(turned.sum())) > np.pi
 
 
-def _outward(at: Frame, origin: Array) -> Array:
+def _outward(frame: Frame, origin: Array) -> Array:
     """Distance from the origin times the rate at which it grows along the curve (n,)."""
-    product: Array = np.sum((at.point - origin) * at.tangent, axis=1)
+    product: Array = np.sum((frame.point - origin) * frame.tangent, axis=1)
     return product

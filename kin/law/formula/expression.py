@@ -73,10 +73,10 @@ class FormulaDomainError(FormulaError, DomainError):
     `operation` says in words what failed, `indices` (k,) are the points, out of those asked for, at which it did.
     """
 
-    def __init__(self, operation: str, indices: NDArray[np.intp], variable: str, at: float, column: int) -> None:
-        FormulaError.__init__(self, f"{operation} at {variable} = {at:.12g}", column)
+    def __init__(self, operation: str, indices: NDArray[np.intp], variable: str, place: float, column: int) -> None:
+        FormulaError.__init__(self, f"{operation} at {variable} = {place:.12g}", column)
         DomainError.__init__(self, operation, indices)
-        self.at = at
+        self.at = place
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,8 +91,8 @@ def _settle(expression: Expression, place: int, lower: float, upper: float) -> _
     return _settled(found, lambda sign: _case(step, sign))
 
 
-def _settled(found: Signs, build: Callable[[int], Build]) -> _Settled:
-    return _Settled(found.changes, tuple(build(sign) for sign in found.signs), found.at_start, found.at_end)
+def _settled(signs: Signs, build: Callable[[int], Build]) -> _Settled:
+    return _Settled(signs.changes, tuple(build(sign) for sign in signs.signs), signs.at_start, signs.at_end)
 
 
 def _deciding(expression: Expression, step: Instruction) -> Expression:
@@ -143,8 +143,8 @@ def _settle_angle(expression: Expression, step: Instruction, lower: float, upper
     return _settled(found, turned)
 
 
-def _may_be_left(x: Expression, at: float) -> bool:
-    return not bool(x.ball(at, at, 0).rows.positive.all())
+def _may_be_left(x: Expression, angle: float) -> bool:
+    return not bool(x.ball(angle, angle, 0).rows.positive.all())
 
 
 def _copied(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder, list[int]]:

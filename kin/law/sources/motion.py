@@ -164,10 +164,10 @@ class Motion:
         return bool((np.abs(end - begin) <= _JOIN * (1 + np.abs(begin).max())).all())
 
 
-def _remedy(at: float, order: int) -> str:
+def _remedy(angle: float, order: int) -> str:
     if order:
         return "let both sides meet at one velocity, as laws from rest to rest do, or give one of them law: match"
-    return "let both sides meet at one displacement" if at else "let the motion end where it begins"
+    return "let both sides meet at one displacement" if angle else "let the motion end where it begins"
 
 
 def _raised(function: Stretch, by: float) -> Stretch:

@@ -208,73 +208,73 @@ def sections_of(rows: Samples, start: Sections, reading: float, spacing: int, tw
     return _plain(found, x, s, count, reading)
 
 
-def _feet(found: Sections, x: Array, s: Array) -> list[Sections]:
+def _feet(sections: Sections, x: Array, s: Array) -> list[Sections]:
     """The same with the other derivative that jumps first at a foot, there or where roots lead back to."""
     trials: list[Sections] = []
-    if found.ends is None:
+    if sections.ends is None:
         return trials
-    for side, level in ((0, found.ends.start), (1, found.ends.end)):
-        order = ACCELERATION + JERK - found.rest[side]
+    for side, level in ((0, sections.ends.start), (1, sections.ends.end)):
+        order = ACCELERATION + JERK - sections.rest[side]
         away = np.abs(s - level)
         near = np.flatnonzero(away > 0.0)
         near = near[1:4] if side == 0 else near[-4:-1]
-        places = [found.feet[side]]
+        places = [sections.feet[side]]
         if len(near) == 3:
             slope, foot = np.polyfit(x[near], away[near] ** (1.0 / order), 1)
-            places += [float(np.clip(-foot / slope, *found.between))] if slope else []
+            places += [float(np.clip(-foot / slope, *sections.between))] if slope else []
         for place in places:
-            feet = (place, found.feet[1]) if side == 0 else (found.feet[0], place)
-            rest = (order, found.rest[1]) if side == 0 else (found.rest[0], order)
-            trials.append(replace(found, feet=feet, rest=rest))
+            feet = (place, sections.feet[1]) if side == 0 else (sections.feet[0], place)
+            rest = (order, sections.rest[1]) if side == 0 else (sections.rest[0], order)
+            trials.append(replace(sections, feet=feet, rest=rest))
     return trials
 
 
-def _plain(found: Sections, x: Array, s: Array, count: int, reading: float) -> Sections:
+def _plain(sections: Sections, x: Array, s: Array, count: int, reading: float) -> Sections:
     """The same with one joint for two that stand close, and where of joints only the jerk jumps.
 
     Each if that leaves hardly more.
     """
-    left, step = found.left(x, s, count), float(np.median(np.diff(x)))
-    for a, b in pairwise(found.kinks):
-        if b.at - a.at < _MERGED * step and a in found.kinks:
-            others = [kink for kink in found.kinks if kink not in {a, b}]
+    left, step = sections.left(x, s, count), float(np.median(np.diff(x)))
+    for a, b in pairwise(sections.kinks):
+        if b.at - a.at < _MERGED * step and a in sections.kinks:
+            others = [kink for kink in sections.kinks if kink not in {a, b}]
             for share in _BETWEEN:
                 kink = Kink(a.at + share * (b.at - a.at), ACCELERATION)
-                trial = replace(found, kinks=tuple(sorted([*others, kink]))).moved(x, s, count)
+                trial = replace(sections, kinks=tuple(sorted([*others, kink]))).moved(x, s, count)
                 after = trial.left(x, s, count)
                 if trial.sparse(step) and after < left + _GAIN * reading**2:
-                    found, left = trial, after
+                    sections, left = trial, after
                     break
-    for i in range(len(found.kinks) + 2):
+    for i in range(len(sections.kinks) + 2):
         if i < 2:
-            rest = (JERK, found.rest[1]) if i == 0 else (found.rest[0], JERK)
-            trial = replace(found, rest=rest)
+            rest = (JERK, sections.rest[1]) if i == 0 else (sections.rest[0], JERK)
+            trial = replace(sections, rest=rest)
         else:
-            kinks = list(found.kinks)
+            kinks = list(sections.kinks)
             kinks[i - 2] = kinks[i - 2]._replace(order=JERK)
-            trial = replace(found, kinks=tuple(kinks))
-        if trial != found:
+            trial = replace(sections, kinks=tuple(kinks))
+        if trial != sections:
             trial = trial.moved(x, s, count)
             after = trial.left(x, s, count)
             if after < left + _GAIN * reading**2:
-                found, left = trial, after
-    return found
+                sections, left = trial, after
+    return sections
 
 
-def _next(found: Sections, x: Array, s: Array, count: int) -> list[Kink]:
+def _next(sections: Sections, x: Array, s: Array, count: int) -> list[Kink]:
     """The best place for a joint of each order: where it would lessen the sum of squares most."""
-    fitting = found.fitting(x, count)
+    fitting = sections.fitting(x, count)
     try:
         off = s - fitting.values(fitting.nearest(s))
     except np.linalg.LinAlgError:
         return []
     base, _ = np.linalg.qr(fitting.matrix)
-    inner = x[_APART:-_APART] if found.ends is not None else x
+    inner = x[_APART:-_APART] if sections.ends is not None else x
     places = (inner[:, None] + np.median(np.diff(x)) * np.arange(_PARTS) / _PARTS).ravel()
-    period = found.between[1] - found.between[0]
+    period = sections.between[1] - sections.between[0]
     window, kinks = _WINDOW * period / count, []
     for order in (ACCELERATION, JERK):
-        shape = faded(x, places, order, window, period if found.ends is None else math.inf)
+        shape = faded(x, places, order, window, period if sections.ends is None else math.inf)
         whole = (shape * shape).sum(axis=0)
         rest = whole - ((base.T @ shape) ** 2).sum(axis=0)
         rest[rest <= _ROUND * whole] = np.inf

@@ -66,11 +66,11 @@ def pieces_of(
     return knots, [_plain(part, low) for part, low in zip(parts, knots[:-1], strict=True)]
 
 
-def _plain(part: Expression, at: float) -> Stretch:
-    """The expression, or the constant that it is if it does not depend on its variable from `at` on."""
-    if part.jet(at, 1).c[1].any():
+def _plain(part: Expression, angle: float) -> Stretch:
+    """The expression, or the constant that it is if it does not depend on its variable from `angle` on."""
+    if part.jet(angle, 1).c[1].any():
         return part
-    enclosed = part.ball(at, at + 1.0, 1)
+    enclosed = part.ball(angle, angle + 1.0, 1)
     if not enclosed.mid[1].any() and not enclosed.rad[1].any():
         return Constant(float(enclosed.mid[0, 0]))
     return part

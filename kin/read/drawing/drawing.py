@@ -108,7 +108,7 @@ class Found(NamedTuple):
 
 
 def drawing_of(
-    found: Found,
+    curves: Found,
     marks: Found | None,
     unit: float | None,
     gap: float | None,
@@ -125,7 +125,7 @@ def drawing_of(
     much as such a gap; chains may lie inside `deepest` others. Raises ReadError as the readers do.
     """
     scale = 1.0 if unit is None else unit
-    pieces, run = gathered(found.shapes)
+    pieces, run = gathered(curves.shapes)
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     same, usual = closeness(pieces)
@@ -135,8 +135,8 @@ def drawing_of(
         lines, owner = gathered(marks.shapes)
         lines = lines.enlarged(scale) if scale != 1.0 else lines
         scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
-    demand_one_plane(np.concatenate([s.heights for s in found.shapes]) * scale, usual, path)
-    keep, faults = without_faults(pieces, run, found, same, path)
+    demand_one_plane(np.concatenate([s.heights for s in curves.shapes]) * scale, usual, path)
+    keep, faults = without_faults(pieces, run, curves, same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
     chained = chain(pieces.take(keep), run[keep], gap, same, path)
@@ -147,14 +147,16 @@ def drawing_of(
     outer = chained[order[0].number]
     return Drawing(
         chains=tuple(
-            Chain(counter_clockwise(one.contour), depth, inside, found.layers[one.entities[0]], one.spans(found.shapes))
+            Chain(
+                counter_clockwise(one.contour), depth, inside, curves.layers[one.entities[0]], one.spans(curves.shapes)
+            )
             for one, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
         ),
         units_mm=unit,
         turned=outer.contour.area < 0.0,
         widest_gap=outer.gap,
-        layers=tuple(sorted(set(found.layers))),
-        aside=tuple(Aside(*key, count) for key, count in sorted(found.aside.items())),
+        layers=tuple(sorted(set(curves.layers))),
+        aside=tuple(Aside(*key, count) for key, count in sorted(curves.aside.items())),
         faults=tuple(faults),
         version=version,
         measurement=measurement,
@@ -207,7 +209,7 @@ def extent(pieces: Pieces) -> float:
 
 
 def without_faults(
-    pieces: Pieces, run: Indices, found: Found, same: float, path: Path
+    pieces: Pieces, run: Indices, curves: Found, same: float, path: Path
 ) -> tuple[NDArray[np.bool_], list[Fault]]:
     """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
 
@@ -216,7 +218,7 @@ def without_faults(
     pieces stay.
     """
     keep = reach(pieces) > same
-    faults = [fault("zero-length", pieces, int(k), run, found) for k in np.flatnonzero(~keep)]
+    faults = [fault("zero-length", pieces, int(k), run, curves) for k in np.flatnonzero(~keep)]
     kept = np.flatnonzero(keep)
     middle = pieces.points(kept, np.full(kept.size, 0.5))
     start, end = pieces.start[kept], pieces.end[kept]
@@ -229,18 +231,18 @@ def without_faults(
     again[kept[np.maximum(one, other)]] = True
     if not again.any():
         return keep, faults
-    count = len(found.names)
+    count = len(curves.names)
     whole = np.bincount(run[keep & ~again], minlength=count) == 0
     for k in np.flatnonzero(np.bincount(run[again], minlength=count)):
         place = int(np.flatnonzero(again & (run == k))[0])
-        faults.append(fault("duplicate" if whole[k] else "overlap", pieces, place, run, found))
+        faults.append(fault("duplicate" if whole[k] else "overlap", pieces, place, run, curves))
     return keep & ~whole[run], faults
 
 
-def fault(kind: str, pieces: Pieces, piece: int, run: Indices, found: Found) -> Fault:
+def fault(kind: str, pieces: Pieces, piece: int, run: Indices, curves: Found) -> Fault:
     """Return a Fault at the start of a piece."""
     x, y = pieces.start[piece].tolist()
-    return Fault(kind, found.names[run[piece]], found.layers[run[piece]], x, y)
+    return Fault(kind, curves.names[run[piece]], curves.layers[run[piece]], x, y)
 
 
 def reach(pieces: Pieces) -> Array:

@@ -255,11 +255,11 @@ def entities_engraved(drawn: list[Drawn], path: Path) -> Found:
     return gather(drawn, {ENGRAVED} if by_name else set(), path)
 
 
-def gather(drawn: list[Drawn], wanted: set[str], path: Path) -> Found:
+def gather(drawn: list[Drawn], layers: set[str], path: Path) -> Found:
     """Read the entities on some layers, and count the others."""
     found = Found([], [], [], Counter())
     for one in drawn:
-        if one.layer.upper() not in wanted or one.kind in NOTES:
+        if one.layer.upper() not in layers or one.kind in NOTES:
             found.aside[one.layer, one.kind] += 1
             continue
         if one.kind not in CURVES:
@@ -275,11 +275,11 @@ def gather(drawn: list[Drawn], wanted: set[str], path: Path) -> Found:
     return found
 
 
-def refuse_elsewhere(document: Document, wanted: set[str], path: Path) -> None:
+def refuse_elsewhere(document: Document, layers: set[str], path: Path) -> None:
     """Refuse curves on the layers to cut that stand in paper space."""
 
     def cut(entity: Any) -> bool:  # noqa: ANN401
-        return entity.dxf.layer.upper() in wanted and (entity.dxftype() in CURVES or entity.dxftype() == "INSERT")
+        return entity.dxf.layer.upper() in layers and (entity.dxftype() in CURVES or entity.dxftype() == "INSERT")
 
     for layout in document.layouts:
         first = next((e for e in layout if cut(e)), None) if layout.is_any_paperspace else None

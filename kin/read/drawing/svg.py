@@ -154,12 +154,12 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
         yield from _elements(element, own, here, path, depth + 1)
 
 
-def _gathered(elements: list[_Drawn], wanted: set[str], path: Path) -> Found:
+def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> Found:
     """Read the elements on some layers, and count the others."""
     found = Found([], [], [], Counter())
     for number, (element, layer, to) in enumerate(elements, start=1):
         kind = element.tag.removeprefix(SVG)
-        if layer not in wanted:
+        if layer not in layers:
             found.aside[layer, kind] += 1
             continue
         name = f"{kind} #{element.get('id', number)}{f' on {layer}' if layer else ''}"

@@ -139,20 +139,20 @@ FLAG = re.compile(r"[01]")
 VALUE = re.compile(NUMBER)
 
 
-def arguments(text: str, at: int, kind: str) -> tuple[list[float], int]:
+def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
     """Read the numbers of one letter from a place on, and say where they end."""
     numbers = []
     for k in range(COUNT[kind]):
-        gap = GAP.match(text, at)
-        at = gap.end() if gap else at
-        found = (FLAG if kind == "A" and k in (3, 4) else VALUE).match(text, at)
+        gap = GAP.match(text, place)
+        place = gap.end() if gap else place
+        found = (FLAG if kind == "A" and k in (3, 4) else VALUE).match(text, place)
         if found is None:
-            raise UnfitError("syntax", f"its path has {text[at : at + 20]!r} where a number of {kind} belongs")
+            raise UnfitError("syntax", f"its path has {text[place : place + 20]!r} where a number of {kind} belongs")
         numbers.append(float(found[0]))
         if math.isinf(numbers[-1]):
             raise UnfitError("range", f"its path has {found[0]}, beyond all numbers of a drawing")
-        at = found.end()
-    return numbers, at
+        place = found.end()
+    return numbers, place
 
 
 def bulge_of(piece: Loose) -> float:

@@ -17,6 +17,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from kin.read.bodies import Sought, missing
 from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
 from kin.read.size import oversize
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Placed", "read_3mf", "read_placed"]
+__all__ = ["Placed", "read_3mf", "read_3mf_bodies", "read_placed"]
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
@@ -86,6 +87,38 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
     one = chosen[0]
     corners = one.corners if one.rigid else _moved(one.corners, one.place)
     return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=one.mm)
+
+
+def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
+    """Read as many objects as are sought, the lowest first, as they stand to the lowest; raises as `read_3mf` does.
+
+    Where the lowest lies on the plate and which way it is turned there does not count, unless its place scales, shears
+    or mirrors it.
+    """
+    path = Path(path)
+    built = read_placed(path)
+    if len(built) < len(sought):
+        raise missing(len(built), len(sought), path)
+    if len(built) > len(sought):
+        names = ", ".join(repr(one.name) for one in built[:8])
+        raise ReadError("several", f"{len(built)} objects are built, {names}, where {len(sought)} are expected", path)
+    rising = sorted(built, key=lambda one: sum(_ends(_moved(one.corners, one.place))))
+    base = rising[0].place if rising[0].rigid else np.vstack([np.eye(3), np.zeros(3)])
+    back = np.linalg.inv(base[:3])
+    solids = []
+    for one, (heights, deepest) in zip(rising, sought, strict=True):
+        turn, shift = one.place[:3] @ back, (one.place[3] - base[3]) @ back
+        if bool((np.abs(turn - np.eye(3)) <= RIGID).all()):
+            turn = np.eye(3)  # what stands upright does so to the last bit
+        solid = solid_of(_moved(one.corners, np.vstack([turn, shift])), "3mf", heights, path, deepest)
+        solids.append(replace(solid, units_mm=one.mm))
+    return solids
+
+
+def _ends(corners: Array) -> tuple[float, float]:
+    """Least and greatest height of triangles (t, 3, 3)."""
+    z = corners[:, :, 2]
+    return float(z.min()), float(z.max())
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
@@ -232,36 +265,36 @@ class _Model:
             most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
             raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
 
-    def _corners(self, one: _Object, depth: int) -> Array:
+    def _corners(self, item: _Object, depth: int) -> Array:
         """Triangles (t, 3, 3) of an object and all its components, in the file's unit."""
         if depth > DEEPEST:
             raise ReadError("unsupported", f"components lie more than {DEEPEST} deep, or hold themselves", self.path)
-        if one.whole is not None:
-            self.components += one.under
-            return one.whole
+        if item.whole is not None:
+            self.components += item.under
+            return item.whole
         before = self.components
-        points = np.array(one.points, dtype=np.float64).reshape(-1, 3)
-        corners: Indices = np.array(one.corners, dtype=np.intp).reshape(-1, 3)
+        points = np.array(item.points, dtype=np.float64).reshape(-1, 3)
+        corners: Indices = np.array(item.corners, dtype=np.intp).reshape(-1, 3)
         if not bool((corners < len(points)).all()):
             raise self._fault(f"a triangle has a corner that is none of the {len(points)} vertices")
-        self._demand_used(one, len(points), corners)
+        self._demand_used(item, len(points), corners)
         parts = [points[corners]]
-        for name, place in one.components:
+        for name, place in item.components:
             self.components += 1
             self._demand_room()
             part = self._corners(self._named(name), depth + 1)
             self._demand_room(len(part))
             parts.append(_moved(part, place))
-        one.whole, one.under = np.concatenate(parts), self.components - before
-        return one.whole
+        item.whole, item.under = np.concatenate(parts), self.components - before
+        return item.whole
 
-    def _demand_used(self, one: _Object, count: int, corners: Indices) -> None:
+    def _demand_used(self, item: _Object, count: int, corners: Indices) -> None:
         """Refuse a mesh most of whose vertices no triangle has."""
         used = np.zeros(count, dtype=bool)
         used[corners.ravel()] = True
         loose = count - int(np.count_nonzero(used))
         if loose > FREE_LOOSE + LOOSE_SHARE * count:
-            message = f"{loose} of the {count} vertices of object {one.name!r} belong to no triangle; leave them out"
+            message = f"{loose} of the {count} vertices of object {item.name!r} belong to no triangle; leave them out"
             raise ReadError("range", message, self.path)
 
     def _begin(self, attributes: dict[str, str]) -> None:

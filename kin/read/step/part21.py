@@ -182,13 +182,13 @@ def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
     return tokens
 
 
-def _list(tokens: list[tuple[str, str]], at: int, number: int, path: Path) -> tuple[tuple[Value, ...], int]:
-    """Values between brackets from token `at` on, and the number of the token behind them."""
+def _list(tokens: list[tuple[str, str]], index: int, number: int, path: Path) -> tuple[tuple[Value, ...], int]:
+    """Values between brackets from token `index` on, and the number of the token behind them."""
     stack: list[tuple[str, list[Value]]] = []
     name = ""
-    while at < len(tokens):
-        kind, text = tokens[at]
-        at += 1
+    while index < len(tokens):
+        kind, text = tokens[index]
+        index += 1
         if (kind, text) == ("mark", "("):
             stack.append((name, []))
             name = ""
@@ -200,7 +200,7 @@ def _list(tokens: list[tuple[str, str]], at: int, number: int, path: Path) -> tu
             of, values = stack.pop()
             whole = tuple(values)
             if not stack:
-                return whole, at
+                return whole, index
             stack[-1][1].append(Typed(of, whole) if of else whole)
         elif kind == "word":
             name = text.upper()

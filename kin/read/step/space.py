@@ -118,9 +118,9 @@ class _Places:
             same = self._alike(parent)
         return found
 
-    def _alike(self, one: int) -> set[int]:
+    def _alike(self, name: int) -> set[int]:
         """Return the representations that are related to one without a transformation, and it."""
-        found, fresh = {one}, [one]
+        found, fresh = {name}, [name]
         while fresh:
             at = fresh.pop()
             near = {b if a == at else a for _, a, b in self.plain if at in (a, b)} - found

@@ -1,8 +1,8 @@
-"""Parts read back from STEP files: the one solid in it, its sections at any height, its faces, edges and volume.
+"""Parts read back from STEP files: each solid, its sections at any height, its faces, edges and volume.
 
 No CAD kernel is needed: walls are planes, cylinders and cones about upright axes, swept splines, and cylinders about
-level ones, as a cam with its hub and set screw has them. The section of each is exact. Anything else, an assembly and
-more than one solid are refused with the number of the instance.
+level ones, as a cam with its hub and set screw has them. The section of each is exact. Anything else, and more solids
+than are expected, are refused with the number of the instance.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass, replace
-from kin.read.bodies import MOST_BODIES, beside
+from kin.read.bodies import MOST_BODIES, Sought, beside, missing
 from kin.read.drawing.drawing import Found, drawing_of
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kin.read.step.faces import Face
     from kin.read.step.part21 import Exchange
 
-__all__ = ["StepSolid", "read_step"]
+__all__ = ["StepSolid", "read_step", "read_step_bodies"]
 
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
@@ -96,9 +96,20 @@ def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1)
     Raises OSError as the file system does; ReadError, with the number of the instance where it has one, for what is not
     read and where a section is not one closed contour with others in it.
     """
+    (solid,) = read_step_bodies(path, [Sought(heights, deepest)])
+    return solid
+
+
+def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSolid]:
+    """Read as many solids as are sought, the lowest first; raises as `read_step` does."""
     path = Path(path)
-    body = _Body.of(exchange(contents(path, "step"), path), deepest)
-    misfit = body.misfit
+    bodies = _Body.every(exchange(contents(path, "step"), path), len(sought))
+    rising = sorted(bodies, key=lambda body: body.levels[0] + body.levels[-1])
+    return [_solid(replace(body, deepest=one.deepest), one) for body, one in zip(rising, sought, strict=True)]
+
+
+def _solid(body: _Body, sought: Sought) -> StepSolid:
+    misfit, heights = body.misfit, sought.heights
     asked = [body.checked(z) for z in heights] or [body.widest()]
     drawings = [body.section(z) for z in asked]
     sections = [Section(one.chains, z) for z, one in zip(asked, drawings, strict=True)]
@@ -130,16 +141,17 @@ class _Body:
     deepest: int = 1
 
     @staticmethod
-    def of(file: Exchange, deepest: int = 1) -> _Body:
-        """Read the one solid of a file."""
+    def every(file: Exchange, count: int) -> list[_Body]:
+        """Read all solids of a file, which are `count`."""
         solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
         if not solids:
             raise ReadError("empty", "it holds no solid", file.path)
-        if len(solids) > 1:
-            raise beside(
-                [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]], len(solids), file.path
-            )
-        return replace(_Body._one(file, solids[0]), deepest=deepest)
+        if len(solids) < count:
+            raise missing(len(solids), count, file.path)
+        if len(solids) > count:
+            boxes = [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]]
+            raise beside(boxes, len(solids), file.path, expected=count)
+        return [_Body._one(file, solid) for solid in solids]
 
     @staticmethod
     def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:

@@ -1,0 +1,105 @@
+"""Mass, centre of mass, moment of inertia and unbalance of each disc, from its exact outline and its openings.
+
+Every section is an area with holes; its moments are line integrals (`camgeo.curve.measures`). A section within a
+chamfer shrinks evenly, so that its moments are polynomials of the height, of the fourth degree at most, which three
+Gauss nodes integrate exactly. A set screw's hole is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.measures import Moments, moments, moments_of_chain
+from camgeo.synthesis.part.as_intent import layers_of
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design, Disc
+    from camgeo.synthesis.part.body import Body
+    from kin.judge.layers import Layer
+    from kin.numeric.arrays import Array
+
+KG = 1e-9  # kg/mm^3 of 1 kg/m^3
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Of one disc: mass, kg; centre of mass (3,), mm, as the part is drawn; inertia about the shaft, kg mm^2.
+
+    `unbalance` is mass times distance of that centre from the shaft, kg mm. `error` is the greatest of their errors by
+    the integrals, as shares. `without` names features that are left out, `surface` the disc's where there are several.
+    """
+
+    mass: float
+    centre: tuple[float, float, float]
+    inertia: float
+    unbalance: float
+    error: float
+    without: tuple[str, ...] = ()
+    surface: str = ""
+
+    @property
+    def eccentricity(self) -> float:
+        """Distance of the centre of mass from the shaft, mm."""
+        return self.unbalance / self.mass
+
+    @property
+    def direction(self) -> float:
+        """Polar angle of the centre of mass, degrees, from 0 to less than 360."""
+        angle = math.degrees(math.atan2(self.centre[1], self.centre[0])) % 360.0
+        return angle if angle < 360.0 else 0.0
+
+
+def balances(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
+    """The balance of each disc at `part.density`, none without it, or of a part that is no single body."""
+    density = recipe.part.density
+    if density is None:
+        return ()
+    turned = -1.0 if recipe.rotation == "ccw" else 1.0
+    found = []
+    for disc in design.discs:
+        if disc.body is None or not disc.contours or (len(disc.contours) > 1 and disc.body.pocket is None):
+            continue
+        names = disc.name if len(design.discs) > 1 else ""
+        found.append(replace(_balance(disc, disc.body, density * KG, turned), surface=names))
+    return tuple(found)
+
+
+def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
+    volume, error = np.zeros(5), np.zeros(4)  # integrals of 1, x, y, r^2 and z
+    for layer in layers_of(body):
+        half, middle = 0.5 * (layer.high - layer.low), 0.5 * (layer.high + layer.low)
+        even = layer.inset == (0.0, 0.0)
+        for node, weight in [(0.0, 2.0)] if even else zip(NODES.tolist(), WEIGHTS.tolist(), strict=True):
+            z = middle + half * node
+            section, off = _section(disc, body, layer, layer.inset_at(z))
+            volume += weight * half * np.append(section, z * section[0])
+            error += weight * half * off
+    mass, x, y, inertia, z = (density * volume).tolist()
+    size = max(contour.size for _, contour in disc.contours)
+    share = float((error / (volume[0] * np.array([1.0, size, size, size * size]))).max())
+    without = () if body.screw is None else ("set screw",)
+    centre = (x / mass, turned * y / mass, z / mass)
+    return Balance(mass, centre, inertia, math.hypot(x, y), share, without)
+
+
+def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array, Array]:
+    """Area, moments of x, y and r^2 of a layer's section (4,), its outline `inset` inside; and their errors (4,)."""
+    holes = [moments_of_chain(hole.contour.as_arcs()[0]) for hole in layer.holes]
+    if layer.outline is not None:
+        outlines = [(1.0, moments_of_chain(layer.outline.contour.as_arcs()[0]))]
+    else:
+        outlines = [(float(surface.side), moments(contour, inset)) for surface, contour in disc.contours]
+        if body.rim is not None:
+            outlines.append((1.0, moments_of_chain(body.rim.chain)))
+    total = sum((sign * _row(one) for sign, one in outlines), np.zeros(4)) - sum(map(_row, holes), np.zeros(4))
+    return total, sum((np.array(one.error) for _, one in outlines), np.zeros(4))
+
+
+def _row(one: Moments) -> Array:
+    return np.array([one.area, one.x, one.y, one.polar])

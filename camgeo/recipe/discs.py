@@ -1,0 +1,20 @@
+"""Two discs on one shaft: what their recipes cannot have beside them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+
+def check_discs(values: Values, reader: Reader) -> None:
+    """Note what does not go with conjugate discs."""
+    if "conjugate" not in values.get("cam", {}):
+        return
+    part = values.get("part", {})
+    for name in ("hub", "set_screw"):
+        if name in part:
+            reader.fault_at(f"part.{name}", "belongs to a cam of one disc", None, "leave it out, or cam.conjugate")
+    if "dynamics" in values:
+        reader.fault_at("dynamics", "forces on two conjugate discs are not found", None, "leave it out")

@@ -1,0 +1,68 @@
+"""The discs of a shaft judged from several files: each by its own intent, then what is left between their surfaces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kin.judge.check import about
+from kin.judge.closure import judge_closures
+from kin.judge.verify import verify, verify_together
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.judge.check import Check
+    from kin.judge.intent import Limits, ShaftIntent
+    from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
+
+
+class DiscFile(NamedTuple):
+    """A file with one disc of a shaft, by its place among them, or with all of them (None); and the unit given, mm."""
+
+    path: Path
+    disc: int | None
+    units: float | None = None
+
+
+class DiscsRead(NamedTuple):
+    """The surfaces that were read from a file, by its name, and by how much its sections differ, mm."""
+
+    file: str
+    surfaces: Sequence[SurfaceVerdict]
+    uneven: float = 0.0
+
+
+def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
+    """Judge files that go together, at least one; what is left between discs stands in the verdict on the last file.
+
+    A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises as
+    `verify` does.
+    """
+    verdicts = []
+    for path, disc, units in files:
+        if disc is None:
+            verdicts.append(verify_together(path, shaft, angles, limits))
+        else:
+            verdicts.append(verify(path, shaft.parts[disc], angles, limits, units))
+    read = [DiscsRead(file.path.name, one.surfaces, one.uneven) for file, one in zip(files, verdicts, strict=True)]
+    closures, checks = left_between(read, shaft, limits)
+    last = verdicts[-1]
+    verdicts[-1] = replace(last, checks=(*last.checks, *checks), closures=(*last.closures, *closures))
+    return verdicts
+
+
+def left_between(
+    files: Sequence[DiscsRead], shaft: ShaftIntent, limits: Limits
+) -> tuple[tuple[ClosureVerdict, ...], tuple[Check, ...]]:
+    """Judge what is left between surfaces of discs that were read from files: closures, and checks on the last file."""
+    intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
+    surfaces = [
+        (intents[found.name], found.contour) for file in files for found in file.surfaces if found.contour is not None
+    ]
+    closures, checks = judge_closures(surfaces, shaft.closures, limits, max(file.uneven for file in files))
+    others = ", ".join(file.file for file in files[:-1])
+    if others:
+        checks = [replace(check, detail=f"{check.detail}; with {others}".removeprefix("; ")) for check in checks]
+    return closures, tuple(about(check, files[-1].file) for check in checks)

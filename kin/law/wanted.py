@@ -1,0 +1,299 @@
+"""The series D of W 6.5 nearest to a wanted law: least greatest error of psi over the period, and its proof.
+
+Of a wanted law psi_w over the shaft angle phi and a series D of the harmonics 1, 3, .., J of lambda t, the error is
+psi - psi_w at the same phi. Where two laws of such series meet, at one phi and one psi, they meet at one t, and there
+their series agree: at most J times on [0, delta), as these J + 1 functions are a Chebyshev system there. So, as with
+Remez, D is best where the error has J + 2 extremes of one size in turn, and no series whatever does better than the
+least of them (de la Vallee Poussin); a place and its image under (t, psi) -> (t + delta, -psi) count once.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.bounds import undecided
+from kin.law.programme import IntentError
+from kin.law.segment import Harmonics
+from kin.numeric.elementary import asin
+from kin.numeric.newton import zeros
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.law.segment import Series, Stretch
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+MOST_HARMONICS = 31
+_CLOSE = 1e-6  # of the greatest error: no series is nearer by a larger part
+_NOTHING = 1e-12  # rad: an error that is the rounding of both laws
+_STEPS = 80  # of the exchange
+_LOOKS = 48  # places for each extreme to come
+_SECTIONS = 44  # of an interval by the golden ratio: to rounding
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_SHARE = 0.999  # of l^2: beyond it the arcsine goes on as its tangent while a series is looked for
+_STEEP = 0.02  # least slope of phi over t while a series is looked for
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The series of cosines and of sines, coefficients of l^2 by odd harmonics of lambda t.
+
+    `error` is the greatest error of psi, rad, at the parameter `at` of the wanted law, `least` what no series of these
+    harmonics falls below.
+    """
+
+    cos: dict[int, float]
+    sin: dict[int, float]
+    error: float
+    least: float
+    at: float
+
+
+def nearest(wanted: Transmission, harmonics: int) -> Nearest:
+    """Find the series of harmonics 1, 3, .. `harmonics`, odd, whose law has the least greatest error.
+
+    It is within a millionth of the best. Raises IntentError where the exchange does not come so near.
+    """
+    search = _Search(wanted, np.arange(1, harmonics + 1, 2))
+    coefficients = search.on_grid(search.projected())
+    best = (math.inf, coefficients, search.extremes(coefficients), 0.0)
+    for _ in range(_STEPS):
+        found = search.extremes(coefficients)
+        reference = search.reference(found)
+        greatest = float(np.abs(found.error).max())
+        least = max(search.least(reference), best[3])
+        if not greatest < best[0]:
+            break
+        best = (greatest, coefficients, found, least)
+        if greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least):
+            break
+        coefficients = coefficients + search.levelled(reference, reference.error, search.rows(coefficients, reference))
+    greatest, coefficients, found, least = best
+    if not greatest <= max(_NOTHING, (1 + _CLOSE) * least):
+        far, near = math.degrees(greatest), math.degrees(least)
+        raise IntentError(
+            f"no series up to harmonic {harmonics} is known to be nearest: one of greatest error {far:.4g} degrees was "
+            f"found, and none is below {near:.4g}; other harmonics may do",
+            "delta.harmonics",
+        )
+    half = len(coefficients) // 2
+    worst = int(np.argmax(np.abs(found.error)))
+    series = [dict(zip(search.odd.tolist(), part.tolist(), strict=True)) for part in np.split(coefficients, [half])]
+    return Nearest(series[0], series[1], greatest, min(least, greatest), float(found.tau[worst]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Extremes:
+    """Places of extremes of the error: parameters of the wanted law, polar angles t of the made one, errors; (n,)."""
+
+    tau: Array
+    t: Array
+    error: Array
+
+    def taken(self, index: NDArray[np.intp]) -> _Extremes:
+        """Those at an index."""
+        return _Extremes(self.tau[index], self.t[index], self.error[index])
+
+
+class _Search:
+    """The error of laws of series, (2 m,) coefficients of cosines and of sines, over l^2, of m odd harmonics."""
+
+    def __init__(self, wanted: Transmission, odd: NDArray[np.intp]) -> None:
+        self.wanted, self.odd = wanted, odd
+        self.rates = odd * float(wanted.lam)
+        knots = wanted.psi.knots
+        parts = [
+            np.linspace(a, b, max(9, math.ceil(_LOOKS * 4 * (len(odd) + 1) * (b - a) / (2 * wanted.delta))))
+            for a, b in pairwise(knots.tolist())
+        ]
+        self.grid = np.unique(np.concatenate(parts))[:-1]
+
+    def projected(self) -> Array:
+        """The first terms of the wanted law's own series."""
+        period = 2 * self.wanted.delta
+        t: Array = np.linspace(0.0, period, 1024, endpoint=False)
+        d = -np.sin(self.wanted.at(self.wanted.polar_parameter(t), 0)[1][0])
+        angles = self.rates[:, None] * t
+        return np.concatenate([np.cos(angles) @ d, np.sin(angles) @ d]) / 512
+
+    def _psi(self, coefficients: Array, t: Array) -> tuple[Array, Array]:
+        """Psi and its slope of a series at t (n,); beyond `_SHARE` the arcsine is its tangent."""
+        angles = self.rates[:, None] * t
+        a, b = np.split(coefficients, 2)
+        cosine, sine = np.cos(angles), np.sin(angles)
+        d, slope = a @ cosine + b @ sine, (b * self.rates) @ cosine - (a * self.rates) @ sine
+        inside = np.clip(d, -_SHARE, _SHARE)
+        rate = 1.0 / np.sqrt(1.0 - inside * inside)
+        return -(np.arcsin(inside) + rate * (d - inside)), -rate * slope
+
+    def _shown(self, coefficients: Array, tau: Array) -> tuple[Array, Array]:
+        """Error at parameters of the wanted law (n,), and the polar angles of the made one there."""
+        phi, wanted = (rows[0] for rows in self.wanted.at(tau, 0))
+        shaft = phi - 0.5 * self.wanted.alpha
+
+        def over(psi: Array) -> tuple[Array, Array]:
+            value, slope = self._psi(coefficients, shaft - 0.5 * psi)
+            return psi - value, np.maximum(1.0 + 0.5 * slope, _STEEP)
+
+        bound = np.full(tau.shape, 4.0 + 40.0 * float(np.abs(coefficients).sum()))
+        psi = zeros(over, -bound, bound, wanted, 1e-15)
+        return psi - wanted, shaft - 0.5 * psi
+
+    def extremes(self, coefficients: Array) -> _Extremes:
+        """Every local extreme of the error over the period, between the places looked at by golden sections."""
+        tau = self.grid
+        error, _ = self._shown(coefficients, tau)
+        size = np.abs(error)
+        before, after = np.roll(size, 1), np.roll(size, -1)
+        top = np.flatnonzero((size >= before) & (size >= after) & ((size > before) | (size > after)))
+        if not len(top):
+            top = np.array([int(np.argmax(size))])
+        period = 2 * self.wanted.delta
+        low = np.where(top > 0, tau[top - 1], tau[-1] - period)
+        high = np.where(top + 1 < len(tau), tau[(top + 1) % len(tau)], tau[0] + period)
+        sign = np.sign(error[top])
+        inner, outer = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        at_inner, at_outer = (sign * self._shown(coefficients, x)[0] for x in (inner, outer))
+        for _ in range(_SECTIONS):
+            left = at_inner > at_outer
+            low, high = np.where(left, low, inner), np.where(left, outer, high)
+            fresh = np.where(left, high - _GOLDEN * (high - low), low + _GOLDEN * (high - low))
+            at_fresh = sign * self._shown(coefficients, fresh)[0]
+            inner, outer = np.where(left, fresh, outer), np.where(left, inner, fresh)
+            at_inner, at_outer = np.where(left, at_fresh, at_outer), np.where(left, at_inner, at_fresh)
+        best = np.where(
+            np.maximum(at_inner, at_outer) > size[top], np.where(at_inner > at_outer, inner, outer), tau[top]
+        )
+        error, t = self._shown(coefficients, best)
+        return _Extremes(best, t, error)
+
+    def reference(self, found: _Extremes) -> _Extremes:
+        """The extremes that alternate round the half period, as many as there are unknowns if there are as many.
+
+        Of neighbours alike in sign the greater stays, and of too many the least two neighbours go. Round the circle an
+        odd number alternates, as the sign changes with t + delta.
+        """
+        delta = self.wanted.delta
+        halves = np.floor(found.t / delta)
+        folded, sign = found.t - halves * delta, np.where(halves % 2 == 0, 1.0, -1.0) * np.sign(found.error)
+        ring = [(int(i), float(sign[i]), float(abs(found.error[i]))) for i in np.argsort(folded, kind="stable")]
+        kept: list[tuple[int, float, float]] = []
+        for row in ring:
+            if kept and kept[-1][1] == row[1]:
+                if row[2] > kept[-1][2]:
+                    kept[-1] = row
+            else:
+                kept.append(row)
+        if len(kept) > 1 and kept[0][1] == -kept[-1][1]:
+            kept.pop(0 if kept[0][2] < kept[-1][2] else -1)
+        while len(kept) > 2 * len(self.odd) + 1:
+            i = min(range(len(kept)), key=lambda k: max(kept[k][2], kept[k - 1][2]))
+            for k in sorted({i, (i - 1) % len(kept)}, reverse=True):
+                del kept[k]
+        return found.taken(np.array([i for i, _, _ in kept]))
+
+    def least(self, reference: _Extremes) -> float:
+        """What no series falls below, by the errors at a reference; 0 by one of too few places."""
+        whole = len(reference.error) == 2 * len(self.odd) + 1
+        return float(np.abs(reference.error).min()) if whole else 0.0
+
+    def rows(self, coefficients: Array, places: _Extremes) -> Array:
+        """By how much the error at places (n,) rises with each coefficient, (n, 2 m)."""
+        angles = self.rates[:, None] * places.t
+        psi, slope = self._psi(coefficients, places.t)
+        rate = -1.0 / np.sqrt(np.maximum(np.cos(psi) ** 2, 1.0 - _SHARE**2))
+        weight = rate / np.maximum(1.0 + 0.5 * slope, _STEEP)
+        rows: Array = (weight * np.concatenate([np.cos(angles), np.sin(angles)])).T
+        return rows
+
+    def levelled(self, reference: _Extremes, error: Array, rows: Array) -> Array:
+        """The change of the coefficients that gives all of a reference one error in turn, as far as it is linear."""
+        solved: Array = np.linalg.solve(np.column_stack([rows, -np.sign(reference.error)]), -error)
+        return solved[:-1]
+
+    def on_grid(self, coefficients: Array) -> Array:
+        """The best series at the places looked at alone: by the exchange of the linear problem, again and again.
+
+        A step is halved until the greatest error falls, so that a first series far off leads there too.
+        """
+        error, t = self._shown(coefficients, self.grid)
+        for _ in range(_STEPS):
+            places = _Extremes(self.grid, t, error)
+            step = self._exchanged(places, self.rows(coefficients, places))
+            before = float(np.abs(error).max())
+            for halving in range(12):
+                trial = coefficients + 0.5**halving * step
+                error, t = self._shown(trial, self.grid)
+                if np.abs(error).max() < before:
+                    break
+            else:
+                return coefficients
+            coefficients = trial
+            if np.abs(error).max() > (1 - 1e-4) * before:
+                return coefficients
+        return coefficients
+
+    def _exchanged(self, places: _Extremes, rows: Array) -> Array:
+        """The change of the coefficients (2 m,) that is best for the linear problem at places."""
+        change, error = np.zeros(rows.shape[1]), places.error
+        for _ in range(_STEPS):
+            reference = self.reference(_Extremes(np.arange(len(error), dtype=float), places.t, error))
+            level = self.least(reference)
+            if not level or np.abs(error).max() <= (1 + 1e-3) * level:
+                break
+            taken = reference.tau.astype(np.intp)
+            change = self.levelled(reference, places.error[taken], rows[taken])
+            error = places.error + rows @ change
+        return change
+
+
+def proved_error(series: Nearest, wanted: Transmission) -> float:
+    """Prove a bound of |psi - psi_w| over the period at the same shaft angle, rad, hardly above the error found.
+
+    Of a series that makes a possible law, F(psi) = psi - f(phi - (psi + alpha)/2) rises, f being psi over t. So the
+    error is below e where F(psi_w + e) is above 0, and above -e where F(psi_w - e) is below, which is proved on cells
+    of the wanted law's stretches over the whole period. Raises IntentError where no bound is.
+    """
+    made = Harmonics(0.0, tuple((j * wanted.lam, a, series.sin[j]) for j, a in series.cos.items()))
+    for slack in (1e-4, 1e-2, 0.1, 1.0):
+        bound = series.error * (1 + slack) + _NOTHING * 10
+        if _holds(made, wanted, bound):
+            return bound
+    near = math.degrees(series.error)
+    raise IntentError(f"no bound near {near:.4g} degrees is proved for the error of the law", "delta.law")
+
+
+def _holds(made: Harmonics, wanted: Transmission, bound: float) -> bool:
+    knots = wanted.psi.knots.tolist()
+    stretches = zip(wanted.psi.functions, wanted.lean, knots[:-1], knots[1:], strict=True)
+    for function, lean, begin, end in stretches:
+        for sign in (1.0, -1.0):
+            room = _Room(made, function, lean - 0.5, wanted.offset - 0.5 * wanted.alpha, sign, bound)
+            if undecided(room, begin, end, {0: (0.0, math.inf)}) is not None:
+                return False
+    return True
+
+
+@dataclass(frozen=True, eq=False)
+class _Room:
+    """`sign` F(psi_w + `sign` bound) over the wanted law's parameter, t being tau + lean psi_w + offset."""
+
+    made: Harmonics
+    wanted: Stretch
+    lean: float
+    offset: float
+    sign: float
+    bound: float
+
+    def __call__(self, tau: Series, /) -> Series:
+        """Give it."""
+        psi: Series = self.wanted(tau)
+        reach = self.sign * self.bound
+        made: Series = asin(self.made(tau + psi * self.lean + (self.offset - 0.5 * reach)))
+        return (psi + reach + made) * self.sign
