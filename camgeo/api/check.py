@@ -13,7 +13,7 @@ from kin.judge import check as judge
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.measures.figures import Measured
+    from camgeo.measures.measured import Measured
     from camgeo.recipe.recipe import Recipe
 
 

@@ -77,6 +77,8 @@ FOLLOWERS: dict[str, Table] = {
             ),
             _OFFSET,
             length("width", "width of the face, centred on the stem's axis"),
+            length("diameter", "diameter of a round tappet in place of a width"),
+            coordinate("axial_offset", "how far its axis stands beside the middle of the lobe", default="0"),
             _FACE_ARM,
         )
     ),
@@ -117,7 +119,7 @@ def check(cam: Values, reader: Reader) -> None:
         check_whole_turn(cam["motion"], "cam.motion", reader)
     follower = cam.get("follower", {})
     arm = follower.get("arm")
-    for key in ("offset", "tilt", "width"):
+    for key in ("offset", "tilt", "width", "diameter", "axial_offset"):
         if arm is not None and key in follower:
             reader.fault_at(f"cam.follower.{key}", "belongs to a stem, not to an arm", None, "leave it out")
     if cam.get("track") == "internal" and follower.get("kind") in {"knife-edge", "shoe", "flat"}:
@@ -187,6 +189,7 @@ def _values(cam: Values) -> Values:
         "undercut": cam.get("undercut", "refuse"),
         "side": -1 if track == "internal" else 1,
         "groove": Groove(**track["groove"]) if isinstance(track, dict) else None,
+        "beyond": follower.get("beyond", 0.0),
         "conjugate": conjugate_of(cam["conjugate"], touch) if "conjugate" in cam else None,
     }
 

@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class DiscCam(GuidedCam):
-    """Size and motion of a disc cam."""
+    """Size and motion of a disc cam.
+
+    `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a straight face.
+    """
 
     kind: ClassVar[str] = "disc"
     base_radius: float
@@ -37,6 +40,7 @@ class DiscCam(GuidedCam):
     undercut: Undercut
     side: Side = 1
     groove: Groove | None = None
+    beyond: float = 0.0
     conjugate: Conjugate | None = None
 
     @property
@@ -97,7 +101,7 @@ class DiscCam(GuidedCam):
         """In the words of the touch."""
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else ""
-            return SizeAdvice(beside=beside, free="be free of it", less_steep=LARGER_BASE)
+            return SizeAdvice(beside=beside, beyond=self.beyond, free="be free of it", less_steep=LARGER_BASE)
         if self.groove is not None:
             return GrooveAdvice(self, self.groove.clearance, less_steep=LARGER_BASE, trims=False)
         return RoundAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field)

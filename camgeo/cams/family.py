@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
+from camgeo.common.rounding import upward
 from camgeo.schema.fields import Field, Kind
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
@@ -221,6 +222,10 @@ class Advice(ABC):
     def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
         """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
         return ""
+
+    def wider_face(self, width: float, mm: float) -> str:  # noqa: ARG002 - a round tappet's has lengths of its own
+        """Say which face has a width, in the recipe's unit."""
+        return f"a follower.width of {upward(width)}"
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
         """Say how the follower comes to swing less."""

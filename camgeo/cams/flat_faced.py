@@ -34,12 +34,21 @@ STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however shor
 
 @dataclass(frozen=True)
 class SizeAdvice(Advice):
-    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius."""
+    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius.
+
+    `beyond` is as of the cam, for a round tappet.
+    """
 
     size: str = "base radius"
     share: float = 1.0
     beside: str = ""
+    beyond: float = 0.0
     free: str = "have no undercut"
+
+    def wider_face(self, width: float, mm: float) -> str:
+        """The width, or the diameter of a round tappet that has it at the lobe's farther edge."""
+        across = upward(math.hypot(width, 2.0 * self.beyond / mm))
+        return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""

@@ -210,18 +210,24 @@ class PointsAsked(MotionAsked):
 
 @dataclass(frozen=True)
 class LobeAsked(MotionAsked):
-    """The lobe polynomial 2-p-q-r-s: its lift, half its event, and the powers."""
+    """The lobe polynomial 2-p-q-r-s: its lift, half its event, and the powers.
+
+    `ramp` is the height and the velocity, by rad, of the lash ramps beyond; the nose stands at `nose`.
+    """
 
     lift: float
     half: float
     powers: tuple[float, ...]
+    nose: float = 0.0
+    ramp: tuple[float, float] | None = None
     scale: float = field(default=1.0, compare=False)
     source: ClassVar[str] = ".lobe"
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
-        from kin.law.sources.lobe import lobe
+        from kin.law.sources.lobe import Ramp, lobe
 
-        return lobe(self.lift, self.half, self.powers, total, around=around, field=f"{field}.lobe")
+        ramp, shape = None if self.ramp is None else Ramp(*self.ramp), (self.lift, self.half, self.powers)
+        return lobe(*shape, total, nose=self.nose, ramp=ramp, around=around, field=f"{field}.lobe")
 
 
 def _demand_zero(value: float, within: float, scale: float, field: str, where: str = "") -> None:
@@ -265,7 +271,19 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     """The keys of a motion that is no list of segments."""
     most = 180 if stroke is Kind.ANGLE else MOST
     units = Field(
-        "units", Kind.CHOICE, "unit of the table's displacements", default="the recipe's", choices=("mm", "inch")
+        "units",
+        Kind.CHOICE,
+        "unit of the table's displacements",
+        default="the recipe's",
+        choices=("mm", "inch", "thou"),
+    )
+    nose = Field(
+        "nose",
+        Kind.ANGLE,
+        "shaft angle of the nose of a motion over a whole turn",
+        default="0",
+        at_least=0,
+        at_most=360,
     )
     points = Form("a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points)
     fields = (
@@ -285,9 +303,23 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         mapping(
             "lobe",
             "the lobe polynomial of valve trains",
-            Field("lift", stroke, "greatest displacement", required=True, above=0, at_most=most),
-            Field("half", Kind.ANGLE, "angle from the foot to the nose", required=True, above=0, at_most=180),
+            Field("lift", stroke, "greatest displacement, its ramp included", required=True, above=0, at_most=most),
+            Field(
+                "half",
+                Kind.ANGLE,
+                "angle from the foot, or from the ramp's end, to the nose",
+                required=True,
+                above=0,
+                at_most=180,
+            ),
             Field("powers", Kind.NUMBERS, "2 and four more powers, such as [2, 8, 14, 20, 26]", required=True),
+            nose,
+            mapping(
+                "ramp",
+                "lash ramps beyond `half` on both sides",
+                Field("height", stroke, "displacement at which the lobe begins", required=True, above=0, at_most=most),
+                Field("velocity", stroke, "up to there, a degree of the cam", required=True, above=0, at_most=most),
+            ),
         ),
     )
     alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
@@ -324,7 +356,10 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
     if "points" in values:
         return PointsAsked(values["points"], scale)
     if "lobe" in values:
-        return LobeAsked(**values["lobe"], scale=scale)
+        given = dict(values["lobe"])
+        if (ramp := given.pop("ramp", None)) is not None:
+            given["ramp"] = ramp["height"], ramp["velocity"] / math.radians(1.0)
+        return LobeAsked(**given, scale=scale)
     return _table(stroke, reader, values, join(path, "table"))
 
 

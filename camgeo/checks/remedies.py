@@ -87,9 +87,9 @@ def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
 
 
-def wider_face(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell the least width of a face that the contact does not leave."""
-    return f"a follower.width of {upward(check['value'])} {check['unit']} or more"
+def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
+    """Tell the least face that the contact does not leave."""
+    return f"{recipe.cam.advice.wider_face(check['value'], recipe.mm)} {check['unit']} or more"
 
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import starmap
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import (
     CHECKS,
@@ -18,7 +18,10 @@ from camgeo.checks.declared import (
     TRAVEL,
     WALL,
 )
+from camgeo.measures.lobe import of_lobe
+from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import (
+    AT_LIFT,
     AT_SPEED,
     BACKLASH,
     BASE_RADIUS,
@@ -67,19 +70,6 @@ _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
 _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
-
-
-class Measured(NamedTuple):
-    """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place.
-
-    `surface` is the name of the one that it is of, the worst of several; empty where the cam has one.
-    """
-
-    value: float | None
-    unit: str
-    at_deg: float | None = None
-    detail: str = ""
-    surface: str = ""
 
 
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
@@ -281,6 +271,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
     INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
     UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
+    **{name: of_lobe(name) for name in AT_LIFT},
 }
 
 

@@ -22,7 +22,7 @@ class FileResult(OfSurfaces):
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
     `body` is the one that it is judged as, `units` (mm) the unit of its numbers, None where there are none or nothing
-    was read. `surfaces`, `closures` and `chains`, every closed contour as read, are those of its verdict: none of a
+    was read. `surfaces`, `closures` and `bodies`, every closed contour as read, are those of its verdict: none of a
     file that is not judged as the cam. `disc` is the one that the file holds, counted from 0, None for all; `uneven` as
     of its verdict.
     """
@@ -36,7 +36,7 @@ class FileResult(OfSurfaces):
     units: float | None = None
     surfaces: tuple[SurfaceVerdict, ...] = ()
     closures: tuple[ClosureVerdict, ...] = ()
-    chains: tuple[Contour, ...] = ()
+    bodies: tuple[tuple[Contour, ...], ...] = ()
     disc: int | None = None
     uneven: float = 0.0
 
@@ -46,7 +46,7 @@ class FileResult(OfSurfaces):
     ) -> FileResult:
         """Give what is known of a file by its verdict, and if it was `made` here number of pieces and proved bound."""
         pieces, bound = (verdict.pieces, None) if made is None else made
-        read = verdict.surfaces, verdict.closures, verdict.chains
+        read = verdict.surfaces, verdict.closures, verdict.bodies
         return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)
 
     @property

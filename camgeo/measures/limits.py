@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.remedies import Missed, of_limit
-from camgeo.measures.figures import Measured, of_design, of_dynamics, of_file
+from camgeo.measures.figures import of_design, of_dynamics, of_file
 from camgeo.recipe.figures import FIGURES
 from kin.judge.check import Check
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from camgeo.measures.file_result import FileResult
+    from camgeo.measures.measured import Measured
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design

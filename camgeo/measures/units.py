@@ -14,7 +14,7 @@ UNIT_NAMES = {"mm": "mm", "inch": "in"}
 def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | None, str]:
     """A figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit, with that unit's name; other units stay."""
     name = UNIT_NAMES[recipe.units]
-    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.partition("/")[0])
+    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.replace("/", " ").partition(" ")[0])
     if power is None:
         return value, unit
     return (None if value is None else value / recipe.mm**power), name + unit[2:]

@@ -201,8 +201,6 @@ def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult
 def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
     from camgeo.report.page.content import content
 
-    if len(design.discs) > 1:
-        raise recipe.error("export.files", f"a page does not show a cam of {len(design.discs)} discs", None, "")
     with clock.stage("page"):
         return content(recipe, design, [file for file in found.files if file.shows_cam])
 

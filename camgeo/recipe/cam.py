@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
@@ -32,6 +33,27 @@ def check_cam(cam: Values, reader: Reader) -> None:
     """Note the faults between the fields of a cam."""
     if family := FAMILIES.get(cam.get("kind", "")):
         family.check(cam, reader)
+
+
+def check_tappet(values: Values, reader: Reader) -> None:
+    """Note what does not go with a round tappet, and give its follower the width that is left at the lobe's far edge.
+
+    The line of contact runs across the lobe. Of a face `diameter` across, its axis `axial_offset` beside the lobe's
+    middle, the chord at the farther edge of the lobe is the width that all of the line has.
+    """
+    follower, path = values.get("cam", {}).get("follower", {}), "cam.follower"
+    if "axial_offset" in follower and f"{path}.diameter" not in reader.marks:
+        reader.fault_at(f"{path}.axial_offset", "belongs to a round tappet", None, "give diameter, or leave it out")
+    if "diameter" not in follower or "arm" in follower:
+        return
+    if f"{path}.width" in reader.marks:
+        reader.fault_at(f"{path}.width", "cannot be combined with diameter", None, "give one of them")
+    beyond = abs(follower.get("axial_offset", 0.0)) + 0.5 * values.get("part", {}).get("thickness", 0.0)
+    if not beyond < 0.5 * follower["diameter"]:
+        given, least = (f"{length / reader.mm:.6g} {reader.units}" for length in (follower["diameter"], 2.0 * beyond))
+        reader.fault_at(f"{path}.diameter", "the lobe reaches beyond the tappet", given, f"give more than {least}")
+        return
+    follower |= {"width": math.sqrt(follower["diameter"] ** 2 - 4.0 * beyond * beyond), "beyond": beyond}
 
 
 def build_cam(cam: Values, mm: float) -> Cam:

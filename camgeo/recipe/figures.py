@@ -26,7 +26,8 @@ Value = TypeVar("Value")
 class Limit:
     """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle.
 
-    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `key` is
+    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `at_lift`
+    is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is
     the recipe's key of the upper bound below `limits`, empty for the figure's own.
     """
 
@@ -34,6 +35,7 @@ class Limit:
     at_least: float | None = None
     at_most: float | None = None
     rpm: float | None = None
+    at_lift: float | None = None
     key: str = ""
 
     def field(self, sense: str) -> str:
@@ -104,6 +106,13 @@ ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
 
 
 MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "unbalance"
+
+
+DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA = "duration", "lobe-centre", "ramp-velocity", "lift-area"
+
+
+AT_LIFT = {DURATION: 1.27, LOBE_CENTRE: 1.27, RAMP_VELOCITY: 0.1524, LIFT_AREA: 0.0}
+"""Lifts, mm, at which figures of lobes are taken unless a limit says another: 0.050 and 0.006 in, and all of it."""
 
 
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
@@ -211,6 +220,10 @@ FIGURES: dict[str, Figure] = {
     UNBALANCE: Figure(
         "mass of a disc times the distance of its centre of mass, kg mm", Kind.NUMBER, "least", "density", "kg mm"
     ),
+    DURATION: Figure("crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", "stem"),
+    LOBE_CENTRE: Figure("cam angle midway between the crossings of 1.27 mm of lift", Kind.ANGLE, "most", "stem"),
+    RAMP_VELOCITY: Figure("velocity at a lift of 0.1524 mm, a cam degree", Kind.LENGTH, "least", "stem", "/deg"),
+    LIFT_AREA: Figure("lift over the turn, times cam degrees", Kind.LENGTH, "most", "stem", " deg"),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
     "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
@@ -261,9 +274,18 @@ _RETURN = Field(
 )
 
 
+def _at_lift(lift: float) -> Field:
+    about = "lift at which it is taken, from the lowest"
+    return Field("at_lift", Kind.LENGTH, about, default=f"{lift:g} mm", at_least=0, at_most=MOST)
+
+
 def own_bounds(name: str) -> Table:
     """Give the table of the limits of a figure in a recipe's own `limits`."""
-    more = {PRESSURE_ANGLE: (_RETURN,), **dict.fromkeys(AT_SPEED, (_RPM,))}.get(name, ())
+    more = {
+        PRESSURE_ANGLE: (_RETURN,),
+        **dict.fromkeys(AT_SPEED, (_RPM,)),
+        **{figure: (_at_lift(lift),) for figure, lift in AT_LIFT.items()},
+    }.get(name, ())
     return Table((*bounds(FIGURES[name]).fields, *more))
 
 
@@ -323,7 +345,8 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
         values = reader.field(table, given[word], below)
         if values is None or len(reader.errors) > found:
             continue
-        rpm, on_return = values.pop("rpm", None), values.pop("on_return", None)
+        stated = {key: values.pop(key) for key in ("rpm", "at_lift") if key in values}
+        on_return = values.pop("on_return", None)
         if not values and on_return is None:
             reader.fault(given[word].mark, below, "no bound", None, "give at_least, at_most or both")
         factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
@@ -340,7 +363,7 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
                 if most is not None:
                     limits.append({"figure": one, "at": below, "at_most": most, "key": f"{name}.{bound}"})
             continue
-        limits.append({"figure": name, "at": below, **said} | ({} if rpm is None else {"rpm": rpm}))
+        limits.append({"figure": name, "at": below, **said, **stated})
     return limits
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM
-from camgeo.recipe.cam import CAM, CAMS, check_cam
+from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.dynamics import DYNAMICS, check_train
 from camgeo.recipe.export import EXPORT, check_files
@@ -134,6 +134,7 @@ def _check(values: Values, reader: Reader) -> None:
     Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say,
     as that fault is noted already.
     """
+    check_tappet(values, reader)
     check_cam(values.get("cam", {}), reader)
     check_linkage(values, reader)
     check_part(values.get("part", {}), reader)

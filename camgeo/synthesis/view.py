@@ -112,11 +112,11 @@ Drawer: TypeAlias = "Callable[Concatenate[View[Guide, Touch], P], R]"
 
 
 def entry(
-    guide: type[G], touch: type[T], by: Callable[Concatenate[View[G, T], P], R], contacts: int = 1
+    guide: type[G], touch: type[T], by: Callable[Concatenate[View[G, T], P], R], contacts: int = 1, discs: int = 1
 ) -> tuple[Arrangement, Drawer[P, R]]:
     """Make the entry of a table: an arrangement, and what draws views of it."""
 
     def draw(view: View[Guide, Touch], /, *args: P.args, **kwargs: P.kwargs) -> R:
         return by(view.of(guide, touch), *args, **kwargs)
 
-    return Arrangement(guide, touch, contacts), draw
+    return Arrangement(guide, touch, contacts, discs), draw

@@ -89,6 +89,18 @@ def _judged(
     return ClosureVerdict(closure.pushes, closure.stops, between, play), checks
 
 
+def left_over(first: Surface, last: Surface, shaft: Array) -> Array:
+    """What is left to the follower between two surfaces at shaft angles (n,), mm or degrees: as a curve to look at.
+
+    Raises ContactError as followers do.
+    """
+    pushed, stopped = (_rests(surface.follower or surface.gauge, contour) for surface, contour in (first, last))
+    gauge = first[0].gauge
+    scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
+    found: Array = scale * (stopped.rows(shaft)[0] - pushed.rows(shaft)[0])
+    return found
+
+
 def _rests(follower: Follower, contour: Contour) -> Excitation:
     """Position of the follower, metres or radians, as it rests on a surface."""
     (rest,) = follower.resting(contour)

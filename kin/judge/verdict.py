@@ -113,7 +113,8 @@ class Verdict(OfSurfaces):
     surfaces  what was found of each, in the intent's order; none where the file cannot be read
     closures  what is left between them
     units     mm in a unit of the file as it was read: as the file states, or else as it was given or meant
-    chains    every closed contour of the drawing, section or program that holds the first surface, outermost first
+    bodies    of each disc in the file every closed contour of the drawing, section or program that holds its first
+              surface, outermost first
     uneven    by how much a solid's other sections differ from its surfaces, mm, where only rounding is behind it
     """
 
@@ -122,7 +123,7 @@ class Verdict(OfSurfaces):
     surfaces: tuple[SurfaceVerdict, ...] = ()
     closures: tuple[ClosureVerdict, ...] = ()
     units: float | None = None
-    chains: tuple[Contour, ...] = ()
+    bodies: tuple[tuple[Contour, ...], ...] = ()
     uneven: float = 0.0
 
     @property

@@ -102,9 +102,9 @@ def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], ang
             closures += left
             checks += more
     named = tuple(about(check, path.name) for check in checks)
-    chains = tuple(chain.contour for _, file in files for chain in file.chains)
+    bodies = tuple(tuple(chain.contour for chain in file.chains) for _, file in files)
     units, uneven = files[0][1].units, max(file.uneven for _, file in files)
-    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, chains, uneven)
+    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, bodies, uneven)
 
 
 class _Read(NamedTuple):

@@ -446,6 +446,11 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         lambda width: disc(100.0, f"kind: flat, width: {width}"),
     ),
     (
+        disc(100.0, "kind: flat, diameter: 10, axial_offset: 2"),
+        r"a follower\.diameter of (\S+) mm or more",
+        lambda diameter: disc(100.0, f"kind: flat, diameter: {diameter}, axial_offset: 2"),
+    ),
+    (
         driven("kind: four-bar", ground=79.28, coupler=61.85, rocker=60).replace(
             "\nexport", "\ndwell: {band: 0.1, at_least: 120}\nexport"
         ),

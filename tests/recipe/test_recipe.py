@@ -727,10 +727,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
                     "2:14: manufacture.cutter: missing; give a length above 0 in mm: diameter of the cutter that mills "
                     "the contour"
                 ),
-                (
-                    "2:15: manufacture.diameter: unknown key; the keys here are cutter, feed, plunge, spindle, "
-                    "depth_of_cut, safe_height, lead_in, direction, allowance, start, holes, unreached, layer and wheel"
-                ),
+                "2:15: manufacture.diameter: unknown key; it belongs under follower of kind flat",
                 "2:39: manufacture.direction: not one of the choices, given 'down'; give climb or conventional",
             ],
         ),

@@ -321,7 +321,7 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             [
                 "1:3: sweep.rank: missing; give "
                 + ", ".join([*FIGURES][:-1])
-                + " or size: figure by which the designs are ranked"
+                + f" or {[*FIGURES][-1]}: figure by which the designs are ranked"
             ],
         ),
         (ROCKER + "  rank: dwel\n", ["2:9: sweep.rank: not one of the choices, given 'dwel'; did you mean dwell?"]),

@@ -23,7 +23,7 @@ from camgeo.synthesis.design import designed
 if TYPE_CHECKING:
     from camgeo.cams.disc_cams import DiscCam
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.measures.figures import Measured
+    from camgeo.measures.measured import Measured
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
     from kin.judge.check import Check

@@ -8,25 +8,26 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, disc
 from camgeo.report.page import curves, guided, outline
-from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
+from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.design import Design, Disc
     from kin.law.contacts import Arrangement, Guide, Touch
     from kin.numeric.arrays import Array
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
 EXACT = "exact"
 SIGN = "above 0 where the cam drives a rise"
+PUSHED = "above 0 where a disc pushes its own contact outwards"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,19 +61,19 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     """Gather what a page shows; `results` are those of the drawings and solids that were made."""
     files = [found for result in results if (found := outline.read(recipe, result)) is not None]
     per = outline.Exact.looks(files)
-    exacts = [outline.Exact.of(design, made, per) for made in design.surfaces]
-    drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
+    exacts = {made.surface.name: outline.Exact.of(design, made, per) for made in design.surfaces}
+    groups = outline.together(files, len(design.discs))
+    drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots += [curves.curvature(recipe, design, *each) for each in zip(design.surfaces, exacts, strict=True)]
+    plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
+    plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     measured = [
-        (file.name, made.surface.name, each.error(arcs))
-        for file in files
-        for made, each, arcs in zip(design.surfaces, exacts, file.arcs, strict=True)
+        (file.name, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items()
     ]
     # round the contour errors are drawn of a cam that has one, of others over the turn alone
     plots += [curves.off(recipe, f"{name}, {surface}", error) for name, surface, error in measured if surface]
     errors = [FileError(name, *(row / recipe.mm for row in error)) for name, surface, error in measured if not surface]
-    exact = exacts[0]
+    exact = next(iter(exacts.values()))
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
     point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]
@@ -83,48 +84,77 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
 
 
-def _on_face(design: Design) -> list[Shape]:
-    """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
-    bodies = [one.body for one in design.discs if one.body is not None]
-    hubs = [body.hub for body in bodies if body.hub is not None]
-    found = [Shape("hub", (disc(0.0, 0.0, 0.5 * hub.diameter),), "hub") for hub in hubs]
-    for opening in design.openings:
+Drawn: TypeAlias = "tuple[str, tuple[tuple[Ring, ...], ...]]"
+"""What a contour is drawn by: a name, and the rings of each disc."""
+
+
+def _drawn(group: Sequence[outline.Read]) -> Drawn:
+    return ", ".join(file.name for file in group), tuple(rings for file in group for rings in file.rings)
+
+
+def _on_face(disc_design: Disc) -> list[Shape]:
+    """Hub and timing mark of a disc; a file's outline shows neither, or does not tell which hole is the mark."""
+    body = disc_design.body
+    if body is None:
+        return []
+    found = [] if body.hub is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * body.hub.diameter),), "hub")]
+    for opening in body.openings:
         if opening.name == "mark":
             ring = Ring(opening.outline.points, opening.outline.bulges)
             found.append(Shape("timing mark", (ring,), "zero of the motion"))
     return found
 
 
-def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
+def _exact_rings(recipe: Recipe, design: Design) -> tuple[tuple[Ring, ...], ...]:
     bore = recipe.part.bore
     holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
     rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
-    contours = [outline.exact(contour) for _, contour in design.contours]
-    if not contours:
-        contours = [outline.exact(surface.curve, whole=True) for surface in design.exact.surfaces]
-    return (*rim, *contours, *holes)
+    found = []
+    for each in design.discs:
+        contours = [outline.exact(contour) for _, contour in each.contours] if design.contours else []
+        if not contours:
+            contours = [outline.exact(made.surface.curve, whole=True) for made in each.surfaces]
+        found.append((*rim, *contours, *holes))
+    return tuple(found)
 
 
-def _mechanism(
-    recipe: Recipe, design: Design, drawn: list[tuple[str, tuple[Ring, ...]]]
-) -> tuple[Scene, list[curves.Plot], Array]:
+def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
+    """Return each disc with what stands on it, the lowest first, and those above it drawn through."""
+    several = len(design.discs) > 1
+    return [
+        cam(
+            [(name, rings[rank]) for name, rings in drawn],
+            bore,
+            size,
+            turned,
+            on_it=_on_face(each),
+            name=each.name if several else "cam",
+            role="metal upper" if rank else "metal",
+        )
+        for rank, each in enumerate(design.discs)
+    ]
+
+
+def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
-    reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
+    _, shown = drawn[0]
+    reach = max(float(np.hypot(*rings[0].flattened().T).max()) for rings in shown)
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contours else "The cam is not made: a check of the exact contour fails."
+    if len(design.discs) > 1:
+        *lower, upper = (each.name for each in design.discs)
+        note = f"{upper.capitalize()} stands in front of {' and '.join(lower)} and is drawn through. {note}".rstrip()
     first = design.exact.surfaces[0]
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
-    on_it = _on_face(design)
-    disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
         from camgeo.report.page.linked import Driven, linked
 
         driven = Driven.of(design.driven.mechanism)
-        disk = cam(drawn, bore, size, driven.cam, on_it)
+        discs = _discs(design, drawn, bore, size, driven.cam)
         bodies = linked(driven, size)
         return (
-            Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
+            Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),
             driven.theta,
         )
@@ -135,7 +165,8 @@ def _mechanism(
     view = view_of(recipe, design)
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
-    return Scene((disk, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
+    discs = _discs(design, drawn, bore, size, -SHAFT)
+    return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
 
 
 _Drawing: TypeAlias = "tuple[list[Body], list[curves.Plot]]"
@@ -183,7 +214,7 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
 def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
     """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
-    plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, place)]
+    plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, {"contact": place})]
     margin = guided.MARGIN * size
     found = _contacts(view, size)
     return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
@@ -211,12 +242,57 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     first, second = view.contacts
     hole, radius = 0.5 * (view.recipe.part.bore or 0.0), view.touch.radius
     x = first.datum + view.travel(SHAFT)[0]
-    bodies = guided.roller_frame(x, first.datum + second.datum, radius, hole, size)
+    touches = guided.roller(radius, size, "roller A"), guided.roller(radius, size, "roller B")
+    bodies = guided.roller_frame(touches, x, first.datum + second.datum, hole, size)
     found, angles = [], {}
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
         found.append(guided.touched(view.surface(first), f"contact of {name}", size, radius, on=on))
         angles[name] = view.pressure(SHAFT + on)
     return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
+
+
+def _each_pressed(
+    view: View[Guide, Round], size: float
+) -> tuple[tuple[guided.Touch, guided.Touch], list[Body], list[curves.Plot]]:
+    """Return what touches either disc of a pair, the contacts, and the plot of both pressure angles."""
+    touches, angles, found = [], {}, []
+    for which, each in enumerate(view.contacts, start=1):
+        surface = view.surface(each)
+        angle = surface.pressure(SHAFT)
+        touch = guided.touch_of(each.touch, angle, size, f" {which}")
+        touches.append(touch)
+        angles[touch.name] = angle
+        found.append(guided.touched(surface, f"contact of {touch.name}", size, touch.within))
+    first, second = touches
+    return (first, second), found, [curves.pressure(view.recipe, angles, PUSHED)]
+
+
+def _pair_on_stem(view: View[Translating, Round], _: float, size: float) -> _Drawing:
+    first, second = view.contacts
+    touches, found, plots = _each_pressed(view, size)
+    hole, x = 0.5 * (view.recipe.part.bore or 0.0), first.datum + view.travel(SHAFT)[0]
+    apart = first.datum + second.datum
+    bodies = guided.roller_frame(touches, x, apart, hole, size, y=view.guide.offset, facing=0.5 * TURN)
+    return [*bodies, *found], plots
+
+
+def _pair_on_arms(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
+    touches, found, plots = _each_pressed(view, size)
+    s, bodies = view.travel(SHAFT)[0], dict[str, Body]()
+    for which, (each, touch) in enumerate(zip(view.contacts, touches, strict=True), start=1):
+        for body in guided.on_arm(touch, each, each.sense * s, (each.guide.arm, 0.0), size):
+            name = f"arm {which}" if body.name == "arm" else body.name
+            bodies[name] = replace(body, name=name)  # both arms turn about one pivot
+    return [*bodies.values(), *found], plots
+
+
+def _pair_of_faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
+    first, second = view.contacts
+    p = first.datum + view.travel(SHAFT)[0]
+    places = {each.surface: view.surface(each).place for each in view.contacts}
+    named = {name: place(SHAFT) for name, place in places.items() if place is not None}
+    bodies = faces(p, first.datum + second.datum, reach, size, view.guide.offset)
+    return [*bodies, *_contacts(view, size)], [curves.along(view.recipe, named)]
 
 
 DRAWN: dict[Arrangement, Drawer[[float, float], _Drawing]] = dict(
@@ -233,6 +309,11 @@ DRAWN: dict[Arrangement, Drawer[[float, float], _Drawing]] = dict(
         entry(Oscillating, Flat, _face_on_arm),
         entry(Oscillating, Roller, _two_rollers, 2),
         entry(Oscillating, Flat, _two_faces, 2),
+        entry(Translating, Roller, _pair_on_stem, 2, 2),
+        entry(Translating, Shoe, _pair_on_stem, 2, 2),
+        entry(Translating, Flat, _pair_of_faces, 2, 2),
+        entry(Oscillating, Roller, _pair_on_arms, 2, 2),
+        entry(Oscillating, Shoe, _pair_on_arms, 2, 2),
     ]
 )
 """How each follower is drawn: its bodies and the plots they give, from the cam's reach and the size of a joint."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from camgeo.common.units import INCH
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
-    from camgeo.report.page.outline import Exact
+    from camgeo.report.page.outline import Exact, Read
     from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.numeric.arrays import Array
 
@@ -136,11 +137,12 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
-def along(recipe: Recipe, place: Array) -> Plot:
-    """Return the plot of where a flat face is touched, mm (STEPS + 1,)."""
+def along(recipe: Recipe, places: Mapping[str, Array]) -> Plot:
+    """Return the plot of where flat faces are touched, mm (STEPS + 1,) each, by their names."""
     note = "along the face, from the axis of its stem or the pivot of its arm"
     unit = length_unit(recipe)
-    return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
+    series = tuple(Series(name, place / recipe.mm) for name, place in places.items())
+    return Plot("Contact on the face", unit, series, dwells=True, note=note)
 
 
 def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact) -> Plot:
@@ -176,10 +178,35 @@ def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact)
 
 def off(recipe: Recipe, name: str, error: tuple[Array, Array]) -> Plot:
     """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm."""
-    rows = zip(("least", "greatest"), error, strict=True)
-    series = tuple(Series(word, closed(row) / recipe.mm) for word, row in rows)
+    rows, (unit, scale) = zip(("least", "greatest"), error, strict=True), small_unit(recipe)
+    series = tuple(Series(word, scale * closed(row)) for word, row in rows)
     note = "distance outside the exact contour, negative inside"
-    return Plot(f"Error of {name}", length_unit(recipe), series, limits=((0.0, ""),), note=note)
+    return Plot(f"Error of {name}", unit, series, limits=((0.0, ""),), note=note)
+
+
+def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot]:
+    """Return plots of what the contours in files, of a groove or of a pair's discs, leave to the follower."""
+    from camgeo.synthesis.intent import closures_between, intents
+    from kin.follower.motion_error import ContactError
+    from kin.judge.closure import left_over
+
+    meant = {surface.name: surface for intent in intents(recipe, design) for surface in intent.surfaces}
+    read = {name: (meant[name], contour) for file in files for name, contour in file.contours.items()}
+    found = []
+    for closure in closures_between(design):
+        if not {closure.pushes, closure.stops} <= set(read):
+            continue
+        first, last = read[closure.pushes], read[closure.stops]
+        try:
+            values = left_over(first, last, SHAFT)
+        except ContactError:
+            continue  # a check of the file says where contact is lost
+        unit, scale = small_unit(recipe) if recipe.cam.arrangement.unit == "mm" else ("°", 1.0)
+        names = " and ".join(file.name for file in files)
+        note = f"of the follower between {closure.pushes} and {closure.stops}; below 0 they interfere"
+        series = (Series("backlash", scale * values),)
+        found.append(Plot(f"Backlash, {names}", unit, series, limits=((0.0, ""),), dwells=True, note=note))
+    return found
 
 
 def closed(values: Array) -> Array:
@@ -202,6 +229,11 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
 def _rest(begin: float, end: float, band: str) -> Rest:
     start, length = math.degrees(begin), math.degrees(end - begin)
     return Rest(start % 360.0, length, f"dwell of {length:.5g}°{band}")
+
+
+def small_unit(recipe: Recipe) -> tuple[str, float]:
+    """Return the name of the unit in which errors are told, and how many of it there are in a mm."""
+    return ("µin", 1e6 / INCH) if recipe.units == "inch" else ("µm", 1e3)
 
 
 def length_unit(recipe: Recipe) -> str:

@@ -29,20 +29,23 @@ def cam(
     bore: float | None,
     size: float,
     turned: Array,
+    *,
     on_it: Sequence[Shape] = (),
+    name: str = "cam",
+    role: str = "metal",
 ) -> Body:
-    """Return the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
+    """Return a disc of the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
 
     A line along its own x axis shows the zero of the motion where no mark of the part does.
     """
     hole = 0.5 * bore if bore else 0.0
-    shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
+    shapes = [Shape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(drawn)]
     edge = edge_ahead(drawn[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
         mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
         shapes.append(Shape("mark", (mark,), "zero of the motion"))
-    return Body("cam", "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+    return Body(name, "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
 
 
 def edge_ahead(ring: Ring) -> float:
@@ -60,21 +63,27 @@ def contact(name: str, x: Array, y: Array, direction: Array | float, size: float
 def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]:
     """Return the yoke of two parallel faces, with guides and contacts; `reach` is the cam's."""
     p, slope = view.travel(SHAFT, 1)
-    breadth = view.contacts[1].datum
+    q, back = view.travel(SHAFT + 0.5 * TURN, 1)
+    return [
+        *faces(p, view.contacts[1].datum, reach, size),
+        contact("contact on face 1", p, slope, 0.0, size),
+        contact("contact on face 2", -q, -back, 0.5 * TURN, size),
+    ]
+
+
+def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -> list[Body]:
+    """Return a frame of two faces, the first at p (n,), on a stem on a line at y, and its guide."""
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
     run = 4.5 * size
     first_guide = float(p.max()) + thick + gap
     length = first_guide + run + 2.0 * size - float(p.min())
-    stem = box(thick, -half_stem, length, half_stem)
+    stem = box(thick, y - half_stem, length, y + half_stem)
     tall = reach + 1.2 * size
     outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
     frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
-    q, back = view.travel(SHAFT + 0.5 * TURN, 1)
     return [
         Body("yoke", "follower", (frame, Shape("follower", (stem,))), poses(p, 0.0, 0.0)),
-        guide(first_guide, run, half_stem, size),
-        contact("contact on face 1", p, slope, 0.0, size),
-        contact("contact on face 2", -q, -back, 0.5 * TURN, size),
+        guide(first_guide, run, half_stem, size, y),
     ]
 
 

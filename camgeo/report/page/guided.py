@@ -16,7 +16,7 @@ from camgeo.report.page.followers import SHAFT, contact, guide
 from camgeo.report.page.scene import Body, Shape, pin, pivot, poses
 from kin.law.contacts import Roller, Shoe
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Surface
@@ -45,13 +45,13 @@ class Touch:
     within: float = 0.0
 
 
-def touch_of(touch: Round, angle: Array, size: float) -> Touch:
-    """Return what touches the cam about a centre, at pressure angles (n,)."""
+def touch_of(touch: Round, angle: Array, size: float, which: str = "") -> Touch:
+    """Return what touches the cam about a centre, at pressure angles (n,), and `which` of several it is."""
     match touch:
         case Roller(radius=radius):
-            return roller(radius, size)
+            return roller(radius, size, f"roller{which}")
         case Shoe(radius=radius):
-            return shoe(radius, angle, size)
+            return replace(shoe(radius, angle, size), name=f"shoe{which}")
     return knife_edge(size)
 
 
@@ -145,21 +145,33 @@ def touched(surface: Surface, name: str, size: float, within: float = 0.0, *, on
     return contact(name, point.real, point.imag, direction, size, within=within)
 
 
-def roller_frame(x: Array, apart: float, radius: float, hole: float, size: float) -> list[Body]:
-    """Return a frame with rollers at x (n,) and `apart` mm behind, slotted for a shaft of a radius `hole`."""
+def roller_frame(
+    touches: tuple[Touch, Touch],
+    x: Array,
+    apart: float,
+    hole: float,
+    size: float,
+    *,
+    y: float = 0.0,
+    facing: float = 0.0,
+) -> list[Body]:
+    """Return a frame with what touches at x (n,) of a line at y and `apart` mm behind, slotted for the shaft.
+
+    That has a radius `hole`. The second touch is turned by `facing`.
+    """
+    first, second = touches
     inner = max(hole, 1.2 * size) + 0.6 * size
-    width = 2.0 * (inner + HALF_STEM * size)
-    slot = bar((-float(x.max()), 0.0), (-float(x.min()), 0.0), 2.0 * inner)
+    width = 2.0 * (inner + abs(y) + HALF_STEM * size)
+    slot = bar((-float(x.max()), 0.0 - y), (-float(x.min()), 0.0 - y), 2.0 * inner)
     frame = Shape("follower", (bar((-apart, 0.0), (0.0, 0.0), width), slot), "roller yoke")
     half, run = HALF_STEM * size, 4.5 * size
-    beyond = max(radius, 0.5 * width)
+    beyond = max(first.ahead, 0.5 * width)
     start = float(x.max()) + beyond + size
     stem = Shape("follower", (box(0.5 * width, -half, start + run + 2.0 * size - float(x.min()), half),), "stem")
-    moving = poses(x, 0.0, 0.0)
-    first, second = roller(radius, size, "roller A"), roller(radius, size, "roller B")
+    moving = poses(x, y, 0.0)
     return [
         Body("roller yoke", "follower", (frame, stem), moving),
         Body(first.name, "follower", first.shapes, moving),
-        Body(second.name, "follower", second.shapes, poses(x - apart, 0.0, 0.0)),
-        guide(start, run, half, size),
+        Body(second.name, "follower", second.shapes, poses(x - apart, y, facing)),
+        guide(start, run, half, size, y),
     ]

@@ -20,6 +20,7 @@ class Look(NamedTuple):
 
 LOOKS = {
     "metal": Look("metal", "metal-edge", 1.5),
+    "metal upper": Look("upper", "upper-edge", 1.5, 0.55),
     "hub": Look("", "quiet", 1.2),
     "mark": Look("", "metal-edge", 2.2),
     "timing mark": Look("", "metal-edge", 2.2),

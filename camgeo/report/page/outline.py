@@ -13,6 +13,8 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from camgeo.curve.curve import Curve
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.contour.arcs import Arcs
+    from kin.contour.contour import Contour
     from kin.numeric.arrays import Array
 
 POINTS = 1440  # of an exact contour
@@ -48,27 +51,40 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 class Read:
     """A file's contours as they were read, mm and as if the shaft turned clockwise.
 
-    `arcs` are those of each surface, `pieces` of all in number.
-
-    `rings` are for drawing: the outline and its holes, of a ring the contour among them.
+    `contours` and `arcs` are those of each surface by its name, `pieces` of all in number. `rings` are for drawing, of
+    each disc in the file: the outline and its holes, of a ring the contour among them. `disc` is the one that it holds,
+    None for all.
     """
 
     name: str
-    arcs: tuple[Arcs, ...]
+    contours: dict[str, Contour]
+    arcs: dict[str, Arcs]
     pieces: int
-    rings: tuple[Ring, ...]
+    rings: tuple[tuple[Ring, ...], ...]
+    disc: int | None = None
 
 
 def read(recipe: Recipe, file: FileResult) -> Read | None:
     """What the judge has read of a drawing or a solid; None where that is no contour, which a check of it says."""
-    contours = [surface.contour for surface in file.surfaces if surface.contour is not None]
+    contours = {surface.name: surface.contour for surface in file.surfaces if surface.contour is not None}
     if not contours:
         return None
-    size = max(float(np.abs(contour.vertices).max()) for contour in contours)
+    size = max(float(np.abs(contour.vertices).max()) for contour in contours.values())
     fine = max(MEASURED * recipe.export.tolerance, ROUNDING * size)
-    arcs = tuple(contour.as_arcs(fine)[0] for contour in contours)
-    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in file.chains)
-    return Read(file.path.name, arcs, sum(map(len, contours)), rings)
+    arcs = {name: contour.as_arcs(fine)[0] for name, contour in contours.items()}
+    rings = tuple(tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in body) for body in file.bodies)
+    return Read(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, file.disc)
+
+
+def together(files: Sequence[Read], discs: int) -> list[list[Read]]:
+    """Files by what shows the cam whole: each with all its discs, or one for each disc."""
+    found: list[list[Read]] = []
+    for file in files:
+        if file.disc and found and found[-1][-1].disc == file.disc - 1:
+            found[-1].append(file)
+        elif not file.disc:
+            found.append([file])
+    return [group for group in found if group[0].disc is None or len(group) == discs]
 
 
 def _drawn(arcs: Arcs) -> Ring:

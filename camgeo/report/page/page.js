@@ -486,11 +486,12 @@
   }
   find("forces-label").hidden = !drawing.querySelector(".forces");
   const contours = [...drawing.querySelectorAll(".cam .metal")];
-  const names = contours.map((path) => path.querySelector("title").textContent);
+  const named = (path) => path.querySelector("title").textContent;
+  const names = [...new Set(contours.map(named))]; // each disc has a contour by each name
   names.forEach((name) => find("contour").append(new Option(name, name)));
-  find("contour-label").hidden = contours.length < 2;
+  find("contour-label").hidden = names.length < 2;
   find("contour").addEventListener("change", (event) => {
-    contours.forEach((path, i) => path.classList.toggle("other", i !== event.target.selectedIndex));
+    for (const path of contours) path.classList.toggle("other", named(path) !== event.target.value);
   });
   for (const button of document.querySelectorAll(".go")) {
     button.addEventListener("click", () => {
@@ -524,26 +525,27 @@
     const y = at.y - scale * top;
     return (Math.atan2(-y, x) * 180) / Math.PI;
   };
-  const disk = drawing.querySelector(".cam");
-  disk.addEventListener("pointerdown", (event) => {
-    grip = polar(event);
-    disk.setPointerCapture(event.pointerId);
-    find("stage").classList.add("dragged");
-    play(false);
-    event.preventDefault();
-  });
-  disk.addEventListener("pointermove", (event) => {
-    if (grip === null) return;
-    const next = polar(event);
-    const step = ((next - grip + 540) % 360) - 180;
-    grip = next;
-    held((degrees + data.sense * step + 360) % 360);
-  });
-  for (const name of ["pointerup", "pointercancel"]) {
-    disk.addEventListener(name, () => {
-      grip = null;
-      find("stage").classList.remove("dragged");
+  for (const disk of drawing.querySelectorAll(".cam")) {
+    disk.addEventListener("pointerdown", (event) => {
+      grip = polar(event);
+      disk.setPointerCapture(event.pointerId);
+      find("stage").classList.add("dragged");
+      play(false);
+      event.preventDefault();
     });
+    disk.addEventListener("pointermove", (event) => {
+      if (grip === null) return;
+      const next = polar(event);
+      const step = ((next - grip + 540) % 360) - 180;
+      grip = next;
+      held((degrees + data.sense * step + 360) % 360);
+    });
+    for (const name of ["pointerup", "pointercancel"]) {
+      disk.addEventListener(name, () => {
+        grip = null;
+        find("stage").classList.remove("dragged");
+      });
+    }
   }
 
   // --- begin --------------------------------------------------------------------------------------------------------

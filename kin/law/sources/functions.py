@@ -94,20 +94,25 @@ class Flank:
     coefficients: tuple[float, ...]
 
     @staticmethod
-    def of(powers: Sequence[int]) -> tuple[Flank, tuple[float, ...]]:
-        """Make 1 + C2 u**2 + ..., u = 1 - v, from its five powers, and give the C as well.
+    def of(
+        powers: Sequence[int], top: float = 1.0, foot: float = 0.0, slope: float = 0.0
+    ) -> tuple[Flank, tuple[float, ...]]:
+        """Make top + C2 u**2 + ... less foot + slope v, u = 1 - v, from its five powers, and give the C as well.
 
-        C_k is the product over the other powers l of l/(l - k), negated: the s-fold zero at u = 1. The
-        division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
+        Its value and four derivatives vanish at v = 0. With l_k Lagrange's polynomials over the powers C_k is
+        (foot - top + slope) l_k(0) - slope l_k(1): so the sums of C_k, k C_k, k (k - 1) C_k ... are as those at u = 1
+        must be. The division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
         """
+        above, rate = Fraction(top) - Fraction(foot), Fraction(slope)
         full = [Fraction(0)] * (powers[-1] + 1)
-        full[0] = Fraction(1)
+        full[0], full[1] = above - rate, rate
         for k in powers:
-            c = Fraction(-1)
+            at_0, at_1 = Fraction(1), Fraction(1)
             for other in powers:
                 if other != k:
-                    c *= Fraction(other, other - k)
-            full[k] = c
+                    at_0 *= Fraction(other, other - k)
+                    at_1 *= Fraction(other - 1, other - k)
+            full[k] = (rate - above) * at_0 - rate * at_1
         quotient = [
             sum((full[i] * comb(m - i + 4, 4) for i in range(m + 1)), Fraction(0)) for m in range(powers[-1] - 4)
         ]
@@ -116,6 +121,28 @@ class Flank:
     def __call__(self, v: Series, /) -> Series:
         """Give the displacement, 1 at the nose."""
         return v**5.0 * _horner(self.coefficients, 1.0 - v)
+
+
+@dataclass(frozen=True)
+class RampedFlank:
+    """A flank that begins at a displacement with a velocity: foot + slope v + v**5 Q(1 - v)."""
+
+    foot: float
+    slope: float
+    flank: Flank
+
+    def __call__(self, v: Series, /) -> Series:
+        """Give the displacement."""
+        return self.flank(v) + v * self.slope + self.foot
+
+
+@dataclass(frozen=True)
+class FromRest:
+    """2 u**3 - u**4: from rest to a constant velocity, both without acceleration; 1 at u = 1."""
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        return u**3.0 * (2.0 - u)
 
 
 def _horner(coefficients: Sequence[float], x: Series) -> Series:

@@ -1,20 +1,45 @@
-"""The lobe polynomial 2-p-q-r-s of valve trains."""
+"""The lobe polynomial 2-p-q-r-s of valve trains, and its lash ramps."""
 
 from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from operator import itemgetter
+from typing import TYPE_CHECKING, NamedTuple
 
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant
-from kin.law.sources.functions import Flank
+from kin.law.segment import Affine, Constant, Power
+from kin.law.sources.functions import Flank, FromRest, RampedFlank
 from kin.law.sources.motion import Motion, joined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.law.segment import Stretch
+
+FROM_REST = 0.4  # of a ramp's height, over which it comes to its velocity
+_NOTHING = 1e-12  # rad: a part so short is rounding
 _GREATEST_POWER = 100
+
+
+class Ramp(NamedTuple):
+    """A lash ramp: its height, mm or rad, and its constant velocity, by rad of the cam.
+
+    It leaves rest by 2 u**3 - u**4 over the first two fifths of its height, and takes the rest at that velocity.
+    """
+
+    height: float
+    velocity: float
+
+    @property
+    def parts(self) -> tuple[float, float]:
+        """Angles of the part from rest and of that at constant velocity, rad: the former's mean velocity is half."""
+        return 2.0 * FROM_REST * self.height / self.velocity, (1.0 - FROM_REST) * self.height / self.velocity
+
+    @property
+    def over(self) -> float:
+        """Angle of the whole ramp, rad."""
+        return sum(self.parts)
 
 
 def lobe(
@@ -23,14 +48,17 @@ def lobe(
     powers: Sequence[float],
     total: float = 2 * math.pi,
     *,
+    nose: float = 0.0,
+    ramp: Ramp | None = None,
     around: int | None = 1,
     field: str = "motion.lobe",
 ) -> Motion:
-    """Make S = lift (1 + C2 u**2 + Cp u**p + ... + Cs u**s), u = |theta|/half, the nose at 0, rest beyond `half` rad.
+    """Make S = lift (1 + C2 u**2 + Cp u**p + ... + Cs u**s), u = |theta - nose|/half, rest beyond `half` rad.
 
     Where the motion does not repeat (`around` as for `Motion`), the nose stands in the middle. `powers` are
     (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L. Norton, Cam Design
-    and Manufacturing Handbook, chapter on valve trains). IntentError for what is none.
+    and Manufacturing Handbook, chapter on valve trains). With a ramp the lobe meets it at its height with its velocity,
+    S'' to S'''' vanish there, and the ramp lies beyond `half`. IntentError for what is none.
     """
     if not (math.isfinite(lift) and lift > 0):
         raise IntentError(f"the lift of a lobe must be above 0, not {lift:.6g}", f"{field}.lift")
@@ -47,16 +75,81 @@ def lobe(
             f"such as [2, 8, 14, 20, 26], not [{shown}]",
             f"{field}.powers",
         )
-    flank, _ = Flank.of([int(k) for k in powers])
-    if around != 1:
-        nose = total / 2
-        up = Affine(flank, scale=lift, start=nose - half, width=half)
-        down = Affine(flank, scale=lift, start=nose + half, width=-half)
-        knots = [0.0, nose - half, nose, nose + half, total]
-        return joined(knots, [Constant(0.0), up, down, Constant(0.0)], around)
-    falling = Affine(flank, scale=lift, start=half, width=-half)
-    rising_flank = Affine(flank, scale=lift, start=total - half, width=half)
-    return joined([0.0, half, total - half, total], [falling, Constant(0.0), rising_flank])
+    if around != 1 and nose != 0.0:
+        raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
+    if ramp is not None:
+        _demand_room(lift, half, ramp, total, field)
+    stretches = _stretches(lift, half, ramp, [int(k) for k in powers])
+    middle, reach = nose if around == 1 else total / 2, stretches[-1].end
+    if around != 1 or (middle > reach and middle + reach < total):
+        knots = [0.0, *(middle + part.begin for part in stretches), middle + reach, total]
+        return joined(knots, [Constant(0.0), *(part.moved(middle) for part in stretches), Constant(0.0)], around)
+    # what begins before the turn, or after it, is moved by a turn; what its end cuts stands at both ends
+    found: list[tuple[float, float, Stretch]] = []
+    for turns in (-1.0, 0.0, 1.0):
+        shift = middle + turns * total
+        rest = _Stretch(reach, total - reach, Constant(0.0))
+        for part in (*stretches, rest):
+            low, high = max(part.begin + shift, 0.0), min(part.end + shift, total)
+            if high - low > _NOTHING:
+                found.append((low, high, part.moved(shift)))
+    found.sort(key=itemgetter(0))
+    return joined([*(low for low, _, _ in found), total], [function for _, _, function in found])
+
+
+class _Stretch(NamedTuple):
+    """A part of a lobe about a nose at 0, and its angles, rad; `width` is that over which the function runs."""
+
+    begin: float
+    end: float
+    function: Stretch
+    scale: float = 1.0
+    width: float = 0.0
+
+    def moved(self, by: float) -> Stretch:
+        """The function of the angle, the nose moved; one that falls runs backwards from its end."""
+        if isinstance(self.function, Constant):
+            return self.function
+        start = self.begin if self.width > 0.0 else self.end
+        return Affine(self.function, scale=self.scale, start=start + by, width=self.width)
+
+    def mirrored(self) -> _Stretch:
+        """The part on the other side of the nose."""
+        return self._replace(begin=-self.end, end=-self.begin, width=-self.width)
+
+
+def _stretches(lift: float, half: float, ramp: Ramp | None, powers: Sequence[int]) -> list[_Stretch]:
+    """The parts of a lobe from rest to rest."""
+    if ramp is None:
+        rising = [_Stretch(-half, 0.0, Flank.of(powers)[0], lift, half)]
+    else:
+        slope, height = ramp.velocity * half, ramp.height
+        flank, _ = Flank.of(powers, lift, height, slope)
+        first, second = ramp.parts
+        begin, rest = -half - second, FROM_REST * height
+        steady = Power((rest, height - rest))
+        rising = [
+            _Stretch(begin - first, begin, FromRest(), rest, first),
+            _Stretch(begin, -half, steady, 1.0, second),
+            _Stretch(-half, 0.0, RampedFlank(height, slope, flank), 1.0, half),
+        ]
+    return [*rising, *(part.mirrored() for part in rising[::-1])]
+
+
+def _demand_room(lift: float, half: float, ramp: Ramp, total: float, field: str) -> None:
+    """Raise IntentError for a ramp that is none, as high as the lobe, or longer than what is left of the turn."""
+    if not (math.isfinite(ramp.height) and 0 < ramp.height < lift):
+        raise IntentError("the ramp's height must lie between 0 and the lift", f"{field}.ramp.height")
+    if not (math.isfinite(ramp.velocity) and ramp.velocity > 0):
+        raise IntentError("the ramp's velocity must be above 0", f"{field}.ramp.velocity")
+    left = total / 2 - half
+    if not ramp.over < left:
+        least = math.radians(ramp.over / left * ramp.velocity)
+        raise IntentError(
+            f"the ramp takes {math.degrees(ramp.over):.6g} degrees, {math.degrees(left):.6g} are left beyond `half`; "
+            f"{least:.6g} a degree is too slow",
+            f"{field}.ramp.velocity",
+        )
 
 
 def coefficients(powers: Sequence[int]) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Lift tables as text: two columns, decimal points or commas, cam or crank degrees, millimetres or inches."""
+"""Lift tables as text: two columns, decimal points or commas, cam or crank degrees, mm, inches or thousandths."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def read_table(
     text: str,
     *,
     angles: Literal["cam", "crank"] = "cam",
-    unit: Literal["mm", "inch", "degrees"] = "mm",
+    unit: Literal["mm", "inch", "thou", "degrees"] = "mm",
     field: str = "motion.table",
 ) -> tuple[Samples, float]:
     """Read rows `angle, displacement`: angles become radians of the cam, displacements mm (degrees: radians).
@@ -47,7 +47,7 @@ def read_table(
         theta[row], s[row] = float(cells[0]), float(cells[1])
         places = max(places, _places(cells[1]))
     theta *= math.pi / 180 / (2 if angles == "crank" else 1)
-    scale = {"mm": 1.0, "inch": MM_PER_INCH, "degrees": math.pi / 180}[unit]
+    scale = {"mm": 1.0, "inch": MM_PER_INCH, "thou": MM_PER_INCH / 1000, "degrees": math.pi / 180}[unit]
     return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp), scale), scale * 10.0**-places
 
 

@@ -1,0 +1,131 @@
+"""Figures of a lobe at a stated lift, in the words of engine people: duration, lobe centre, ramp velocity, lift area.
+
+All come from where the lift crosses that lift. The motion is followed by polynomials of which no crossing is missed
+(`kin.numeric.monotone`). Cam degrees are half the crank's.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.measures.measured import Measured
+from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.monotone import RoughError, between, cells, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.cams.family import ExactCam
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+CRANK = 2.0  # turns of the crank for one of the cam
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+SHARE = 1e-12  # of the greatest lift, to which it is followed
+PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
+
+
+class Event(NamedTuple):
+    """A lobe above a lift, mm: shaft angles, rad, at which it rises through it and falls again; closing > opening."""
+
+    lift: float
+    opening: float
+    closing: float
+
+    @property
+    def duration(self) -> float:
+        """Crank degrees between the crossings."""
+        return CRANK * math.degrees(self.closing - self.opening)
+
+    @property
+    def centre(self) -> float:
+        """Middle of the crossings, cam degrees from 0 to less than 360."""
+        return degrees(0.5 * (self.opening + self.closing) % TURN)
+
+
+class EventError(ValueError):
+    """A lift that a lobe does not cross once on either flank."""
+
+
+@lru_cache(maxsize=16)
+def event_of(exact: ExactCam, lift: float) -> Event:
+    """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
+    position = exact.motion
+    try:
+        made = pieces(
+            cells(lambda t: position.by_parameter(t, 0), between(0.0, TURN, exact.breaks.tolist()), share=SHARE)
+        )
+    except RoughError as error:
+        raise EventError("the motion changes too abruptly to be resolved") from error
+    datum, _ = made.least()
+    crossings = made.crossings(datum + lift)
+    if len(crossings) != 2:
+        raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
+    first, last = crossings.tolist()
+    above = float(position.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
+    return Event(lift, first, last) if above else Event(lift, last, first + TURN)
+
+
+def _duration(event: Event, _: ExactCam) -> Measured:
+    return Measured(event.duration, "deg", degrees(event.opening % TURN))
+
+
+def _centre(event: Event, _: ExactCam) -> Measured:
+    return Measured(event.centre, "deg", event.centre)
+
+
+def _ramp_velocity(event: Event, exact: ExactCam) -> Measured:
+    """The greater of the velocities at both crossings, mm a cam degree; at a break the limit nearer to rest."""
+    opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
+    rates = exact.motion.rows(opening, 1, -1)[1], exact.motion.rows(closing, 1, 1)[1]
+    rate, at = max((abs(float(rates[0][0])), event.opening), (abs(float(rates[1][0])), event.closing))
+    return Measured(math.radians(rate), "mm/deg", degrees(at % TURN))
+
+
+def _area(event: Event, exact: ExactCam) -> Measured:
+    """Integral of the lift above the stated one between the crossings, mm times cam degrees."""
+    breaks = [at + turns * TURN for at in exact.breaks.tolist() for turns in (0.0, 1.0)]
+    places = between(event.opening, event.closing, sorted(breaks))
+    return Measured(math.degrees(_integral(exact, places, event.lift)), "mm deg")
+
+
+def _integral(exact: ExactCam, places: Array, lift: float) -> float:
+    """Integral of the lift above another between places, breaks among them, mm times rad."""
+    share = np.linspace(0.0, 1.0, PARTS, endpoint=False)
+    knots = np.append((places[:-1, None] + np.diff(places)[:, None] * share).ravel(), places[-1])
+    half = 0.5 * np.diff(knots)
+    t = 0.5 * (knots[1:] + knots[:-1])[:, None] + half[:, None] * NODES
+    s = exact.motion.rows(np.mod(t.ravel(), TURN), 0)[0].reshape(t.shape) - lift
+    return float((s @ WEIGHTS) @ half)
+
+
+_MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
+    DURATION: _duration,
+    LOBE_CENTRE: _centre,
+    RAMP_VELOCITY: _ramp_velocity,
+}
+_UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
+
+
+def of_lobe(name: str) -> Callable[[Recipe, Design], Measured]:
+    """Make the measure of a figure at the lift that the recipe's limit of it states, or at its usual one."""
+
+    def measure(recipe: Recipe, design: Design) -> Measured:
+        stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
+        lift = next(stated, AT_LIFT[name])
+        if name == LIFT_AREA and lift == 0.0:
+            turn = between(0.0, TURN, design.exact.breaks.tolist())
+            return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
+        try:
+            event = event_of(design.exact, lift)
+        except EventError as error:
+            return Measured(None, _UNITS[name], detail=str(error))
+        return _MADE.get(name, _area)(event, design.exact)
+
+    return measure
