@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
+from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace
@@ -47,6 +48,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     undercut: Undercut
     swings: bool = False
     frame: SlidingFrame | None = None
+    preload: Preload | None = None
 
     def lift(self) -> Lift:
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
@@ -112,6 +114,7 @@ TABLE = Table(
         replace(MOTION, required=False),
         SWING,
         UNDERCUT,
+        PRELOAD,
     ),
     alternatives=(("motion", ()), ("swing", ())),
 )
@@ -125,9 +128,8 @@ def check(cam: Values, reader: Reader) -> None:
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
     undercut: Undercut = cam.get("undercut", "refuse")
-    return ConstantBreadthCam(
-        cam["base_radius"], cam["swing" if "swing" in cam else "motion"], undercut, "swing" in cam
-    )
+    motion = cam["swing" if "swing" in cam else "motion"]
+    return ConstantBreadthCam(cam["base_radius"], motion, undercut, "swing" in cam, preload=build_preload(cam))
 
 
 FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Preload, Undercut
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
+from camgeo.cams.preload import PRELOAD, build_preload, preloaded
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
@@ -33,6 +34,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     roller_radius: float
     motion: MotionAsked
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     def arrangement(self) -> Arrangement:
@@ -56,12 +58,12 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
 
         return moving_frame.Translating(self.base_radius + self.roller_radius)
 
-    def exact(self, *, framed: bool = False) -> ExactGuided:  # noqa: ARG002
+    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By the displacement of the first roller over a whole turn."""
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        return ExactGuided(self, Displacement.of(opposed(self.half_turn())))
+        return preloaded(ExactGuided(self, Displacement.of(opposed(self.half_turn()))), self.preload)
 
     def follower(self, law: Displacement) -> Follower:
         """A frame with two rollers."""
@@ -88,6 +90,7 @@ TABLE = Table(
         length("roller_radius", "radius of both rollers", required=True),
         MOTION,
         UNDERCUT,
+        PRELOAD,
     ),
 )
 
@@ -99,8 +102,8 @@ def check(cam: Values, reader: Reader) -> None:
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
-    undercut = cam.get("undercut", "refuse")
-    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut)
+    undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
+    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 
 
 FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Surface, Undercut
+from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Preload, Surface, Undercut
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
+from camgeo.cams.preload import build_preload
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
@@ -70,6 +71,7 @@ class DoubleRollerCam(PairCam):
     roller_radius: float
     route: Route
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     def touch(self) -> Roller:
@@ -114,10 +116,9 @@ TABLE = pair_table(
 
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
-    lam, mu = cam["ratio"]
-    return DoubleRollerCam(
-        lam, mu, cam["arm"], cam["roller_radius"], build_route(cam, mm), cam.get("undercut", "refuse")
-    )
+    (lam, mu), undercut = cam["ratio"], cam.get("undercut", "refuse")
+    route, preload = build_route(cam, mm), build_preload(cam)
+    return DoubleRollerCam(lam, mu, cam["arm"], cam["roller_radius"], route, undercut, preload)
 
 
 FAMILY = Family(DoubleRollerCam.kind, ARRANGEMENT, TABLE, build, check)

@@ -232,6 +232,23 @@ class Advice(ABC):
         return "a smaller swing"
 
 
+@dataclass(frozen=True)
+class Preload:
+    """What both contacts together overlap the metal by, mm, and the stiffness of each along its normal, N/m.
+
+    `stiffness` is None where no force is asked for.
+    """
+
+    interference: float
+    stiffness: tuple[float, float] | None = None
+
+    @property
+    def overlaps(self) -> tuple[float, float]:
+        """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
+        half = 0.5 * self.interference
+        return half, half
+
+
 class Linear(ABC):
     """A cam that is linear in harmonics of its support function and in the shaft's place."""
 
@@ -345,6 +362,11 @@ class ExactCam(ABC):
     def free(self) -> bool:
         """Whether nothing undercuts it, whatever the motion: a parallel outside a convex surface."""
         return False
+
+    @property
+    def preload(self) -> Preload | None:
+        """The interference that its contacts have, None of those that have none."""
+        return None
 
     @property
     def plate(self) -> Lift | None:

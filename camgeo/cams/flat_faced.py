@@ -11,6 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
+from camgeo.cams.preload import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
@@ -21,6 +22,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from camgeo.cams.family import Preload
     from kin.law.contacts import Guide, Touch
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
@@ -70,6 +72,7 @@ class FlatFacedCam(Cam):
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
+    preload: Preload | None
 
     @property
     def arrangement(self) -> Arrangement:
@@ -85,9 +88,9 @@ class FlatFacedCam(Cam):
     def lift(self) -> Lift:
         """Distance of the face from the shaft over the shaft angle."""
 
-    def exact(self, *, framed: bool = False) -> ExactLifted:
+    def exact(self, *, framed: bool = False) -> ExactCam:
         """By its support function."""
-        return ExactLifted(self, self.lift(), framed)
+        return preloaded(ExactLifted(self, self.lift(), framed), self.preload)
 
     def joints(self) -> tuple[Joint, ...]:
         """Where derivatives of the motion that a recipe gives jump."""

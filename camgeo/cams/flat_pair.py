@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
+from camgeo.cams.family import Cam, Circle, Family, Follower, Preload, Surface, Undercut
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
+from camgeo.cams.preload import build_preload
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
@@ -44,6 +45,7 @@ class FlatPairCam(PairCam):
     arm: float
     route: Route
     undercut: Undercut
+    preload: Preload | None = None
 
     @property
     def touch(self) -> Flat:
@@ -82,7 +84,8 @@ TABLE = pair_table("swing of the pair, psi/2, over 180/lambda degrees of shaft a
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
     lam, mu = cam["ratio"]
-    return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), cam.get("undercut", "refuse"))
+    undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
+    return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), undercut, preload)
 
 
 FAMILY = Family(FlatPairCam.kind, ARRANGEMENT, TABLE, build, check)

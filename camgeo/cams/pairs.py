@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Proof
+from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Preload, Proof
 from camgeo.cams.flat_faced import spread
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.cams.position import Position, SwingPosition
+from camgeo.cams.preload import PRELOAD, preloaded
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat
@@ -138,10 +139,11 @@ class PairCam(Cam):
     mu: int
     arm: float
     route: Route
+    preload: Preload | None
 
-    def exact(self, *, framed: bool = False) -> ExactPair:  # noqa: ARG002
+    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By Wunderlich's law of transmission, by the route that the recipe takes."""
-        return ExactPair(self, self.transmission())
+        return preloaded(ExactPair(self, self.transmission()), self.preload)
 
     @abstractmethod
     def follower(self, law: Transmission, out: float) -> Follower:
@@ -397,6 +399,7 @@ def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
             *roller,
             *routes,
             UNDERCUT,
+            PRELOAD,
         ),
         alternatives=tuple((route.name, ()) for route in routes),
     )

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Surface, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Preload, Surface, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
+from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
@@ -80,6 +81,7 @@ class SupportCam(FlatFacedCam):
     shape: Shape
     shaft: tuple[float, float]
     undercut: Undercut
+    preload: Preload | None = None
 
     def lift(self) -> Lift:
         """The support function about the shaft."""
@@ -291,6 +293,7 @@ TABLE = Table(
             formerly="pivot",
         ),
         UNDERCUT,
+        PRELOAD,
     ),
     alternatives=(("p", ()), ("fourier", ()), ("reuleaux", ()), ("hypocycloid", ())),
 )
@@ -330,7 +333,7 @@ def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> floa
 
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
-    return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"))
+    return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"), build_preload(cam))
 
 
 def _shape(cam: Values, mm: float) -> Shape:

@@ -40,6 +40,8 @@ from camgeo.recipe.figures import (
     PITCH_RADIUS,
     PIVOT,
     PIVOT_CLEARANCE,
+    PRELOAD_GREATEST,
+    PRELOAD_LEAST,
     RADIUS,
     ROLLER_SPEED,
     SIZE,
@@ -66,6 +68,7 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
+_ABRUPT = "the motion changes too abruptly to be resolved"
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
@@ -238,6 +241,26 @@ def _pivot(_: Recipe, design: Design) -> Measured:
     return Measured(design.follower.pivot, "mm")
 
 
+def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
+    """Least (0) or greatest (1) force of a preload."""
+
+    def measured(_: Recipe, design: Design) -> Measured:
+        from camgeo.measures.forces import preload_force
+        from kin.numeric.monotone import RoughError
+
+        unit = "N m" if design.motion.unit == "deg" else "N"
+        preload = design.exact.preload
+        if preload is None or preload.stiffness is None:
+            return Measured(None, unit, detail="the preload has no stiffness")
+        try:
+            value, at_deg = preload_force(design, preload)[rank]
+        except RoughError:
+            return Measured(None, unit, detail=_ABRUPT)
+        return Measured(value, unit, at_deg)
+
+    return measured
+
+
 def _of_mass(value: Callable[[Balance], float], unit: str) -> Callable[[Recipe, Design], Measured]:
     """Make the measure of the discs' balance: the greatest of them."""
 
@@ -267,6 +290,8 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ROLLER_SPEED: _roller_speed,
     FACE_WIDTH: _face_width,
     JAM_MARGIN: _jam_margin,
+    PRELOAD_LEAST: _of_preload(0),
+    PRELOAD_GREATEST: _of_preload(1),
     MASS: _of_mass(lambda disc: disc.mass, "kg"),
     ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
     INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
@@ -290,8 +315,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
-        why = "the motion changes too abruptly to be resolved"
-        return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
+        return {name: Measured(None, unit + FIGURES[name].per, detail=_ABRUPT) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
         row = pieces(made, _ORDERS[name])

@@ -228,6 +228,12 @@ def _findings(
         with clock.stage("dynamics"):
             train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
+    preload = None
+    if design.exact.preload is not None:
+        from camgeo.measures.forces import preload_section
+
+        with clock.stage("forces"):
+            preload = preload_section(recipe, design)
     if recipe.limits:
         from camgeo.measures.limits import limit_checks
 
@@ -249,6 +255,7 @@ def _findings(
         design.follower.name,
         linkage=linkage,
         dynamics=None if train is None else train.section,
+        preload=preload,
         remarks=remarks,
         joints=design.exact.joints,
         contours={surface.name: measures(contour) for surface, contour in design.contours},

@@ -67,6 +67,14 @@ def _inspection(job: Job, request: FileRequest) -> Columns:
     return inspection_table(job.recipe.told_for(request), job.design)
 
 
-_TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
-_STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
-_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be reported
+def _trace(job: Job, request: FileRequest) -> Columns:
+    from camgeo.synthesis.traces import trace_table
+
+    return trace_table(job.recipe.told_for(request), job.design)
+
+
+_TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection, "trace": _trace}
+_STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection", "trace": "trace"}
+_GAPS = frozenset(
+    {"contacts", "inspection", "trace"}
+)  # nothing is touched there, nothing is to be reported, nothing moves

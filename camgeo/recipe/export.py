@@ -62,7 +62,9 @@ class FileRequest:
     """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection"] | None = None
+    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace"] | None = (
+        None
+    )
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
@@ -190,7 +192,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "which table it is",
                 default="motion",
-                choices=("motion", "contacts", "polar", "inspection"),
+                choices=("motion", "contacts", "polar", "inspection", "trace"),
             ),
             _OF_RECIPE,
         )
@@ -284,6 +286,9 @@ def check_files(values: Values, reader: Reader) -> None:
         elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
+        if request.as_ == "trace" and "linkage.trace" not in reader.marks:
+            remedy = "give points such as linkage.trace: [{on: coupler, point: [40, 10]}]"
+            reader.fault_at(f"{path}.csv.as", "needs linkage.trace", "'trace'", remedy)
         if request.kind == "gcode":
             check_milling(path, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:

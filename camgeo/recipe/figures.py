@@ -43,7 +43,9 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density", "wanted"]
+Own: TypeAlias = Literal[
+    "guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density", "wanted", "stiff"
+]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -68,6 +70,7 @@ NEEDS: dict[Needs, str] = {
     "guide": "dynamics.guide",
     "wanted": "cam.delta.law",
     "speed": "a follower without a linkage, and dynamics.rpm",
+    "stiff": "cam.preload.stiffness",
     "density": "part.density, and in a sweep no linkage",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
@@ -119,6 +122,9 @@ BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
 FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
+
+
+PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
 
 
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
@@ -196,6 +202,13 @@ FIGURES: dict[str, Figure] = {
         "most",
         "arm",
     ),
+    PRELOAD_LEAST: Figure(
+        "least force of a preload by interference over the turn, along the travel, N; N m where it turns",
+        Kind.NUMBER,
+        "most",
+        "stiff",
+    ),
+    PRELOAD_GREATEST: Figure("its greatest force", Kind.NUMBER, "least", "stiff"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -304,7 +317,7 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "linkage" not in given
         case "speed":
             return "linkage" not in given and "dynamics.rpm" in given
-        case "guide" | "wanted":
+        case "guide" | "wanted" | "stiff":
             return NEEDS[needs] in given
         case "density":
             return "part.density" in given

@@ -14,6 +14,7 @@ from camgeo.recipe.figures import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance
 from camgeo.recipe.part import PART, check_part
+from camgeo.recipe.preload import check_preload
 from camgeo.recipe.sweep import SWEEP, check_sweep
 from camgeo.recipe.track import check_track
 from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
@@ -139,6 +140,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_linkage(values, reader)
     check_part(values.get("part", {}), reader)
     check_track(values, reader)
+    check_preload(values, reader)
     check_discs(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)

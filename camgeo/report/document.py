@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
-    from kin.follower.motion_error import MotionError
+    from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
     from kin.law.joints import Joint
@@ -37,7 +37,7 @@ DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything a run found, before it is put in the recipe's units; `linkage` and `dynamics` already are."""
+    """Everything a run found, before it is put in the recipe's units; all sections already are."""
 
     checks: tuple[Check, ...]
     files: tuple[FileResult, ...]
@@ -47,6 +47,7 @@ class Findings:
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
+    preload: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     contours: Mapping[str, Measures] = field(default_factory=dict)
@@ -62,6 +63,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
     linkage = {} if found.linkage is None else {"linkage": found.linkage}
     dynamics = {} if found.dynamics is None else {"dynamics": found.dynamics}
+    preload = {} if found.preload is None else {"preload": found.preload}
     return {
         "recipe": recipe.name,
         "about": recipe.about,
@@ -79,6 +81,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         **linkage,
         **dynamics,
+        **preload,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }
@@ -166,17 +169,21 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     for name, row in rows if len(rows) == 1 else ():  # flat keys, where there is one
         entry |= row | ({"surface": name} if name else {})
     if file.closures or "surfaces" in entry:
-        entry["play"] = [_play(recipe, one) for one in file.closures]
+        entry["play"] = [_between(recipe, one) for one in file.closures]
     return entry
 
 
-def _play(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
-    """What is left to the follower between two surfaces of a file, over the whole turn; negative: interference."""
-    play = closure.play
+def _between(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
+    """What is left to the follower between two surfaces of a file."""
+    return {"between": [closure.pushes, closure.stops], **_play(recipe, closure.play)}
+
+
+def _play(recipe: Recipe, play: Play) -> dict[str, Any]:
+    """What is left to a follower that is held from both sides, over the whole turn; negative: interference."""
     least, unit = in_units(recipe, play.least, play.unit)
     most, _ = in_units(recipe, play.most, play.unit)
     place = {"min_at_deg": play.least_at_deg, "max_at_deg": play.most_at_deg}
-    return {"between": [closure.pushes, closure.stops], "min": least, "max": most, "unit": unit, **place}
+    return {"min": least, "max": most, "unit": unit, **place}
 
 
 def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
@@ -185,6 +192,7 @@ def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
         "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
         "motion": None if surface.motion is None else _motion(recipe, surface.motion),
         **_measures(recipe, surface.perimeter, surface.area),
+        **({} if surface.play is None else {"play": [_play(recipe, surface.play)]}),
     }
 
 

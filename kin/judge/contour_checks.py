@@ -48,15 +48,16 @@ def judge_contour(
     `standing` is how far metal may stand outside it, mm, where a cutter does not reach.
     """
     contour, spline, slack = fine(chain.contour, limits.tolerance)
-    judged, checks, gauge = None, [], surface.gauge
+    judged, play, checks, gauge = None, None, [], surface.gauge
     try:
         judged = _less_sure(gauge.judge(contour, phi), gauge, uneven)
-        checks = _motion_checks(judged, surface, limits, slack)
+        play = judged.play
+        if play is not None and surface.follower is not None:
+            play = _less_sure(surface.follower.judge(contour, phi), surface.follower, uneven).play
+        checks = _motion_checks(judged, play, surface, limits, slack)
     except (ContactError, UnsettledError) as error:
         checks = [failed("motion", str(error), unit=gauge.unit)]
-    found = SurfaceVerdict(
-        surface.name, chain.contour, judged and judged.motion, judged and judged.play, pieces=chain.pieces
-    )
+    found = SurfaceVerdict(surface.name, chain.contour, judged and judged.motion, play, pieces=chain.pieces)
     envelope = gauge.envelope
     if judged and judged.reach and contour.is_convex and envelope.regular:
         strayed = convex_deviation(judged.reach)
@@ -114,7 +115,10 @@ def _contour_check(found: Deviation, surface: SurfaceIntent, tolerance: float, s
     return at_most("contour", worst, tolerance, "mm", at=at, detail=detail, slack=slack)
 
 
-def _motion_checks(judged: Judged, surface: SurfaceIntent, limits: Limits, slack: float) -> list[Check]:
+def _motion_checks(
+    judged: Judged, own: Play | None, surface: SurfaceIntent, limits: Limits, slack: float
+) -> list[Check]:
+    """Checks on the motion and the play of the gauge; `own` is the play of the follower itself, which may be less."""
     follower, motion, play = surface.gauge, judged.motion, judged.play
     checks = []
     if limits.motion is not None or not surface.trimmed:
@@ -127,9 +131,23 @@ def _motion_checks(judged: Judged, surface: SurfaceIntent, limits: Limits, slack
         checked = at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room)
         checks.append(unlimited(checked) if vacuous else checked)
     closure = follower.closure
-    if play is None or closure is None or (limits.play is None and surface.trimmed):
+    if play is None or own is None or closure is None or (limits.play is None and surface.trimmed):
         return checks
-    return [*checks, *play_checks(play, closure, follower, limits, slack, detail=closure.detail(play))]
+    held = play_checks(play, closure, follower, limits, slack, detail=closure.detail(play))
+    if own is play:
+        return [*checks, *held]
+    preload = f"interference from {-own.most:.6g} to {-own.least:.6g} {own.unit}"
+    return [*checks, *(_beside_interference(check, play.least - own.least, preload) for check in held)]
+
+
+def _beside_interference(check: Check, interference: float, detail: str) -> Check:
+    """A check on what a gauge has left, said of its follower: a limit that lets all of an interference go is none."""
+    if check.limit is None or check.limit < interference:
+        return replace(check, detail=detail)
+    permitted = (
+        f"{check.limit:.3g} {check.unit} would be permitted, as much as the interference; give a finer tolerance"
+    )
+    return replace(check, ok=False, limit=None, detail=f"{permitted}; {detail}")
 
 
 def play_checks(

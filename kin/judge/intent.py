@@ -25,7 +25,8 @@ class SurfaceIntent:
     z         height of the section of a solid in which it is looked for, mm; None for that of the plain disc
     side      on which the metal lies: 1 within the contour, -1 round it
     trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
-    follower  that runs on it, where the gauge is larger by a clearance; None for the gauge itself
+    follower  that runs on it, where the gauge is larger by a clearance, or has room for an interference; None for the
+              gauge itself
     """
 
     gauge: Follower

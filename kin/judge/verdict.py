@@ -80,7 +80,7 @@ class OfSurfaces:
 
     @property
     def play(self) -> Play | None:
-        """Of a follower that two contacts hold on the one surface."""
+        """Of a follower that two contacts hold on the one surface; below 0 where it interferes."""
         return self.surface.play
 
     @property

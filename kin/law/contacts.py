@@ -145,6 +145,21 @@ class Contact(Generic[G_co, T_co]):
         return replace(self, datum=self.datum - self.sense * by)
 
 
+def eased(contact: Contact[Guide, Touch], room: float) -> Contact[Guide, Touch]:
+    """The contact of a gauge that stands off by `room`, mm, along its normal: metal grown by as much just fits it.
+
+    Raises ValueError where nothing would be left of a round touch.
+    """
+    match contact.guide, contact.touch:
+        case Oscillating(), Flat(nearer=nearer):
+            return replace(contact, touch=replace(contact.touch, nearer=nearer - room))
+        case Translating(), Flat(tilt=tilt):
+            return replace(contact, datum=contact.datum + room / math.cos(tilt))
+        case _, Roller(radius=radius) | Shoe(radius=radius) if radius > room:
+            return replace(contact, touch=replace(contact.touch, radius=radius - room))
+    raise ValueError(f"nothing is left of the {contact.touch.word}")
+
+
 def opposite(touch: TouchT, apart: float, datum: float = 0.0) -> tuple[Contact[Translating, TouchT], ...]:
     """Two contacts of a frame on a line through the shaft, so far apart, mm, the second half a turn on."""
     guide = Translating()

@@ -65,6 +65,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     groups = outline.together(files, len(design.discs))
     drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
+    plots += curves.preload(design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     measured = [
@@ -148,11 +149,13 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     if design.driven is not None and design.driven.turns:
-        from camgeo.report.page.linked import Driven, linked
+        from camgeo.report.page.linked import Driven, linked, traced
 
         driven = Driven.of(design.driven.mechanism)
         discs = _discs(design, drawn, bore, size, driven.cam)
         bodies = linked(driven, size)
+        if recipe.linkage is not None:
+            bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
         return (
             Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),

@@ -137,6 +137,20 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
+def preload(design: Design) -> list[Plot]:
+    """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
+    given = design.exact.preload
+    if given is None or given.stiffness is None:
+        return []
+    from camgeo.measures.forces import FollowerTurn, elastic
+
+    turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
+    force = elastic(turn, given, rows).preload
+    normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
+    note = "along the normal of each contact, without load"
+    return [Plot("Preload", "N", tuple(Series(name, values) for name, values in normal), note=note)]
+
+
 def along(recipe: Recipe, places: Mapping[str, Array]) -> Plot:
     """Return the plot of where flat faces are touched, mm (STEPS + 1,) each, by their names."""
     note = "along the face, from the axis of its stem or the pivot of its arm"

@@ -165,6 +165,32 @@ def _linkage_rows(section: dict[str, Any]) -> list[_Row]:
     return rows
 
 
+def preload(report: dict[str, Any]) -> str:
+    """Return the force of a preload by interference, and what load takes a contact away; nothing without one."""
+    section = report.get("preload")
+    if section is None:
+        return ""
+    told = f"The metal and both contacts overlap by {number(section['interference'])} {section['unit']} together."
+    table = ""
+    if "force" in section:
+        force = section["force"]
+        cells = [
+            (f"{word} preload", force[key], force["unit"], force[f"{key}_at_deg"])
+            for word, key in (("least", "min"), ("greatest", "max"))
+        ]
+        cells += [
+            (f"load that lifts {one['contact']} off", one["load"], one["unit"], one["at_deg"])
+            for one in section["lost"]
+        ]
+        rows = [
+            f'<tr><th scope="row">{escape(name)}</th><td class="number">{number(value)}</td><td>{escape(unit)}</td>'
+            f"<td>{_place(at, 'shaft')}</td></tr>"
+            for name, value, unit, at in cells
+        ]
+        table = _table("Preload", ("figure", "value", "unit", "at"), rows)
+    return f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{told}</p>{table}</section>'
+
+
 def dynamics(report: dict[str, Any]) -> str:
     """Return what drives the follower train to what, as intended and by each file; nothing without a train."""
     section = report.get("dynamics")

@@ -1,0 +1,145 @@
+"""Forces at a follower's contacts over the turn, as figures and as the report's sections.
+
+Lengths are mm and forces N here; of a follower that swings positions are rad and moments N mm, reported in N m.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.cams.family import Preload
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.dynamics.contact_forces import Elastic
+    from kin.follower.contact_lines import ContactLine
+    from kin.numeric.arrays import Array
+
+SHARE = 1e-12  # of the greatest value, to which a force is followed over the turn
+PER_MM = 1e-3  # N/mm in N/m, and N m in N mm
+
+
+class Extreme(NamedTuple):
+    """A least or greatest value over the turn, and its shaft angle in degrees."""
+
+    value: float
+    at_deg: float
+
+
+@dataclass(frozen=True, eq=False)
+class FollowerTurn:
+    """A design's follower over the turn, by the parameter of its law: its position and the lines of its contacts."""
+
+    design: Design
+
+    @cached_property
+    def swings(self) -> bool:
+        """Whether forces along the travel are moments."""
+        return self.design.follower.arrangement.unit == "deg"
+
+    @property
+    def unit(self) -> str:
+        """Of forces along the travel, as reported."""
+        return "N m" if self.swings else "N"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What reports call each contact: by its surface, or by its touch with a letter where there are several."""
+        contacts = self.design.follower.contacts
+        letters = "AB" if len(contacts) > 1 else ("",)
+        return tuple(
+            one.surface or f"{one.touch.word} {letter}".rstrip() for one, letter in zip(contacts, letters, strict=True)
+        )
+
+    def rows(self, t: Array) -> Array:
+        """Position and two derivatives by the shaft angle at parameters t (n,): (3, n), mm or rad."""
+        return self.design.motion.by_parameter(t, 2)
+
+    def lines(self, rows: Array) -> tuple[ContactLine, ...]:
+        """The line of each contact at positions of the follower."""
+        from kin.follower.contact_lines import contact_line
+
+        return tuple(contact_line(contact, rows) for contact in self.design.follower.contacts)
+
+    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
+        """Least and greatest of functions of the parameter, values(t (n,)) -> (r, n), over the turn, none sampled past.
+
+        Raises RoughError where a function changes too abruptly.
+        """
+        from kin.numeric.monotone import between, cells, pieces
+
+        made = cells(values, between(0.0, TURN, self.design.exact.breaks.tolist()), share=SHARE)
+        found = []
+        for row in range(len(made.coefficients)):
+            piece = pieces(made, row)
+            least, greatest = (
+                Extreme(value, self.design.motion.shaft_deg(at % TURN))
+                for value, at in (piece.least(), piece.greatest())
+            )
+            found.append((least, greatest))
+        return found
+
+
+# --- preload by interference ------------------------------------------------------------------------------------------
+
+
+def elastic(turn: FollowerTurn, preload: Preload, rows: Array) -> Elastic:
+    """Both contacts under preload, N and mm or N mm and rad; raises ValueError where no stiffness is given."""
+    from kin.dynamics.contact_forces import preloaded
+
+    if preload.stiffness is None:
+        raise ValueError("a preload without stiffness has no force")
+    first, second = turn.lines(rows)
+    k1, k2 = (PER_MM * stiffness for stiffness in preload.stiffness)
+    return preloaded((first.lever, second.lever), preload.overlaps, (k1, k2))
+
+
+def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
+    """Least and greatest force of the preload along the travel over the turn, N, or N m about a pivot."""
+    turn = FollowerTurn(design)
+    scale = PER_MM if turn.swings else 1.0
+    ((least, greatest),) = turn.extremes(lambda t: scale * elastic(turn, preload, turn.rows(t)).preload[None])
+    return least, greatest
+
+
+def preload_section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
+    """The report's section on the preload: its force, and the load along the travel at which a contact is lost."""
+    preload = design.exact.preload
+    if preload is None:
+        return None
+    section: dict[str, Any] = {
+        "interference": preload.interference / recipe.mm,
+        "unit": "in" if recipe.units == "inch" else "mm",
+    }
+    if preload.stiffness is None:
+        return section
+    turn = FollowerTurn(design)
+    scale = PER_MM if turn.swings else 1.0
+
+    def forces(t: Array) -> Array:
+        held = elastic(turn, preload, turn.rows(t))
+        return scale * np.array([held.preload, held.loses_second, held.loses_first])
+
+    (least, most), (second, _), (_, first) = turn.extremes(forces)
+    named = zip(turn.names, (first, second), strict=True)
+    return section | {
+        "stiffness": list(preload.stiffness),
+        "force": {
+            "min": least.value,
+            "max": most.value,
+            "unit": turn.unit,
+            "min_at_deg": least.at_deg,
+            "max_at_deg": most.at_deg,
+        },
+        "lost": [
+            {"contact": name, "load": load.value, "unit": turn.unit, "at_deg": load.at_deg} for name, load in named
+        ],
+    }

@@ -1,0 +1,62 @@
+"""Preloads by interference: what their recipes cannot have beside them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.common.rounding import downward
+from camgeo.recipe.export import NO_CONTOUR, TOLERANCE
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+PATH = "cam.preload"
+SIDES = 2.0  # of a contour, each of which may be off by the tolerance
+
+
+def check_preload(values: Values, reader: Reader) -> None:
+    """Note what does not go with metal that both contacts overlap, and tolerances in which the overlap is lost."""
+    cam, dynamics = values.get("cam", {}), values.get("dynamics", {})
+    preload = cam.get("preload")
+    if preload is None:
+        return
+    if cam.get("undercut") == "trim":
+        remedy = "leave it out, or cam.preload: where metal is cut off nothing is preloaded"
+        reader.fault_at("cam.undercut", "a preloaded cam is not trimmed", "trim", remedy)
+    if reader.kinds["linkage"]:
+        remedy = "leave linkage out, or cam.preload"
+        reader.fault_at(PATH, "the square frame of a linkage is not preloaded", None, remedy)
+    if "backlash" in dynamics:
+        path = "dynamics.backlash"
+        remedy = "leave cam.preload out, or dynamics"
+        reader.fault_at(path, "clearance beside an interference", None, remedy)
+    elif "preload" in dynamics:
+        remedy = "leave cam.preload out, or dynamics"
+        reader.fault_at("dynamics.preload", "a spring beside a second contact that is preloaded", None, remedy)
+    listed = values.get("export", {}).get("files", [])
+    for file in listed:
+        kind, path = file["kind"], file["path"]
+        if file.get("parts") == "all":
+            reader.fault_at(path, "the bodies round a preloaded cam are not made", None, "leave `parts: all` out")
+        if "clearance" in file:
+            remedy = "leave it out, or cam.preload"
+            reader.fault_at(f"{path}.{kind}.clearance", "a clearance undoes the interference", None, remedy)
+    if "interference" in preload:
+        _check_tolerances(values, reader, preload["interference"])
+
+
+def _check_tolerances(values: Values, reader: Reader, interference: float) -> None:
+    """Note a tolerance in which a file may lose all of the interference."""
+    export = values.get("export", {})
+    for file in export.get("files", [{"kind": "dxf", "path": ""}]):
+        tolerance = file.get("tolerance", export.get("tolerance", TOLERANCE))
+        if file["kind"] in NO_CONTOUR or SIDES * tolerance < interference:
+            continue
+        paths = (f"{file['path']}.{file['kind']}.tolerance", "export.tolerance", f"{PATH}.interference")
+        path = next(path for path in paths if path in reader.marks)
+        what = f"a tolerance of {tolerance / reader.mm:g} on either side of a contour leaves none of the interference"
+        remedy = f"give a tolerance below {downward(interference / SIDES / reader.mm)}"
+        if path == paths[-1]:
+            remedy = f"give an export.tolerance below {downward(interference / SIDES / reader.mm)}"
+        reader.fault_at(path, what, None, remedy)
+        return

@@ -1,0 +1,100 @@
+"""The line along which each contact's force acts, over the shaft angle, and the levers that it has.
+
+In the axes of the contact's own guide, which runs round the standing cam by the shaft angle phi: a line of travel along
+x at y = offset, or a pivot at (distance, 0). A point r of the cam there moves by (y, -x) per radian of phi. The centre
+c of a round touch moves over the cam by w = c' + (-c_y, c_x); the contact's normal stands at right angles to it. A flat
+face is the tangent at p n + (dp/d omega) t of its support function p, whose normal n turns by omega.
+With a lever h = d(gap)/d(own position) the virtual work of the normal force N on follower and cam is the same:
+N h times the rate of the own position, which is N times the shaft's lever of the line.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.contacts import Flat, Oscillating
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.contacts import Contact, Guide, Touch
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLine:
+    """The force's line of a contact at n shaft angles, mm, per unit of the contact's own position, mm or rad.
+
+    normal  unit vector from the shaft's side to the follower's, (n, 2)
+    centre  a point on the line: the centre of a round touch, the point of contact of a face, (n, 2)
+    lever   by how much the gap grows with the own position, (n,): mm per mm, or mm per rad about a pivot
+    shaft   lever of the line about the shaft, mm (n,), above 0 where the cam drives the follower outwards
+    bent    radius of curvature of what `centre` runs along on the cam, mm (n,), above 0 where that is convex
+    """
+
+    normal: Array
+    centre: Array
+    lever: Array
+    shaft: Array
+    bent: Array
+
+
+def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine:
+    """The line of a contact from the follower's position and two derivatives by the shaft angle, (3, n), mm or rad."""
+    own = contact.sense * np.asarray(follower, dtype=np.float64)[:3]
+    own[0] += contact.zero
+    if isinstance(contact.touch, Flat):
+        return _of_face(contact.guide, contact.touch, own)
+    return _of_centre(contact.guide, own)
+
+
+def _of_centre(guide: Guide, own: Array) -> ContactLine:
+    u, speed, bend = own
+    if isinstance(guide, Oscillating):
+        length, side = guide.arm, float(guide.side)
+        sin, cos = length * np.sin(u), length * np.cos(u)
+        centre = np.array([guide.pivot - cos, -side * sin])
+        along, turn = np.array([sin, -side * cos]), np.array([cos, side * sin])  # d centre/du, and again
+    else:
+        centre = np.array([u, np.full_like(u, guide.offset)])
+        along, turn = np.array([np.ones_like(u), np.zeros_like(u)]), np.zeros((2, len(u)))
+    way = along * speed + _across(centre)
+    bending = along * bend + turn * speed**2 + _across(along * speed)
+    size = np.hypot(*way)
+    normal = -_across(way) / size
+    curvature = (_cross(way, bending) + size**2) / size**3
+    with np.errstate(divide="ignore"):
+        bent = 1.0 / curvature
+    lever = np.sum(normal * along, axis=0)
+    return ContactLine(normal.T, centre.T, lever, lever * speed, bent)
+
+
+def _of_face(guide: Guide, touch: Flat, own: Array) -> ContactLine:
+    u, speed, bend = own
+    if isinstance(guide, Oscillating):
+        side, a = float(guide.side), guide.pivot
+        normal = np.array([np.sin(u), -side * np.cos(u)])
+        p, turning = a * np.sin(u) - touch.nearer, 1.0 + side * speed
+        slope = a * np.cos(u) * speed / turning
+        # d/d omega of that slope, omega' = 1 + side u'
+        rate = a * (np.cos(u) * bend - np.sin(u) * speed**2) / turning - slope * side * bend / turning
+        centre = p * normal + slope * _across(normal)
+        lever = np.sum((centre - np.array([[a], [0.0]])) * -np.array([np.cos(u), side * np.sin(u)]), axis=0)
+        return ContactLine(normal.T, centre.T, lever, slope, p + rate / turning)
+    cos, sin = math.cos(touch.tilt), math.sin(touch.tilt)
+    normal = np.array([np.full_like(u, cos), np.full_like(u, sin)])
+    p = cos * u + sin * guide.offset
+    centre = p * normal + cos * speed * _across(normal)
+    return ContactLine(normal.T, centre.T, np.full_like(u, cos), cos * speed, p + cos * bend)
+
+
+def _across(vector: Array) -> Array:
+    """Vectors (2, n) turned a quarter anticlockwise."""
+    return np.array([-vector[1], vector[0]])
+
+
+def _cross(first: Array, second: Array) -> Array:
+    product: Array = first[0] * second[1] - first[1] * second[0]
+    return product
