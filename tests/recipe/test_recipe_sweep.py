@@ -256,8 +256,8 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             [
                 (
                     "1:3: sweep.vary: missing; give a mapping from paths to ranges, such as "
-                    "{linkage.rocker: {from: 95, to: 110, steps: 16}}: numbers and words of cam and linkage by their paths, "
-                    "each with its range or values"
+                    "{linkage.rocker: {from: 95, to: 110, steps: 16}}: numbers and words of cam and linkage by their "
+                    "paths, each with its range or values"
                 )
             ],
         ),
