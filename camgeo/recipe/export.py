@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
+from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.track import is_ring
 from camgeo.schema.errors import shown
@@ -270,7 +271,7 @@ def check_files(values: Values, reader: Reader) -> None:
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
-    ring = is_ring(values)
+    round_what = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
     if any(request.kind == "gcode" for request in listed):
         check_slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
@@ -281,8 +282,8 @@ def check_files(values: Values, reader: Reader) -> None:
         if request.parts == "all" and request.compensation is not None:
             remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
             reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
-        if request.parts == "all" and ring:
-            reader.fault_at(path, "the bodies round a ring are not made", None, "leave `parts: all` out")
+        if request.parts == "all" and round_what:
+            reader.fault_at(path, f"the bodies round {round_what} are not made", None, "leave `parts: all` out")
         elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
