@@ -31,7 +31,7 @@ from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.errors import RecipeErrors, shown
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.yaml_source import join
-from camgeo.sweep.search.figures import Evaluator, Scene, asked_of
+from camgeo.sweep.search.figures import Evaluator, Scene, asked_of, estimated
 from camgeo.sweep.search.gather import Ranking
 from camgeo.sweep.search.plan import Axis, Plan, steps
 from kin.numeric.records import dataclass, replace
@@ -106,9 +106,8 @@ class Ask:
     @property
     def _estimated(self) -> tuple[str, ...]:
         """The figures that can be estimated, and those that must be."""
-        from camgeo.sweep.screen.screen import FIGURES as KNOWN
-
-        return tuple(name for name in self.all_figures if name in KNOWN or name in self._asked)
+        known = estimated(self.recipe)
+        return tuple(name for name in self.all_figures if name in known or name in self._asked)
 
     @property
     def paths(self) -> tuple[str, ...]:

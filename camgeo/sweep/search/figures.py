@@ -84,6 +84,13 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 
 
+def estimated(recipe: Recipe) -> tuple[str, ...]:
+    """Names of those of a cam without a linkage that can be estimated."""
+    from camgeo.sweep.screen.screen import FIGURES as KNOWN
+
+    return tuple(name for name in asked_of(recipe) if name in KNOWN)
+
+
 class _Motion(Protocol):
     """Samples of m mechanisms, (m, n) each, as `Loop` has them."""
 
@@ -134,7 +141,8 @@ class Evaluator:
         """
         sweep = recipe.sweep
         limits = sweep.limits if sweep else ()
-        wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
+        wanted = figures or (estimated(recipe) if screened and recipe.linkage is None else asked_of(recipe))
+        wanted = tuple(dict.fromkeys((*wanted, *(limit.figure for limit in limits))))
         count = samples or (sweep.angles if sweep else _SAMPLES)
         worded = rebuilt.words_of(recipe)
         recipe.text_with({path: 1.0 for path in paths if path not in worded})  # raises where no number stands
