@@ -386,7 +386,6 @@ WHERE_ONE_IS_ALL = {
     "camgeo/api/design.py": 2,  # `import camgeo` gives the contour of a cam that has one, and refuses others
     "camgeo/assembly/build.py": 1,  # printed sets, dynamics and rests are of one disc and its first surface
     "camgeo/measures/dynamics.py": 5,
-    "camgeo/output/mechanism.py": 1,
     "camgeo/report/page/curves.py": 1,
     "camgeo/report/page/content.py": 1,  # where the zero of the motion is marked
     "camgeo/machining/compensation.py": 1,  # a chamfer runs along one
@@ -397,6 +396,8 @@ WHERE_ONE_IS_ALL = {
     "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
     "camgeo/sweep/study/margins.py": 1,
     "camgeo/sweep/search/cams.py": 1,  # support functions
+    "camgeo/camshaft/lobes.py": 1,  # a lobe is a cam of one surface; others are refused
+    "camgeo/camshaft/pipeline.py": 1,
 }
 """How often a file takes one surface for all; it goes down as forms of files are taught more."""
 

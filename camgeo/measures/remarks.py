@@ -57,6 +57,7 @@ RemarkName = Literal[
     "metric-keyway",
     "no-motion",
     "pivot-clearance",
+    "no-play",
     "pressure-angle",
     "shaft-outside",
     "sharp-corner",
@@ -94,6 +95,7 @@ def remarks_of(
         *_motion(recipe, design),
         _law_error(recipe, design),
         _implied(recipe, design, checks, files),
+        _stuck(recipe, design, files),
         _acceleration(recipe, design.exact.joints),
         *_output(recipe, design),
         _shaft(recipe, design),
@@ -241,6 +243,25 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
         return None
     told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
     return Remark("pivot-clearance", found.value, 0.0, "mm", told, found.at_deg)
+
+
+def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remark | None:
+    """A roller that files within a coarse tolerance leave no play in its groove, though the recipe gives it some."""
+    first, *others = design.follower.contacts
+    clearance = max((other.touch.radius - first.touch.radius for other in others), default=0.0)
+    left = [(closure, file) for file in files for closure in file.closures]
+    if not (clearance > 0.0 and left and design.follower.arrangement.contacts == 1):
+        return None
+    closure, file = min(left, key=lambda pair: pair[0].play.least)
+    play = closure.play
+    if play.least > 0.0:
+        return None
+    least = _length(recipe, play.least) if play.unit == "mm" else f"{play.least:.3g} deg"
+    told = (
+        f"{file.path.name} leaves the roller {least} between {closure.pushes} and {closure.stops}: it sticks there; "
+        f"a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
+    )
+    return Remark("no-play", play.least, 0.0, play.unit, told, play.least_at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:

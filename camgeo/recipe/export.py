@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.track import is_ring
-from camgeo.schema.errors import shown
+from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
@@ -28,6 +29,12 @@ FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", 
 
 
 KINDS: tuple[FileKind, ...] = get_args(FileKind)
+
+
+As: TypeAlias = Literal[
+    "arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace", "events", "timing"
+]
+"""Forms of files, by their key `as`."""
 
 
 NO_CONTOUR = frozenset({"csv", "html", "glb"})
@@ -59,18 +66,18 @@ class FileRequest:
 
     `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
-    mechanism. `units` is the file's own unit, None for the kind's (`told_in`).
+    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `overlays` are what a page shows
+    besides.
     """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace"] | None = (
-        None
-    )
+    as_: As | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
     parts: Literal["cam", "all"] = "cam"
     units: Length | None = None
+    overlays: tuple[str, ...] = ()
 
     def told_in(self, units: Length) -> Length:
         """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
@@ -118,6 +125,11 @@ class Export:
     tolerance: float
     files: tuple[FileRequest, ...]
 
+    @property
+    def overlays(self) -> tuple[str, ...]:
+        """What pages show over the mechanism, each once."""
+        return tuple(dict.fromkeys(name for request in self.files for name in request.overlays))
+
 
 _TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
 
@@ -131,6 +143,57 @@ def _units(default: str) -> Field:
 
 
 _OF_RECIPE, _OF_SOLID = _units("the recipe's"), _units("mm")
+
+
+OVERLAYS = {
+    "instant-centres": "plate",
+    "chord-polygon": "swings",
+    "isoptic": "swings",
+    "pedal": "swings",
+    "evolute": "",
+}
+"""What a page can show over a mechanism, and what of its cam's offers that needs; a linkage leaves the evolute."""
+
+
+def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
+    """Read the names of overlays, those that the cam's family has, each once."""
+    linked = bool(reader.kinds["linkage"])
+    there = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    names: list[str] = []
+    for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
+        word = item.text if isinstance(item, Scalar) else ""
+        if word in names:
+            reader.fault(item.mark, join(path, i), "the same overlay twice", shown(word), "leave one out")
+        elif word in there:
+            names.append(word)
+        elif word in OVERLAYS:
+            of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
+            remedy = f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", shown(word), remedy)
+        else:
+            remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), "no overlay", described(item), remedy)
+    return tuple(names)
+
+
+_OVERLAYS = Field(
+    "overlays",
+    Kind.OWN,
+    "constructions shown over the mechanism, which turn with it, as far as its family has them",
+    default="none",
+    form=Form(
+        "a list of overlays",
+        f"a list of {either(tuple(OVERLAYS), 'and')}",
+        _read_overlays,
+        lambda _: {
+            "type": "array",
+            "items": {"enum": list(OVERLAYS)},
+            "minItems": 1,
+            "maxItems": len(OVERLAYS),
+            "uniqueItems": True,
+        },
+    ),
+)
 
 
 FILES: dict[str, Table] = {
@@ -198,13 +261,15 @@ FILES: dict[str, Table] = {
             _OF_RECIPE,
         )
     ),
-    "html": Table(()),
+    "html": Table((_OVERLAYS,)),
     "gcode": Table((_OF_RECIPE, _TOLERANCE)),
 }
 
 
-def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
-    """Read the list of files; each with its `kind`. A faulty one is left out."""
+def read_files(
+    tables: collections.abc.Mapping[str, Table], reader: Reader, field: Field, node: Node, path: str
+) -> list[Values]:
+    """Read the list of files of these formats; each with its `kind`. A faulty one is left out."""
     found = []
     for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
@@ -213,20 +278,16 @@ def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Valu
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
             reader.fault(item.mark, below, "not a file", described(item), remedy)
             continue
-        if kind.text not in FILES:
-            _refuse_format(reader, kind, below)
+        if kind.text not in tables:
+            reader.fault(kind.mark, below, "unknown file format", shown(kind.text), f"give {either(tuple(tables))}")
         elif options is None:
             found.append({"kind": kind.text, "path": below})
         else:
-            table = Field("", Kind.TABLE, "", table=FILES[kind.text])
+            table = Field("", Kind.TABLE, "", table=tables[kind.text])
             values = reader.field(table, options, join(below, kind.text))
             if values is not None:
                 found.append({"kind": kind.text, "path": below, **values})
     return found
-
-
-def _refuse_format(reader: Reader, kind: Scalar, path: str) -> None:
-    reader.fault(kind.mark, path, "unknown file format", shown(kind.text), f"give {either(tuple(FILES))}")
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:
@@ -239,31 +300,37 @@ def _format(node: Node) -> tuple[Scalar | None, Node | None]:
     return None, None
 
 
-def _files_schema(_: Field) -> Schema:
-    formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in FILES.items()]
-    items = {"anyOf": [{"enum": list(FILES)}, *(table_schema(Table((item,))) for item in formats)]}
+def _files_schema(tables: collections.abc.Mapping[str, Table], _: Field) -> Schema:
+    formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in tables.items()]
+    items = {"anyOf": [{"enum": list(tables)}, *(table_schema(Table((item,))) for item in formats)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
 
 
-EXPORT = mapping(
-    "export",
-    "the files",
-    length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
-    Field(
-        "files",
-        Kind.OWN,
-        "dxf, svg, stl, 3mf, step, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
-        default="[dxf]",
-        form=Form(
-            "a list of files",
-            "a list of files such as [dxf, stl]",
-            read_files,
-            _files_schema,
-            tables=FILES,
-            group="the file",
+def export_of(tables: collections.abc.Mapping[str, Table], example: str, default: str) -> Field:
+    """Make the field of the files that are written, in these formats."""
+    form = Form(
+        "a list of files",
+        "a list of files such as [dxf, stl]" if "dxf" in tables else f"a list of files such as {default}",
+        partial(read_files, tables),
+        partial(_files_schema, tables),
+        tables=tables,
+        group="the file",
+    )
+    return mapping(
+        "export",
+        "the files",
+        length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
+        Field(
+            "files",
+            Kind.OWN,
+            f"{', '.join(tables)}, or mappings such as {example}",
+            default=default,
+            form=form,
         ),
-    ),
-)
+    )
+
+
+EXPORT = export_of(FILES, "{dxf: {as: spline}}", "[dxf]")
 
 
 def check_files(values: Values, reader: Reader) -> None:
@@ -332,6 +399,7 @@ def _request(kind: FileKind, file: Values) -> FileRequest:
         build_compensation(file),
         chosen.get("parts", "cam"),
         chosen.get("units"),
+        chosen.get("overlays", ()),
     )
 
 

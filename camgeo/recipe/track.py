@@ -73,19 +73,11 @@ def _check_groove(values: Values, reader: Reader) -> None:
             if name in file:
                 remedy = "leave it out; cam.track.groove.clearance is the play of the roller"
                 reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
-        if file.get("parts") == "all":
-            reader.fault_at(path, "the bodies round a groove are not made", None, "leave `parts: all` out")
-        elif kind in DEEP | {"gcode"} and "depth" not in groove:
+        if kind in DEEP | {"gcode"} and "depth" not in groove:
             reader.fault_at(path, f"{kind} needs the depth of the groove", None, f"give {depth}, or leave {kind} out")
         elif kind in DEEP and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"
             reader.fault_at(path, f"{kind} of a groove needs its blank", None, remedy)
-        elif kind in DEEP - {"step"} and (
-            "hub" in part or part.get("mark", {"as": "cut"}).get("as", "engrave") == "engrave"
-        ):
-            what = "hub" if "hub" in part else "mark"
-            remedy = f"leave {kind} out, or part.{what}"
-            reader.fault_at(path, f"{kind} of a groove is made without a hub or an engraved mark", None, remedy)
 
 
 def _check_cutter(values: Values, clearance: float, reader: Reader) -> None:
