@@ -121,7 +121,8 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     bounded = (limit.figure for limit in recipe.limits if limit.at_most is not None)
     if not {PRESSURE.name, ON_RISE, ON_RETURN}.isdisjoint(bounded):
         return None
-    made = next((check for check in design.checks if check.name == PRESSURE.name), None)
+    angles = [check for check in design.checks if check.name == PRESSURE.name and check.value is not None]
+    made = max(angles, key=lambda check: check.value or 0.0, default=None)
     kind = "oscillating" if recipe.cam.arrangement.unit == "deg" else "translating"
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
@@ -141,6 +142,8 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
             return None
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
+    if made.surface and not of:
+        of = f" on {made.surface}"
     told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
     found = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
     if found is not None:
@@ -182,18 +185,19 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     bent = [(made.bent.value, made) for made in round_about if made.bent.value is not None]
     if not design.contours or not bent:
         return None
-    radius, sharpest = min(bent, key=lambda row: row[0])
-    roller = recipe.cam.touch.radius
+    radius, sharpest = min(bent, key=lambda row: HALF * row[0] - row[1].surface.radius)
+    roller, surface = sharpest.surface.radius, sharpest.surface.name
     if not HALF * radius < roller:
         return None
-    size = design.exact.rounder_pitch(radius, recipe.mm)
+    size = design.exact.rounder_pitch(surface, recipe.mm)
     if recipe.cam.sizes:
-        size = recipe.cam.advice.rounder(radius / recipe.mm, roller / recipe.mm, recipe.units)
+        size = recipe.cam.advice.on(surface).rounder(radius / recipe.mm, roller / recipe.mm, recipe.units)
     if not size:
         return None
+    where = f" on {surface}" if sharpest.surface.disc else ""
     told = (
-        f"the roller's radius, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's least "
-        f"convex radius; up to half is the rule, which {size} keeps"
+        f"the roller's radius{where}, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's "
+        f"least convex radius; up to half is the rule, which {size} keeps"
     )
     return Remark("large-roller", roller, HALF * radius, "mm", told, sharpest.bent.at_deg)
 

@@ -35,10 +35,10 @@ def faults(text):
 
 def test_a_groove_is_read():
     cam = recipe(GROOVE).cam
-    assert (cam.kind, cam.side, cam.groove) == ("disc", 1, Groove(0.03, 6.0))
-    assert recipe(GROOVE.replace("clearance: 0.03, depth: 6", "")).cam.groove == Groove()
+    assert (cam.kind, cam.side, cam.holding) == ("disc", 1, Groove(0.03, 6.0))
+    assert recipe(GROOVE.replace("clearance: 0.03, depth: 6", "")).cam.holding == Groove()
     inches = GROOVE.replace("clearance: 0.03, depth: 6", "clearance: 0.001 in")
-    assert recipe(inches).cam.groove.clearance == pytest.approx(0.0254)
+    assert recipe(inches).cam.holding.clearance == pytest.approx(0.0254)
 
 
 HUB = "hub: {diameter: 20, height: 5"
