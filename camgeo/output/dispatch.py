@@ -87,6 +87,8 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("csv", "motion"): 2,
     ("csv", "contacts"): 2,
     ("csv", "polar"): 1,
+    ("csv", "grinding"): 1,
+    ("csv", "lift"): 1,
     ("csv", "inspection"): 2,
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""

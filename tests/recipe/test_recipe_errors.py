@@ -75,7 +75,7 @@ tolerance: 4
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
             "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, "
-            "or under the file dxf, svg, stl, 3mf, step, glb or gcode"
+            "or under the file dxf, svg, stl, 3mf, step, glb, csv or gcode"
         ),
     ]
 
@@ -236,7 +236,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "part: {x: 1}\n", f"2:8: part.x: unknown key; the keys here are {PART}"),
         (
             SUPPORT + "export: {files: [{html: {x: 1}}]}\n",
-            "2:26: export.files[0].html.x: unknown key; there are no keys here",
+            "2:26: export.files[0].html.x: unknown key; the keys here are overlays",
         ),
         (
             FLAT_PAIR,
@@ -762,7 +762,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             [
                 (
                     "29: export.files[0].csv.as: not one of the choices, given 'arcs'; "
-                    "give motion, contacts, polar, inspection or trace"
+                    "give motion, contacts, polar, inspection, grinding, lift or trace"
                 )
             ],
         ),
