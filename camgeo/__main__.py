@@ -9,7 +9,6 @@ and again over what the imports make, ezdxf's above all.
 
 from __future__ import annotations
 
-import atexit
 import gc
 import os
 import signal
@@ -36,7 +35,6 @@ class _Interrupts:
     def __init__(self) -> None:
         self.first: float | None = None
         self.quiet = False  # at the end, where there is nothing left to interrupt
-        self.status: int | None = None  # of the process, once it is known
         self._again = False  # the first was swallowed
 
     def listen(self) -> None:
@@ -71,22 +69,21 @@ class _Interrupts:
 def main() -> NoReturn:
     """Run the command of the process's arguments and leave with its exit status; 130 for any interrupt."""
     interrupts = _Interrupts()
-    atexit.register(_leave, interrupts)  # before any library registers what is to be done at the end, and so behind it
     gc.set_threshold(_COLLECT_AFTER)
     if not any(name in os.environ for name in _THREADS):
         os.environ.update(dict.fromkeys(_THREADS, "1"))  # worker processes inherit it
     try:
         interrupts.listen()
-        interrupts.status = _status()
+        status = _status()
         interrupts.quiet = True
     except (KeyboardInterrupt, Exception) as end:
         # a compiled library that is being imported turns an interrupt into an error of its own
         if interrupts.first is None and not isinstance(end, KeyboardInterrupt):
             raise
         interrupts.quiet = True
-        interrupts.status = 130
+        status = 130
         _say("camgeo: interrupted\n")
-    sys.exit(interrupts.status)
+    _leave(interrupts, status)
 
 
 def _status() -> int:
@@ -98,11 +95,11 @@ def _status() -> int:
         return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
 
 
-def _leave(interrupts: _Interrupts) -> None:
-    """Leave at once when all else is done: what the interpreter then takes down is open to interrupts, and slow."""
-    status = interrupts.status
-    if status is None:  # an error of ours goes its way
-        return
+def _leave(interrupts: _Interrupts, status: int) -> NoReturn:
+    """Leave at once, as the interpreter's own way out is open to interrupts, and reports them as tracebacks."""
+    import atexit
+
+    atexit._run_exitfuncs()  # noqa: SLF001 - what libraries leave to the end; there is no public way to it
     try:
         sys.stdout.flush()
     except (OSError, ValueError):
