@@ -67,6 +67,16 @@ def _inspection(job: Job, request: FileRequest) -> Columns:
     return inspection_table(job.recipe.told_for(request), job.design)
 
 
-_TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
-_STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
+def _forces(job: Job, request: FileRequest) -> Columns:  # noqa: ARG001 - forces have their own units
+    from camgeo.measures.force_figures import forces_table
+    from camgeo.measures.running_forces import running_of
+
+    running = running_of(job.recipe, job.design)
+    if running is None:
+        raise ValueError(f"{job.recipe.name}: there are no forces")
+    return forces_table(running, job.recipe.verify.angles)
+
+
+_TABLES = {"forces": _forces, "motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
+_STAGES = {"forces": "forces", "motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
 _GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be reported

@@ -190,7 +190,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "which table it is",
                 default="motion",
-                choices=("motion", "contacts", "polar", "inspection"),
+                choices=("motion", "contacts", "polar", "inspection", "forces"),
             ),
             _OF_RECIPE,
         )
@@ -286,6 +286,11 @@ def check_files(values: Values, reader: Reader) -> None:
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
         if request.kind == "gcode":
             check_milling(path, reader)
+        if (request.kind, request.as_) == ("csv", "forces"):
+            train = values.get("dynamics", {})
+            if not train or "linkage" in reader.marks or "stiffness" in train:
+                remedy = "give dynamics without stiffness and no linkage, or leave this out"
+                reader.fault_at(path, "a table of forces needs a train whose forces are found", None, remedy)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
             reader.fault_at(f"{path}.step.as", "the chamfer of a spline is not a spline", f"'{request.as_}'", remedy)

@@ -30,7 +30,10 @@ def check_preload(values: Values, reader: Reader) -> None:
         path = "dynamics.backlash"
         remedy = "leave cam.preload out, or dynamics"
         reader.fault_at(path, "clearance beside an interference", None, remedy)
-    elif "preload" in dynamics:
+    if "stiffness" in dynamics:
+        remedy = "leave it out; cam.preload.stiffness has that of the contacts"
+        reader.fault_at("dynamics.stiffness", "an elastic train beside preloaded contacts", None, remedy)
+    if "preload" in dynamics:
         remedy = "leave cam.preload out, or dynamics"
         reader.fault_at("dynamics.preload", "a spring beside a second contact that is preloaded", None, remedy)
     listed = values.get("export", {}).get("files", [])

@@ -48,6 +48,7 @@ class Findings:
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
     preload: dict[str, Any] | None = None
+    forces: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     contours: Mapping[str, Measures] = field(default_factory=dict)
@@ -82,6 +83,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         **linkage,
         **dynamics,
         **preload,
+        **({} if found.forces is None else {"forces": found.forces}),
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }
