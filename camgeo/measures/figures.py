@@ -29,7 +29,6 @@ from camgeo.recipe.figures import (
     ECCENTRICITY,
     FACE_WIDTH,
     FIGURES,
-    GUIDE_FORCE,
     HOLLOW_RADIUS,
     INERTIA,
     JAM_MARGIN,
@@ -69,7 +68,7 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
-_OF_FORCES = {"forces", "material", "bearing"}
+_OF_FORCES = {"forces", "material", "reaction", "bearing"}
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
@@ -108,7 +107,7 @@ def of_design(
         found |= _of_linkage(design.driven, wanted)
     elif motion:
         found |= _of_motion(design, max(_ORDERS[name] for name in motion))
-    if any(FIGURES[name].needs in _OF_FORCES or name == GUIDE_FORCE for name in wanted):
+    if any(FIGURES[name].needs in _OF_FORCES for name in wanted):
         from camgeo.measures.force_figures import figures_of
 
         found |= figures_of(recipe, design)

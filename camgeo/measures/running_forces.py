@@ -16,7 +16,6 @@ import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.recipe.dynamics import MATERIALS
-from kin.law.contacts import Roller
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
 LIFE = 10.0 / 3.0  # exponent of the rating life of needle and roller bearings (ISO 281)
@@ -56,10 +56,15 @@ class Running:
         return FollowerTurn(self.design)
 
     @cached_property
+    def sides(self) -> tuple[Side, ...]:
+        """On which side of its contour the metal lies that each contact touches."""
+        sides = {surface.name: surface.side for surface in self.design.exact.surfaces}
+        return tuple(sides[one.surface] for one in self.design.follower.contacts)
+
+    @cached_property
     def senses(self) -> tuple[int, ...]:
         """Which way each contact pushes the follower: with its sense, from metal inside its contour."""
-        sides = {surface.name: surface.side for surface in self.design.exact.surfaces}
-        return tuple(one.sense * sides[one.surface] for one in self.design.follower.contacts)
+        return tuple(side * one.sense for side, one in zip(self.sides, self.design.follower.contacts, strict=True))
 
     @property
     def speed(self) -> float:
@@ -150,8 +155,7 @@ class Running:
 
     def torque(self, state: State) -> Array:
         """Torque that the shaft gives, N m (n,), above 0 where it drives."""
-        sides = [sense * one.sense for sense, one in zip(self.senses, self.design.follower.contacts, strict=True)]
-        shaft = np.array([side * line.shaft for side, line in zip(sides, state.lines, strict=True)])
+        shaft = np.array([side * line.shaft for side, line in zip(self.sides, state.lines, strict=True)])
         torque: Array = PER_MM * np.sum(state.normal * shaft, axis=0)
         return torque
 
@@ -160,13 +164,8 @@ class Running:
         guide = self.train.guide
         if guide is None:
             return None
-        sides = [
-            sense * one.sense * normal * line.normal[:, 1]
-            for sense, one, normal, line in zip(
-                self.senses, self.design.follower.contacts, state.normal, state.lines, strict=True
-            )
-        ]
-        side = np.sum(sides, axis=0)
+        each = zip(self.sides, state.normal, state.lines, strict=True)
+        side = np.sum([side * normal * line.normal[:, 1] for side, normal, line in each], axis=0)
         ahead = self._overhang(state.rows)
         forces: Array = np.array([side * (ahead + guide.length), side * ahead]) / guide.length
         return forces
@@ -180,22 +179,21 @@ class Running:
         compliance = sum((1.0 - nu**2) / modulus for modulus, nu in bodies)
         found = []
         follower = self.design.follower
-        for normal, line, sense, one in zip(state.normal, state.lines, self.senses, follower.contacts, strict=True):
-            side, radius = sense * one.sense, follower.running(one).radius
+        for normal, line, side, one in zip(state.normal, state.lines, self.sides, follower.contacts, strict=True):
+            radius = follower.running(one).radius
             curvature = side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0)
             found.append(np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance)))
         return np.array(found)
 
     def roller_speeds(self, state: State) -> Array | None:
         """Speed of the roller about its pin as each contact turns it, turns a minute (m, n); None of other touches."""
-        follower = self.design.follower
-        found = []
-        for line, sense, one in zip(state.lines, self.senses, follower.contacts, strict=True):
-            touch = follower.running(one)
-            if not isinstance(touch, Roller):
-                return None
-            found.append(self.train.rpm * (sense * one.sense * line.speed / touch.radius - line.turn))
-        return np.array(found)
+        from kin.follower.contact_lines import roller_turns
+
+        follower, sides = self.design.follower, self.sides
+        each = zip(state.lines, sides, follower.contacts, strict=True)
+        found = [roller_turns(line, follower.running(one), side) for line, side, one in each]
+        turns = [one for one in found if one is not None]
+        return self.train.rpm * np.array(turns) if len(turns) == len(found) else None
 
     @cached_property
     def changes(self) -> Array:

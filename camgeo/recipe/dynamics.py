@@ -38,8 +38,8 @@ class Dynamics:
     """
 
     mass: float
+    stiffness: float | None
     rpm: float
-    stiffness: float | None = None
     damping: float = 0.0
     preload: float | None = None
     rate: float = 0.0
@@ -174,7 +174,8 @@ def _check_spring(train: Values, reader: Reader) -> None:
     """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
     given = [name for name in ("preload", "backlash", "least_force") if f"dynamics.{name}" in reader.marks]
     for name in given[1:]:
-        remedy = "give exactly one of preload, backlash or least_force"
+        either = "preload or backlash" if "least_force" not in given else "preload, backlash or least_force"
+        remedy = f"give exactly one of {either}"
         reader.fault_at(f"dynamics.{name}", f"cannot be combined with {given[0]}", None, remedy)
     if "dynamics" not in reader.marks or not train:
         return
@@ -198,4 +199,4 @@ def _check_spring(train: Values, reader: Reader) -> None:
 def build_train(train: Values) -> Dynamics:
     """Make the train of values in which there is no fault."""
     guide = train.get("guide")
-    return Dynamics(**{**train, "guide": None if guide is None else StemGuide(**guide)})
+    return Dynamics(**{"stiffness": None, **train, "guide": None if guide is None else StemGuide(**guide)})

@@ -57,6 +57,7 @@ Own: TypeAlias = Literal[
     "forces",
     "material",
     "bearing",
+    "reaction",
 ]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
@@ -85,6 +86,7 @@ NEEDS: dict[Needs, str] = {
     "stiff": "cam.preload.stiffness",
     "forces": "dynamics without stiffness",
     "material": "dynamics.material, and no stiffness",
+    "reaction": "dynamics.guide, and no stiffness",
     "bearing": "a roller that a cam turns, and dynamics without stiffness",
     "density": "part.density, and in a sweep no linkage",
 }
@@ -234,7 +236,7 @@ FIGURES: dict[str, Figure] = {
     FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.NUMBER, "least", "forces"),
     TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.NUMBER, "least", "forces"),
     PRESSURE: Figure("greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material"),
-    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.NUMBER, "least", "guide"),
+    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.NUMBER, "least", "reaction"),
     MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.NUMBER, "least", "bearing"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
@@ -346,6 +348,8 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "dynamics" in given and given.isdisjoint({"linkage", "dynamics.stiffness"})
         case "material":
             return "dynamics.material" in given and there("forces", offers, given)
+        case "reaction":
+            return "dynamics.guide" in given and there("forces", offers, given)
         case "bearing":
             return "rolling" in offers and there("forces", offers, given)
         case "follower":

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.contacts import Flat, Oscillating
+from kin.law.contacts import Flat, Oscillating, Roller
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Contact, Guide, Touch
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.numeric.arrays import Array
 
 
@@ -52,6 +52,14 @@ def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine
     if isinstance(contact.touch, Flat):
         return _of_face(contact.guide, contact.touch, own)
     return _of_centre(contact.guide, own)
+
+
+def roller_turns(line: ContactLine, touch: Touch, side: Side) -> Array | None:
+    """Turns of a roller about its pin per turn of the shaft (n,), the metal inside (1) or outside; None of others."""
+    if not isinstance(touch, Roller):
+        return None
+    turns: Array = side * line.speed / touch.radius - line.turn
+    return turns
 
 
 def _of_centre(guide: Guide, own: Array) -> ContactLine:
