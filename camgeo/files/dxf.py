@@ -76,7 +76,15 @@ class Trace:
     outline: Outline
 
 
-Reference = Circle | Point | Trace
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of the reference through points (n, 2), mm, such as that of a moving point; it may cross itself."""
+
+    name: str
+    points: Array
+
+
+Reference = Circle | Point | Trace | Line
 
 
 def write_dxf(
@@ -153,6 +161,8 @@ def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float
         elif isinstance(item, Point):
             x, y = item.at[0] / mm, item.at[1] / mm
             entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
+        elif isinstance(item, Line):
+            entity, box = _draw_path(space, item.points / mm)
         else:
             entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
         entity.set_xdata(APPLICATION, [(1000, _comment(label)) for label in names])
@@ -217,6 +227,17 @@ def _draw_outline(space: Modelspace, outline: Outline, mm: float, layer: str) ->
     return entity, box
 
 
+def _draw_path(space: Modelspace, points: Array) -> tuple[DXFGraphic, Box]:
+    """Add an open line for reference, in drawing units; returns the entity and its extremes."""
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    attributes = {"layer": _REFERENCE}
+    if space.dxfversion == VERSIONS["R12"]:
+        return space.add_polyline2d(points.tolist(), dxfattribs=attributes), (x0, y0, x1, y1)
+    entity = space.add_lwpolyline([], dxfattribs=attributes)
+    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 3))))
+    return entity, (x0, y0, x1, y1)
+
+
 def _draw_spline(space: Modelspace, spline: BSpline | RationalSpline, mm: float, layer: str) -> DXFGraphic:
     if space.dxfversion == VERSIONS["R12"]:
         raise ValueError("DXF R12 has no splines; export arcs or a polyline, or a later version")
@@ -264,7 +285,7 @@ def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]
         elif isinstance(item, Point):
             key = item.at
         else:
-            key = id(item.outline)
+            key = id(item.points) if isinstance(item, Line) else id(item.outline)
         found.setdefault(key, (item, []))[1].append(item.name)
     return list(found.values())
 

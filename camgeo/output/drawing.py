@@ -72,7 +72,7 @@ def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Pa
         path,
         [*outlines, *tool],
         remarks=remarks,
-        reference=_reference(job),
+        reference=_reference(job, job.tolerance(request)),
         mm=recipe.mm,
         version=request.version or "R2010",
         name=recipe.name,
@@ -80,9 +80,9 @@ def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Pa
     )
 
 
-def _reference(job: Job) -> list[Reference]:
-    """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
-    from camgeo.files.dxf import Circle, Point, Trace
+def _reference(job: Job, tolerance: float) -> list[Reference]:
+    """Centre, base or prime circle, the pitch curve, and paths of points of links: to look at, not to cut."""
+    from camgeo.files.dxf import Circle, Line, Point, Trace
     from camgeo.fit.arcs import fit_arcs
     from camgeo.synthesis.part.walls import Looks, distance_inside
 
@@ -102,4 +102,8 @@ def _reference(job: Job) -> list[Reference]:
             if surface.radius:
                 pitch = fit_arcs(surface.base, COARSE)
                 found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+    if recipe.linkage is not None and recipe.linkage.traces:
+        from camgeo.synthesis.traces import trace_lines
+
+        found += [Line(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
     return found

@@ -8,9 +8,14 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
 
+def is_pair(values: Values) -> bool:
+    """Whether the values of a recipe are of conjugate discs."""
+    return "conjugate" in values.get("cam", {})
+
+
 def check_discs(values: Values, reader: Reader) -> None:
     """Note what does not go with conjugate discs."""
-    if "conjugate" not in values.get("cam", {}):
+    if not is_pair(values):
         return
     part = values.get("part", {})
     for name in ("hub", "set_screw"):

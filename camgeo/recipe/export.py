@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
+from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.track import is_ring
 from camgeo.schema.errors import shown
@@ -62,7 +63,9 @@ class FileRequest:
     """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection"] | None = None
+    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace"] | None = (
+        None
+    )
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
@@ -190,7 +193,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "which table it is",
                 default="motion",
-                choices=("motion", "contacts", "polar", "inspection", "forces"),
+                choices=("motion", "contacts", "polar", "inspection", "trace", "forces"),
             ),
             _OF_RECIPE,
         )
@@ -268,7 +271,7 @@ def check_files(values: Values, reader: Reader) -> None:
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
-    ring = is_ring(values)
+    round_what = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
     if any(request.kind == "gcode" for request in listed):
         check_slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
@@ -279,11 +282,14 @@ def check_files(values: Values, reader: Reader) -> None:
         if request.parts == "all" and request.compensation is not None:
             remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
             reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
-        if request.parts == "all" and ring:
-            reader.fault_at(path, "the bodies round a ring are not made", None, "leave `parts: all` out")
+        if request.parts == "all" and round_what:
+            reader.fault_at(path, f"the bodies round {round_what} are not made", None, "leave `parts: all` out")
         elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
+        if request.as_ == "trace" and "linkage.trace" not in reader.marks:
+            remedy = "give points such as linkage.trace: [{on: coupler, point: [40, 10]}]"
+            reader.fault_at(f"{path}.csv.as", "needs linkage.trace", "'trace'", remedy)
         if request.kind == "gcode":
             check_milling(path, reader)
         if (request.kind, request.as_) == ("csv", "forces"):

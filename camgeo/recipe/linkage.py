@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
-from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
-from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, either, length
+from camgeo.schema.json_schema import one_of_schema, table_schema
 from camgeo.schema.readers import form_of_kinds
-from camgeo.schema.yaml_source import join
+from camgeo.schema.yaml_source import Scalar, described, join
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -21,15 +22,32 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 
+MOST_TRACES = 20
 Part = TypeVar("Part", bound="kin.linkage.four_bar.Linkage | kin.linkage.dyad.Dyad")
 
 
+class TracedPoint(NamedTuple):
+    """A point (x, y), mm, in the axes of a link: coupler, output, or the output link of `dyads[k]`."""
+
+    on: str
+    point: tuple[float, float]
+
+    def name(self, mm: float) -> str:
+        """What it is called, in units of `mm` mm."""
+        x, y = (f"{value / mm:.6g}" for value in self.point)
+        return f"path of {self.on} [{x}, {y}]"
+
+
 class Linkage(NamedTuple):
-    """The links of a recipe: the kind, the loop that the frame drives, and the dyads hung on it, the output's last."""
+    """The links of a recipe: the kind, the loop that the frame drives, and the dyads hung on it, the output's last.
+
+    `traces` are points whose paths are shown.
+    """
 
     kind: str
     loop: kin.linkage.four_bar.Linkage
     dyads: tuple[kin.linkage.dyad.Dyad, ...] = ()
+    traces: tuple[TracedPoint, ...] = ()
 
     def shaped(self, cam: Cam) -> Cam:
         """The cam, told of the links that shape it where a recipe gives the swing of the frame."""
@@ -171,6 +189,60 @@ _LIST = Form(
 _DYADS = Field("dyads", Kind.OWN, "further links; the last dyad's output is the linkage's", default="none", form=_LIST)
 
 
+_LINK = re.compile(r"coupler|output|dyads\[[0-9]+\]")
+
+
+def _read_link(reader: Reader, field: Field, node: Node, path: str) -> str | None:
+    """Read the name of a moving link."""
+    if isinstance(node, Scalar) and _LINK.fullmatch(node.text):
+        return node.text
+    reader.fault(node.mark, path, "no moving link", described(node), reader.wanted(field))
+    return None
+
+
+def read_traces(reader: Reader, field: Field, node: Node, path: str) -> list[TracedPoint] | None:
+    """Read the list of points to be traced, or None where one is faulty."""
+    item = Field("", Kind.TABLE, "", table=_TRACE)
+    values = [
+        reader.field(item, each, join(path, i)) for i, each in enumerate(reader.items(field, node, path, MOST_TRACES))
+    ]
+    if any(value is None or len(value) < len(_TRACE.fields) for value in values):
+        return None
+    return [TracedPoint(value["on"], value["point"]) for value in values]
+
+
+_TRACE = Table(
+    (
+        Field(
+            "on",
+            Kind.OWN,
+            "the link that carries the point; dyads[k], from 0, is the output link of a dyad",
+            required=True,
+            form=Form(
+                "a link",
+                "coupler, output or dyads[k]",
+                _read_link,
+                lambda _: {"type": "string", "pattern": f"^({_LINK.pattern})$"},
+            ),
+        ),
+        Field("point", Kind.POINT, "the point [x, y] in the axes of that link", required=True),
+    )
+)
+_TRACES = Field(
+    "trace",
+    Kind.OWN,
+    "points of moving links whose paths are shown: on the page, in DXF for reference, in tables",
+    default="none",
+    table=_TRACE,
+    form=Form(
+        "a list of points",
+        "a list of points such as [{on: coupler, point: [40, 10]}]",
+        read_traces,
+        lambda _: {"type": "array", "items": table_schema(_TRACE), "minItems": 1, "maxItems": MOST_TRACES},
+    ),
+)
+
+
 _GROUND = length("ground", "distance r1 of the fixed pivot from the shaft, along +x", required=True)
 
 
@@ -193,6 +265,7 @@ LINKAGES: dict[str, Table] = {
             _JOINT_OFFSET,
             _ASSEMBLY,
             _DYADS,
+            _TRACES,
         )
     ),
     "inverted-slider-crank": Table(
@@ -209,6 +282,7 @@ LINKAGES: dict[str, Table] = {
             replace(_JOINT_OFFSET, about=_JOINT_OFFSET.about.replace("the joint", "the slide's line")),
             _ASSEMBLY,
             _DYADS,
+            _TRACES,
         )
     ),
     "slider-crank": Table(
@@ -218,6 +292,7 @@ LINKAGES: dict[str, Table] = {
             _JOINT_OFFSET,
             _ASSEMBLY,
             _DYADS,
+            _TRACES,
         )
     ),
 }
@@ -270,6 +345,11 @@ def check_linkage(values: Values, reader: Reader) -> None:
                 remedy = "a frame needs constant breadth: odd harmonics alone"
                 reader.fault_at(f"cam.fourier.{part}", "an even harmonic under a linkage", str(j), remedy)
     dyads: list[Values] = values.get("linkage", {}).get("dyads", [])
+    traces: list[TracedPoint] = values.get("linkage", {}).get("trace", [])
+    there = ("coupler", "output", *(f"dyads[{k}]" for k in range(len(dyads))))
+    for i, trace in enumerate(traces):
+        if trace.on not in there:
+            reader.fault_at(f"linkage.trace[{i}].on", "there is no such link", f"'{trace.on}'", f"give {either(there)}")
     if dyads and dyads[0].get("on") == "previous":
         remedy = "give output or coupler"
         reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
@@ -282,9 +362,10 @@ def build_linkage(linkage: Values) -> Linkage:
 
     loops = {"four-bar": FourBar, "inverted-slider-crank": InvertedSliderCrank, "slider-crank": SliderCrank}
     dyads = {"rrr": RRR, "rrp": RRP, "rpr": RPR}
-    kind, first = linkage["kind"], {key: value for key, value in linkage.items() if key != "dyads"}
+    kind, first = linkage["kind"], {key: value for key, value in linkage.items() if key not in {"dyads", "trace"}}
     hung = ({"on": "output", **dyad} for dyad in linkage.get("dyads", []))
-    return Linkage(kind, _of_kind(loops, first), tuple(_of_kind(dyads, dyad) for dyad in hung))
+    traces = tuple(linkage.get("trace", ()))
+    return Linkage(kind, _of_kind(loops, first), tuple(_of_kind(dyads, dyad) for dyad in hung), traces)
 
 
 def _of_kind(classes: Mapping[str, Callable[..., Part]], values: Values) -> Part:

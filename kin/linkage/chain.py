@@ -95,9 +95,13 @@ class Chain:
     def carrier(self, k: int) -> Carrier:
         """Return the link on which dyad k hangs."""
         on = self.dyads[k].on
+        return self.output(k) if on == "previous" else self.carrier_of(on)
+
+    def carrier_of(self, on: str) -> Carrier:
+        """Return the link of a name: the linkage's `coupler` and `output`, and the output link of `dyads[0]`, ..."""
         if on == "coupler":
             return Carrier(self.linkage.joined, lambda solved: solved.linkage.coupler)
-        return self.output(0 if on == "output" else k)
+        return self.output(0 if on == "output" else 1 + int(on.removeprefix("dyads[").removesuffix("]")))
 
     def hung(self, solved: Solved, k: int) -> Place:
         """Return the point on which dyad k hangs, mm, from what is solved before it."""

@@ -195,8 +195,34 @@ def test_a_body_of_a_3mf_out_of_its_place_is_caught(fine, tmp_path, turned, leve
     assert failures(report) >= {("pair.3mf", "disc 2", name) for name in caught}
     assert not any(surface == "disc 1" for _, surface, _ in failures(report))
     (check,) = [check for check in report.checks if check.name == "thickness" and check.surface == "disc 2"]
-    assert check.ok == (level == 14.0)
-    assert check.ok or check.value == pytest.approx(2e-4, abs=1e-9)
+    told = f"a horizontal face at z = {level - 14:.9g} mm, where none is expected"
+    assert (told in check.detail) == (level != 14.0)
+
+
+def saved_as_assembly(shape, path, raised):
+    """The solids as the kernel saves an assembly: each a part in its place, those above the first farther up."""
+    from OCP.BRep import BRep_Builder
+    from OCP.gp import gp_Trsf, gp_Vec
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS_Compound, TopoDS_Iterator
+
+    up, builder, whole = gp_Trsf(), BRep_Builder(), TopoDS_Compound()
+    up.SetTranslation(gp_Vec(0.0, 0.0, raised))
+    builder.MakeCompound(whole)
+    parts = TopoDS_Iterator(shape)
+    for place in (TopLoc_Location(), TopLoc_Location(up)):
+        builder.Add(whole, parts.Value().Located(place))
+        parts.Next()
+    writer, before = STEPControl_Writer(), Interface_Static.IVal_s("write.step.assembly")
+    try:
+        Interface_Static.SetIVal_s("write.step.assembly", 1)
+        writer.Transfer(whole, STEPControl_StepModelType.STEPControl_AsIs)
+        writer.Write(str(path))
+    finally:
+        Interface_Static.SetIVal_s("write.step.assembly", before)
+    return path
 
 
 @pytest.mark.slow
@@ -214,7 +240,8 @@ def test_a_step_file_holds_two_solids_at_their_gap(tmp_path):
     reader = STEPControl_Reader()
     reader.ReadFile(str(report.path / "pair.step"))
     reader.TransferRoots()
-    explorer, spans = TopExp_Explorer(reader.OneShape(), TopAbs_SOLID), []
+    shape = reader.OneShape()
+    explorer, spans = TopExp_Explorer(shape, TopAbs_SOLID), []
     while explorer.More():
         box = Bnd_Box()
         BRepBndLib.AddOptimal_s(explorer.Current(), box, False)
@@ -222,6 +249,9 @@ def test_a_step_file_holds_two_solids_at_their_gap(tmp_path):
         spans.append((low, high))
         explorer.Next()
     assert np.array(sorted(spans)) == pytest.approx(np.array([(0.0, 12.0), (14.0, 26.0)]), abs=1e-6)
+    for raised, caught in ((0.0, set()), (0.002, {("saved.step", "disc 2", "thickness")})):
+        saved = saved_as_assembly(shape, tmp_path / "saved.step", raised)
+        assert failures(camgeo.verify(recipe, saved)) == caught
     wide = STL_AND_STEP.replace("gap: 2", "gap: 2.002")
     other = camgeo.export(written(tmp_path, wide, "wide"), tmp_path)
     found = failures(camgeo.verify(recipe, other.path / "wide.step"))
@@ -230,6 +260,11 @@ def test_a_step_file_holds_two_solids_at_their_gap(tmp_path):
 
 
 # --- what is taught ---------------------------------------------------------------------------------------------------
+
+
+def test_the_bodies_round_a_pair_are_refused():
+    with pytest.raises(camgeo.RecipeErrors, match=r"export.files\[2\]: the bodies round conjugate discs are not made"):
+        read(RECIPE.replace("glb", "{stl: {parts: all}}").encode(), Path("pair.yaml"))
 
 
 def test_forms_that_hold_no_pair_refuse_by_name():

@@ -775,7 +775,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             [
                 (
                     "29: export.files[0].csv.as: not one of the choices, given 'arcs'; "
-                    "give motion, contacts, polar, inspection or forces"
+                    "give motion, contacts, polar, inspection, trace or forces"
                 )
             ],
         ),

@@ -149,11 +149,13 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     if design.driven is not None and design.driven.turns:
-        from camgeo.report.page.linked import Driven, linked
+        from camgeo.report.page.linked import Driven, linked, traced
 
         driven = Driven.of(design.driven.mechanism)
         discs = _discs(design, drawn, bore, size, driven.cam)
         bodies = linked(driven, size)
+        if recipe.linkage is not None:
+            bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
         return (
             Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),

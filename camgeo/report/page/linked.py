@@ -12,15 +12,16 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.followers import SHAFT, contact
-from camgeo.report.page.scene import Body, Label, Shape, arrow, block, pin, pivot, poses, still
+from camgeo.report.page.scene import OVERLAYS, Body, Label, Shape, arrow, block, pin, pivot, poses, still
 from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from camgeo.recipe.linkage import TracedPoint
     from kin.linkage.chain import Solved
     from kin.linkage.links import Joint, Link
     from kin.linkage.mechanism import Mechanism
@@ -263,6 +264,20 @@ MAKERS: dict[type, Callable[..., Layers]] = {
     RRP: _rrp,
     RPR: _rpr,
 }
+
+
+def traced(driven: Driven, traces: Sequence[TracedPoint], mm: float, size: float) -> list[Body]:
+    """Return the paths of points of moving links over the turn, and the points."""
+    found = []
+    for trace in traces:
+        x, y = map(value, driven.mechanism.chain.carrier_of(trace.on).pose(driven.solved).point(*trace.point))
+        path = Shape("trace", (Ring.through(np.column_stack([x, y]), closed=False),), trace.name(mm))
+        dot = Shape("trace dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
+        found += [
+            Body(trace.name(mm), OVERLAYS, (path,), still()),
+            Body(f"point of {trace.name(mm).removeprefix('path of ')}", OVERLAYS, (dot,), poses(x, y, 0.0)),
+        ]
+    return found
 
 
 def _contacts(driven: Driven, size: float) -> list[Body]:

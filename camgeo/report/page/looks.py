@@ -34,6 +34,8 @@ LOOKS = {
     "foot": Look("fixed", "ink", 1.2),
     "hatch": Look("", "quiet", 1.2),
     "pin": Look("pin", "ink", 1.2),
+    "trace": Look("", "output-edge", 1.4),
+    "trace dot": Look("output-edge", "ground", 0.8),
     "force": Look("", "contact", 1.8),
     "force tip": Look("contact", ""),
     "force dot": Look("contact", ""),

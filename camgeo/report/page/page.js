@@ -481,10 +481,10 @@
 
   find("play").addEventListener("click", turned);
   find("slider").addEventListener("input", (event) => held(Number(event.target.value)));
-  for (const kind of ["contacts", "forces"]) {
+  for (const kind of ["contacts", "forces", "overlays"]) {
     find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked));
   }
-  find("forces-label").hidden = !drawing.querySelector(".forces");
+  for (const kind of ["forces", "overlays"]) find(`${kind}-label`).hidden = !drawing.querySelector(`.${kind}`);
   const contours = [...drawing.querySelectorAll(".cam .metal")];
   const named = (path) => path.querySelector("title").textContent;
   const names = [...new Set(contours.map(named))]; // each disc has a contour by each name

@@ -41,8 +41,11 @@ SAME = 1e-12  # of directions, and of places in mm
 DEEPEST = 16  # of assemblies within assemblies
 
 
-def space_of(file: Exchange, solid: int) -> Space:
-    """Units, accuracy and place of the representation that holds a solid; raises ReadError for what is not read."""
+def space_of(file: Exchange, solid: int, *, alone: bool = True) -> Space:
+    """Units, accuracy and place of the representation that holds a solid, which may be `alone` in the file.
+
+    Raises ReadError for what is not read.
+    """
     for kind in UNREAD:
         for number in file.of(kind):
             raise file.error(number, "is not read; export the part alone, with nothing put together")
@@ -65,7 +68,7 @@ def space_of(file: Exchange, solid: int) -> Space:
             if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
                 accuracy = max(accuracy, file.number(size, measure) * length)
     drawn = Space(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
-    place = _Places(drawn).of(holder)
+    place = _Places(drawn).of(holder, alone=alone)
     return drawn if _still(place) else drawn._replace(place=place)
 
 
@@ -89,8 +92,8 @@ class _Places:
             else:
                 self.plain.append((number, one, other))
 
-    def of(self, holder: int) -> Frame | None:
-        """Where the solid of a representation stands in the outermost assembly."""
+    def of(self, holder: int, *, alone: bool) -> Frame | None:
+        """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids."""
         file = self.file
         same = self._alike(holder)
         for one in same - {holder}:
@@ -106,6 +109,8 @@ class _Places:
         used: set[int] = set()
         while len(used) < len(self.moved):
             seat = [number for number, (child, _) in self.moved.items() if child in same and number not in used]
+            if not seat and not alone:
+                break  # the others place other solids
             if len(seat) != 1 or len(used) == DEEPEST:
                 number = seat[0] if seat else next(one for one in self.moved if one not in used)
                 raise file.error(number, "puts more than the one part in place; export the part alone")

@@ -151,7 +151,7 @@ class _Body:
         if len(solids) > count:
             boxes = [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]]
             raise beside(boxes, len(solids), file.path, expected=count)
-        return [_Body._one(file, solid) for solid in solids]
+        return [_Body._one(file, solid, alone=count == 1) for solid in solids]
 
     @staticmethod
     def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
@@ -161,11 +161,11 @@ class _Body:
         return None
 
     @staticmethod
-    def _one(file: Exchange, solid: int) -> _Body:
+    def _one(file: Exchange, solid: int, *, alone: bool = True) -> _Body:
         kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
         shell = file.reference(file.values(solid, kind, 2)[1], solid)
         file.kind(shell, ("CLOSED_SHELL",), solid)
-        space = space_of(file, solid)
+        space = space_of(file, solid, alone=alone)
         edges: dict[int, Edge] = {}
         listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
         faces = [face_of(space, file.reference(one, shell), edges) for one in listed]
