@@ -773,10 +773,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         (
             "[{csv: {as: arcs}}]",
             [
-                (
-                    "29: export.files[0].csv.as: not one of the choices, given 'arcs'; "
-                    "give motion, contacts, polar, inspection, trace or forces"
-                )
+                "29: export.files[0].csv.as: not one of the choices, given 'arcs'; did you mean forces?",
             ],
         ),
         (
