@@ -222,6 +222,20 @@ def test_report_table_and_figures(tmp_path):
     assert float(written[100][1]) == pytest.approx(rows[99, 1], rel=1e-9)
 
 
+@pytest.mark.parametrize(("text", "contacts"), [(GROOVE, ("inner", "outer")), (DISCS, ("disc_1", "disc_2"))])
+def test_the_table_of_two_surfaces(text, contacts, tmp_path):
+    """One table has both contacts; one of them bears at a time."""
+    more = "dynamics: {mass: 1.2, rpm: 900}\nexport: {files: [{csv: {as: forces}}]}\nverify: {angles: 360}\n"
+    outcome = export(read((text + more).encode(), Path("two.yaml")), tmp_path)
+    assert outcome.ok
+    with next(tmp_path.rglob("*.csv")).open(newline="") as file:
+        head, *rows = list(csv.reader(file))
+    first, second = (head.index(f"{name}_N") for name in contacts)
+    assert all(min(float(row[first]), float(row[second])) == 0.0 for row in rows)
+    assert any(float(row[first]) > 0.0 for row in rows)
+    assert any(float(row[second]) > 0.0 for row in rows)
+
+
 def test_contact_that_a_weak_spring_loses():
     recipe = read((LOBE + "dynamics: {mass: 1.2, rate: 8000, rpm: 900, preload: 100}\n").encode(), Path("lobe.yaml"))
     from camgeo.measures.force_figures import found_forces
