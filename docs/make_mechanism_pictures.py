@@ -20,6 +20,7 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 ROOT = Path(__file__).parents[1]
 INK = "#26323f"
 NAMES = ("print-yoke", "print-double-roller", "print-four-bar", "print-roller", "print-arm", "print-constant-diameter")
+NAMES += ("print-groove",)
 COLOURS = {
     "cam": "#d08a3c",
     "shaft": "#5b6b7f",

@@ -386,7 +386,6 @@ WHERE_ONE_IS_ALL = {
     "camgeo/api/design.py": 2,  # `import camgeo` gives the contour of a cam that has one, and refuses others
     "camgeo/assembly/build.py": 1,  # printed sets, dynamics and rests are of one disc and its first surface
     "camgeo/measures/dynamics.py": 5,
-    "camgeo/output/mechanism.py": 1,
     "camgeo/report/page/curves.py": 1,
     "camgeo/report/page/content.py": 1,  # where the zero of the motion is marked
     "camgeo/machining/compensation.py": 1,  # a chamfer runs along one

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
-    """Make the bodies round a cam's contour, as drawn for a shaft that turns clockwise.
+def assembly_of(recipe: Recipe, design: Design, *contours: ArcSpline) -> Assembly:
+    """Make the bodies round a cam's contours, one for each surface, as drawn for a shaft that turns clockwise.
 
     Raises BodyError where one of them cannot be made.
     """
@@ -31,13 +31,13 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
     if disc.body is None:
         raise ValueError(f"{recipe.name}: there is no part to be made")
     part = recipe.part
-    reach = _reach_of(contour)
+    reach = max(map(_reach_of, contours)) if part.outer is None else 0.5 * part.outer
     arrangement, view = design.follower.arrangement, view_of(recipe, design)
     rolling = arrangement.touch is Roller
     field = "" if not rolling else "cam.follower.radius" if arrangement.contacts == 1 else "cam.roller_radius"
     radius = view.touch.radius if rolling else None
     s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, radius, field)
-    drive = Drive(disk_of(part, disc.body, contour), reach, shaft_of(part, s), s)
+    drive = Drive(disk_of(part, disc.body, contours), reach, shaft_of(part, s), s)
     if design.driven is not None:
         from camgeo.assembly.linked import linked
 

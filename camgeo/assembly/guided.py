@@ -1,8 +1,9 @@
 """Disc cams: a roller, a shoe or a flat face on a stem or an arm, and the frame of two opposite rollers.
 
 Stem, arm and frame lie between base and cam, rollers and shoes stand up into the plane of the cam; a flat face lies
-in that plane with all that leads it. The axes of what leads have their x along the travel of a stem, and from the
-pivot to the roller's centre on an arm, whose travel is `side` times y.
+in that plane with all that leads it. Into a groove, which opens upward, the roller hangs from above. The axes of what
+leads have their x along the travel of a stem, and from the pivot to the roller's centre on an arm, whose travel is
+`side` times y.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import Assembly, Member
+from camgeo.assembly.assembly import Assembly, Fit, Member
 from camgeo.assembly.body import Plate
 from camgeo.assembly.guide import guide_length
 from camgeo.assembly.poses import lifted, swung
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     """A point of the carrier, the direction of travel there, the carrier's name and place: what stands there."""
 
 STEM = "stem"
+KEPT = "the floor of the groove keeps the roller on its pin, which has no retainer"
 SPRING = "gravity or a spring holds the follower on the cam: it touches it from one side"
 
 
@@ -86,6 +88,7 @@ def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
     place = lifted(view.design.motion, view.datum, line)
     x = view.datum + view.travel(SHAFT)[0]
     foot = stood(view)((0.0, 0.0), 0.0, (STEM, place), drive)
+    running = roller_fits([foot], drive, clipped=len(foot.members) > 1) if foot.members else []
     first = max(float(x.max()) + _beyond(foot), drive.reach) + s.space
     end = first + guide_length(s) + s.space - float(x.min())
     stem = Plate(bar((foot.at[0], 0.0), (end, 0.0), s.bar), (), z.low, z.high)
@@ -96,11 +99,22 @@ def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
         (z.low, z.high),
         z.cam_low,
         drive,
-        fits=roller_fits([foot], drive) if foot.members else (),
+        fits=(*_groove_fits(view), *running),
         touching=frozenset({frozenset({"cam", foot.touches})}),
-        remarks=(SPRING,),
+        remarks=_held(view),
         line=line,
     )
+
+
+def _held(view: View[Guide, Round]) -> tuple[str, ...]:
+    """What holds the follower on the cam, where no body shows it."""
+    return (SPRING,) if len(view.contacts) == 1 else (KEPT,)
+
+
+def _groove_fits(view: View[Guide, Round]) -> list[Fit]:
+    """That of a roller between two flanks, whose gauges differ by it."""
+    first, *others = view.contacts
+    return [Fit("roller in the groove", other.touch.radius - first.touch.radius) for other in others]
 
 
 def _beyond(*feet: Foot) -> float:
@@ -115,7 +129,7 @@ def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
     _clear(lever.pivot, drive)
     place = swung(view.design.motion, lever.pivot, view.datum, lever.side)
     foot = stand((lever.arm, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
-    return arm(place, lever.pivot, [foot], drive, (SPRING,))
+    return arm(place, lever.pivot, [foot], drive, _held(view), fits=_groove_fits(view))
 
 
 def _clear(pivot: float, drive: Drive) -> None:

@@ -16,7 +16,7 @@ from camgeo.assembly.body import Plate
 from camgeo.assembly.poses import Turning, swinging
 from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
 from camgeo.assembly.shapes import bar, box, disc, eye, moved, pin, retainer
-from camgeo.assembly.sizes import THIN, BodyError
+from camgeo.assembly.sizes import LINE, THIN, BodyError, thick
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -36,21 +36,33 @@ SIDES = ((-1.0, "a"), (1.0, "b"))
 
 @dataclass(frozen=True)
 class Levels:
-    """Heights of what carries the rollers under the cam, from `low` to `high`, and of the cam's disc above it."""
+    """Heights of what carries the rollers, from `low` to `high`, of the cam's disc, and of what runs on the cam."""
 
     low: float
     high: float
     cam_low: float
     cam_high: float
+    touch_low: float
+    touch_high: float
 
     @staticmethod
     def of(drive: Drive) -> Levels:
-        """Put the carrier over the base, and the cam over both."""
+        """Put the carrier over the base, and the cam over both; over a cam with a groove, which opens upward.
+
+        Raises BodyError for a groove too shallow for a roller.
+        """
         s, disk = drive.sizes, drive.disk
+        if disk.pocket is not None:
+            thick("cam.track.groove.depth", disk.pocket, s.gap + LINE)
+            cam_low = s.plate + s.gap - disk.bottom
+            cam_high = cam_low + disk.thickness
+            floor, low = cam_high - disk.pocket, cam_high + s.gap
+            return Levels(low, low + s.link, cam_low, cam_high, floor + s.gap, cam_high)
         low = s.plate + s.gap
         high = low + s.link
         cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)
-        return Levels(low, high, cam_low, cam_low + disk.thickness)
+        cam_high = cam_low + disk.thickness
+        return Levels(low, high, cam_low, cam_high, cam_low, cam_high)
 
 
 @dataclass(frozen=True)
@@ -78,16 +90,16 @@ def rolling(
     """Return a roller on its pin; `carrier` is the name and the place of what that stands on.
 
     `names` are its own, and that of its retainer.
-    The roller has its nominal radius and touches the cam.
+    The roller has its nominal radius and touches the cam. In a groove it hangs under the carrier, kept by the floor.
     """
     s, z = drive.sizes, Levels.of(drive)
     (group, place), (name, held) = carrier, names
-    wheel = Plate(disc(radius, *centre), (eye(s, *centre),), z.cam_low, z.cam_high)
-    members = (
-        Member(name, (wheel,), name, place, ROLLER_COLOUR),
-        Member(f"retainer-{held}", retainer(s, centre, z.cam_high), group, place, CLIP_COLOUR),
-    )
-    return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, members)
+    wheel = Plate(disc(radius, *centre), (eye(s, *centre),), z.touch_low, z.touch_high)
+    wheeled = Member(name, (wheel,), name, place, ROLLER_COLOUR)
+    if drive.disk.pocket is not None:
+        return Foot(centre, (Plate(disc(0.5 * s.pin, *centre), (), z.touch_low, z.low),), name, (wheeled,))
+    clip = Member(f"retainer-{held}", retainer(s, centre, z.cam_high), group, place, CLIP_COLOUR)
+    return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, (wheeled, clip))
 
 
 def double_roller(view: View[Oscillating, Roller], drive: Drive) -> Assembly:
@@ -108,8 +120,19 @@ def covered(away: float, drive: Drive) -> float:
     return drive.reach - (away - max(0.5 * s.bar, s.boss) - s.space)
 
 
-def arm(place: Place, away: float, feet: Sequence[Foot], drive: Drive, remarks: tuple[str, ...] = ()) -> Assembly:
-    """Return the mechanism of an arm with its feet, about a pivot `away` from the shaft; places are the arm's."""
+def arm(
+    place: Place,
+    away: float,
+    feet: Sequence[Foot],
+    drive: Drive,
+    remarks: tuple[str, ...] = (),
+    *,
+    fits: Sequence[Fit] = (),
+) -> Assembly:
+    """Return the mechanism of an arm with its feet, about a pivot `away` from the shaft; places are the arm's.
+
+    `fits` are those of the feet on the cam.
+    """
     s, z, pivot = drive.sizes, Levels.of(drive), (away, 0.0)
     plates = [Plate(bar((0.0, 0.0), foot.at, s.bar), (eye(s),), z.low, z.high) for foot in feet]
     plates += [plate for foot in feet for plate in foot.plates]
@@ -121,18 +144,18 @@ def arm(place: Place, away: float, feet: Sequence[Foot], drive: Drive, remarks: 
     stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
     ground = base((*stand, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
     members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *loose, ground, *held)
-    fits = (*shaft_fits(drive), Fit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
+    every = (*fits, *shaft_fits(drive), Fit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
     touching = frozenset(frozenset({"cam", foot.touches}) for foot in feet)
     if under:
         remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer", *remarks)
-    return Assembly((*turned(drive, z.cam_low, Turning(), members), *members), fits, s, touching, remarks)
+    return Assembly((*turned(drive, z.cam_low, Turning(), members), *members), every, s, touching, remarks)
 
 
-def roller_fits(feet: Sequence[Foot], drive: Drive) -> list[Fit]:
-    """Fits of rollers, where feet are rollers, and of retainers."""
+def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> list[Fit]:
+    """Fits of rollers, where feet are rollers, and of retainers, where any are `clipped`."""
     s = drive.sizes
     running = [Fit("rollers on their pins", s.clearance)] if any(foot.members for foot in feet) else []
-    return [*running, Fit("retainers on pins", s.press, pressed=True)]
+    return [*running, Fit("retainers on pins", s.press, pressed=True)] if clipped else running
 
 
 def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:

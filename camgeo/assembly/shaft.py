@@ -38,38 +38,59 @@ CAM_COLOUR, SHAFT_COLOUR, CLIP_COLOUR, GROUND_COLOUR = "#d08a3c", "#5b6b7f", "#3
 
 @dataclass(frozen=True, eq=False)
 class Disk:
-    """The cam as plates that stand on z = 0 of its disc; `bottom` and `top` are those of its hubs, `hub` the radius."""
+    """The cam as plates that stand on z = 0 of its disc; `bottom` and `top` are those of its hubs, `hub` the radius.
+
+    `pocket` is the depth of its groove from the top face, None without one.
+    """
 
     plates: tuple[Plate, ...]
     thickness: float
     bottom: float
     top: float
     hub: float = 0.0
+    pocket: float | None = None
 
     def raised(self, z: float) -> tuple[Plate, ...]:
         """Return the plates with the lower face of the disc at z."""
         return tuple(Plate(p.outline, p.holes, p.low + z, p.high + z) for p in self.plates)
 
 
-def disk_of(part: Part, body: Body, contour: ArcSpline | Polygon) -> Disk:
+def disk_of(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) -> Disk:
     """Make plates of a cam: disc and hubs with what goes right through them.
 
-    A chamfer, a set screw and an engraved mark are left out: the plates are the metal they are cut from.
+    Of a groove there are two contours, the inner one first. A chamfer, a set screw and an engraved mark are left out:
+    the plates are the metal they are cut from.
     """
     if part.thickness is None or part.bore is None:
         raise ValueError("a cam for a mechanism needs thickness and bore")
     thick("part.thickness", part.thickness)
     through = tuple(opening for opening in body.openings if opening.depth is None)
-    plates = [Plate(contour, tuple(opening.outline for opening in through), 0.0, part.thickness)]
+    holes = tuple(opening.outline for opening in through)
+    plates = [Plate(contours[0], holes, 0.0, part.thickness)]
+    if body.pocket is not None and body.rim is not None:
+        blank, floor, (inner, outer) = body.rim.outline, part.thickness - body.pocket, contours
+        island = tuple(opening.outline for opening in through if opening.island)
+        beyond = tuple(opening.outline for opening in through if not opening.island)
+        plates = [
+            Plate(blank, holes, 0.0, floor),
+            Plate(inner, island, floor, part.thickness),
+            Plate(blank, (_arcs(outer), *beyond), floor, part.thickness),
+        ]
     if part.hub is None:
-        return Disk(tuple(plates), part.thickness, 0.0, part.thickness)
+        return Disk(tuple(plates), part.thickness, 0.0, part.thickness, pocket=body.pocket)
     radius = 0.5 * part.hub.diameter
     inside = tuple(opening.outline for opening in through if math.hypot(*opening.middle) < radius)
     if body.bottom < 0.0:
         plates.append(Plate(disc(radius), inside, body.bottom, 0.0))
     if body.top > part.thickness:
         plates.append(Plate(disc(radius), inside, part.thickness, body.top))
-    return Disk(tuple(plates), part.thickness, body.bottom, body.top, radius)
+    return Disk(tuple(plates), part.thickness, body.bottom, body.top, radius, body.pocket)
+
+
+def _arcs(outline: ArcSpline | Polygon) -> ArcSpline:
+    if not isinstance(outline, ArcSpline):
+        raise TypeError("an opening is made of arcs and lines")
+    return outline
 
 
 @dataclass(frozen=True, eq=False)

@@ -115,18 +115,18 @@ def sizes_of(
     return sizes
 
 
-def runs(clearance: float, field: str, off: float) -> None:
-    """Refuse a clearance that files within `off` mm of what is meant would eat up; `field` asks for that.
+def runs(clearance: float, field: str, off: float, own: str = "mechanism.clearance") -> None:
+    """Refuse a clearance, `own` in the recipe, that files within `off` mm would eat up; `field` asks for that.
 
     Facets of a hole and of its pin may each be `off` nearer to the other, which stands half the clearance away.
     Raises BodyError.
     """
     if clearance < LEAST_CLEARANCE:
         message, remedy = "{clearance} is finer than bodies are made", "give at least {least}"
-        raise BodyError("mechanism.clearance", message, remedy, clearance=clearance, least=LEAST_CLEARANCE)
+        raise BodyError(own, message, remedy, clearance=clearance, least=LEAST_CLEARANCE)
     if 2.0 * off >= 0.5 * clearance:
         message = "two facing bodies, each within {off}, may come {both} nearer, and stand {play} apart"
-        remedy = "give a tolerance below {most}, or a mechanism.clearance above {such}"
+        remedy = f"give a tolerance below {{most}}, or a {own} above {{such}}"
         lengths = {"off": off, "both": 2.0 * off, "play": 0.5 * clearance}
         raise BodyError(field, message, remedy, **lengths, most=0.25 * clearance, such=4.0 * off)
 

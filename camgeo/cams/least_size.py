@@ -314,15 +314,20 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
     )
 
 
-def least_prime(shape: Callable[[float], Shape], radius: float, start: float) -> float:
+def least_prime(
+    shape: Callable[[float], Shape], radius: float, start: float, bend: Callable[[Curve], float] | None = None
+) -> float:
     """Prime circle from `start` on, mm, at which the pitch curve's least convex radius comes up to `radius`.
 
-    `shape` makes the pitch curve of a prime circle. What lies just below the size found is too sharp.
+    `shape` makes the pitch curve of a prime circle, `bend` measures another radius of it. What lies just below the
+    size found is too sharp.
     """
 
     def short(prime: Array) -> Array:
-        found = [least_radius(Curve.whole(shape(float(p))))[0] - radius for p in prime]
-        return np.array(found)
+        curves = [Curve.whole(shape(float(p))) for p in prime]
+        # a stretch that is no longer hollow has no radius
+        found = [least_radius(curve)[0] if bend is None else min(bend(curve), 2.0 * radius) for curve in curves]
+        return np.array(found) - radius
 
     low = np.array([start])
     if short(low)[0] >= 0.0:

@@ -18,7 +18,7 @@ from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import ExactCam
+    from camgeo.cams.family import ExactCam, Surface
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
@@ -146,8 +146,6 @@ def _shown(size: float) -> str:
 
 def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
     """The figures that are at their limits, and at which shaft angle, degrees."""
-    from camgeo.curve.curvature import least_radius
-
     limits, surface, bounds = cam.sizing, exact.surfaces[0], {}
     slope = surface.extremes("slope")
     if limits.angles is not None and slope is not None:
@@ -159,10 +157,26 @@ def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
             if math.atan(reached) > limit - _NEAR:
                 bounds[name] = degrees(at)
     if limits.radius is not None:
-        radius, at = least_radius(surface.base)
-        if radius - cam.touch.radius < limits.radius * (1.0 + _NEAR):
-            bounds["radius-of-curvature"] = exact.motion.shaft_deg(at)
+        for surface in _beside(exact):
+            radius, at = _bend(surface)
+            if radius < limits.radius * (1.0 + _NEAR):
+                bounds["radius-of-curvature"] = exact.motion.shaft_deg(at)
     return bounds
+
+
+def _beside(exact: ExactCam) -> list[Surface]:
+    """Surfaces beside the path that is sized: the one, or both flanks of a groove."""
+    first = exact.surfaces[0]
+    return [surface for surface in exact.surfaces if surface.base is first.base]
+
+
+def _bend(surface: Surface) -> tuple[float, float]:
+    """Least radius of a surface's convex metal, mm, and its parameter: where it lies round, of hollows."""
+    from camgeo.curve.backwards import least_hollow
+    from camgeo.curve.curvature import least_radius
+
+    radius, at = least_radius(surface.base) if surface.side > 0 else least_hollow(surface.base)
+    return radius - surface.radius, at
 
 
 def sized(cam: SizedDiscCam) -> SizedDiscCam:
@@ -194,7 +208,7 @@ def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
     stem = moving_frame.Translating(0.0, limits.place or 0.0)
     if limits.angles is not None:
         stem = least_stem(motion, *limits.angles, limits.place)
-    stem = _rounder(cam, motion, stem, settled=limits.place is not None)
+    stem = _opened(cam, motion, _rounder(cam, motion, stem, settled=limits.place is not None))
     return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
@@ -214,7 +228,7 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
     else:
         arm = moving_frame.Oscillating(pivot, length, 0.0, side)
-    arm = _rounder(cam, motion, arm, settled=False)
+    arm = _opened(cam, motion, _rounder(cam, motion, arm, settled=False))
     return replace(cam, guide=Oscillating(float(arm.pivot), side, length), base_radius=_base(cam, arm.prime))
 
 
@@ -242,15 +256,14 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 def _demand_kept(cam: SizedDiscCam) -> None:
     """Raise IntentError where a size that was found does not keep its limits, by the exact figures."""
-    from camgeo.curve.curvature import least_radius
     from camgeo.curve.extremes import greatest, least
     from camgeo.curve.moving_frame import CentreShape
     from camgeo.curve.rates import stretches
     from kin.law.programme import IntentError
 
     limits = cam.sizing
-    surface, *_ = cam.exact().surfaces
-    shape = surface.base.shape
+    exact = cam.exact()
+    shape = exact.surfaces[0].base.shape
     if limits.angles is not None and isinstance(shape, CentreShape):
         over = stretches(shape.law)
         up, down = greatest(shape.slope, over).value, -least(shape.slope, over).value
@@ -262,9 +275,9 @@ def _demand_kept(cam: SizedDiscCam) -> None:
                     f"{name}, more than {most:.6g}; give a base radius, or a smaller radius of curvature",
                     "sizing",
                 )
-    if limits.radius is not None:
-        found = least_radius(surface.base)[0] - cam.touch.radius
-        if found < limits.radius * (1.0 - SLACK):
+    for surface in _beside(exact) if limits.radius is not None else ():
+        found, _ = _bend(surface)
+        if limits.radius is not None and found < limits.radius * (1.0 - SLACK):
             raise IntentError(f"the size found has a radius of curvature of {found:.9g} mm", "sizing")
 
 
@@ -291,6 +304,24 @@ def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled
     elif not settled:
         return least_round(motion, guide, limits.angles, radius, start)
     return guide.resized(least_prime(lambda size: CentreShape(motion, guide.resized(size)), radius, start))
+
+
+def _opened(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) -> _GuideT:
+    """Guide of the least prime circle from that of a guide on at which the outer flank keeps the radius too.
+
+    Its metal is convex where the path is hollow.
+    """
+    from camgeo.cams.least_size import least_prime
+    from camgeo.curve.backwards import least_hollow
+    from camgeo.curve.moving_frame import CentreShape
+
+    if cam.groove is None or cam.sizing.radius is None:
+        return guide
+    radius = cam.sizing.radius + cam.touch.radius + cam.groove.clearance
+    prime = least_prime(
+        lambda size: CentreShape(motion, guide.resized(size)), radius, guide.prime, lambda curve: least_hollow(curve)[0]
+    )
+    return guide if prime == guide.prime else guide.resized(prime)
 
 
 def _base(cam: DiscCam, prime: float) -> float:

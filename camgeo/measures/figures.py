@@ -176,16 +176,20 @@ def _size(_: Recipe, design: Design) -> Measured:
     return _greatest(starmap(reach, design.contours))
 
 
-def _pivot_clearance(_: Recipe, design: Design) -> Measured:
-    """Of the circle on which the pivot runs round the standing cam; in a ring from within."""
+def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
+    """Of the circle on which the pivot runs round the standing cam: in a ring from within, round a groove's blank."""
     from camgeo.curve.measures import farthest, nearest
 
+    pivot = design.follower.pivot
+    within = all(surface.side < 0 for surface, _ in design.contours)
+
     def beside(surface: Surface, contour: Curve) -> Measured:
-        end = farthest(contour) if surface.side > 0 else nearest(contour)
-        value = surface.side * (design.follower.pivot - end.value) - end.slack
+        end = nearest(contour) if within else farthest(contour)
+        value = (end.value - pivot if within else pivot - end.value) - end.slack
         return Measured(value, "mm", design.motion.shaft_deg(end.at), surface=surface.name)
 
-    return _least(starmap(beside, design.contours))
+    least = _least(starmap(beside, design.contours))
+    return least if within or recipe.part.outer is None else Measured(pivot - 0.5 * recipe.part.outer, "mm")
 
 
 def _extremes(surface: Surface, name: str) -> tuple[Extreme, Extreme]:

@@ -53,6 +53,10 @@ def foresee_mechanism(job: Job, request: FileRequest) -> None:
     with _told(recipe):
         runs(clearance, job.tolerance_field(request), off)
         drives(recipe.part, clearance, off)
+        first, *others = job.design.follower.contacts
+        for other in others if job.body.pocket is not None else ():
+            play = other.touch.radius - first.touch.radius
+            runs(play, job.tolerance_field(request), off, "cam.track.groove.clearance")
 
 
 @contextmanager
@@ -66,10 +70,9 @@ def _told(recipe: Recipe) -> Iterator[None]:
 
 
 def _assembled(job: Job, request: FileRequest) -> Assembly:
-    """Build the bodies round the contour as arcs within the file's tolerance."""
+    """Build the bodies round the contours as arcs within the file's tolerance."""
     with job.refusals(request), job.clock.stage("bodies"):
-        contour = job.fits[0].within("arcs", job.tolerance(request))
-        if not isinstance(contour, ArcSpline):
-            raise TypeError("bodies stand round a contour of arcs")
+        fitted = [fit.within("arcs", job.tolerance(request)) for fit in job.fits]
+        contours = [contour for contour in fitted if isinstance(contour, ArcSpline)]
         with _told(job.recipe):
-            return assembly_of(job.recipe, job.design, contour)
+            return assembly_of(job.recipe, job.design, *contours)

@@ -118,6 +118,18 @@ _STARTERS = {
         {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
         unfit=(*OF_A_DISC, "mechanism"),
     ),
+    "disc-groove": _Starter(
+        "A disc with a groove that pushes a roller on a stem out and back.",
+        "disc",
+        {
+            "base_radius": "36",
+            "track": {"groove": {"clearance": "0.03", "depth": "6"}},
+            "follower": {"kind": "roller", "radius": "9"},
+            "motion": _DWELLS.format("20"),
+        },
+        {"part": {"thickness": "12", "bore": "16", "outer": "160"}},
+        unfit=("undercut", "chamfer", "dynamics"),
+    ),
     "constant-diameter": _Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",
         "constant-diameter",

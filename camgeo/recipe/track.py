@@ -74,9 +74,7 @@ def _check_groove(values: Values, reader: Reader) -> None:
             if name in file:
                 remedy = "leave it out; cam.track.groove.clearance is the play of the roller"
                 reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
-        if file.get("parts") == "all":
-            reader.fault_at(path, "the bodies round a groove are not made", None, "leave `parts: all` out")
-        elif kind in DEEP | {"gcode"} and "depth" not in groove:
+        if kind in DEEP | {"gcode"} and "depth" not in groove:
             reader.fault_at(path, f"{kind} needs the depth of the groove", None, f"give {depth}, or leave {kind} out")
         elif kind in DEEP and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"

@@ -71,9 +71,6 @@ REFUSED = {
         "bore: 10", "bore: 10, mark: {as: engrave, width: 2, length: 5, depth: 1}", "export.files[1]",
         "stl of a groove is made without a hub or an engraved mark",
     ),
-    "all": (
-        "[dxf]", "[{3mf: {parts: all}}]", "export.files[0]", "the bodies round a groove are not made",
-    ),
     "cutter": (
         "export:", "manufacture: {cutter: 16.1}\nexport:", "manufacture.cutter",
         "wider than the groove",
