@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from camgeo.checks.declared import FLOAT
+from camgeo.measures.forces import Extreme
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.running_forces import running_of
 from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
@@ -18,7 +19,6 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.measures.forces import Extreme
     from camgeo.measures.running_forces import Running
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -50,7 +50,10 @@ def extremes_of(running: Running) -> Extremes:
     found = running.turn.extremes(values)
     rest = found[count + 2 :]
     ends = 2 if running.train.guide is not None else 0
-    return Extremes(tuple(found[:count]), found[count], found[count + 1], tuple(rest[:ends]), tuple(rest[ends:]))
+    contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in found[:count])
+    if count == 1:  # a spring that does not hold it pulls
+        contacts = (found[0],)
+    return Extremes(contacts, found[count], found[count + 1], tuple(rest[:ends]), tuple(rest[ends:]))
 
 
 def float_check(running: Running, found: Extremes) -> Check | None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.recipe.dynamics import MATERIALS
-from kin.numeric.angles import TURN
+from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -27,9 +27,12 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
     from kin.law.contacts import Side
+    from kin.law.formula.formula import Formula
     from kin.numeric.arrays import Array
 
 LIFE = 10.0 / 3.0  # exponent of the rating life of needle and roller bearings (ISO 281)
+STRETCHES, MOST_OPEN = 256, 64  # in which a load is enclosed, and of them looked at where it cannot be
+NARROW, LARGE = 1e-9, 1e6  # rad; of its usual size: what it has there is a pole
 PANELS, NODES = 48, 8  # of Gauss's rule between any two places of the mean
 
 
@@ -89,10 +92,21 @@ class Running:
 
     @cached_property
     def load(self) -> Callable[[Array], Array]:
-        """The load over shaft angles (n,), N or N m, above 0 towards the cam's first contact."""
-        from kin.law.formula.formula import Formula
+        """The load over shaft angles (n,), N or N m, above 0 towards the cam's first contact.
+
+        Raises RecipeErrors where it has no value, or no bound.
+        """
+        from kin.law.formula.formula import Formula, FormulaDomainError
 
         formula = Formula(self.train.load)
+        try:
+            at = unbounded(formula)
+            formula(self.turn.places)
+        except FormulaDomainError as error:
+            raise self.recipe.error("dynamics.load", str(error)) from error
+        if at is not None:
+            why = f"it has no bound near {degrees(at):.6g} degrees"
+            raise self.recipe.error("dynamics.load", why, f"'{self.train.load}'", "give a load that is finite")
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def _rest(self, phi: Array, y: Array) -> Array:
@@ -254,6 +268,29 @@ class Running:
             else:
                 found.append((name, None, None))
         return found
+
+
+def unbounded(formula: Formula) -> float | None:
+    """A shaft angle, rad, near which a formula grows beyond all bounds, None where there is none.
+
+    What intervals leave open is halved until it is as narrow as angles are told apart, and looked at there.
+    """
+    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
+    high: Array = low + TURN / STRETCHES
+    usual = float(np.median(np.abs(formula(0.5 * (low + high))))) + 1.0
+    while True:
+        found = formula.ball(low, high, 0)
+        open_ = ~np.isfinite(found.rad[0])
+        low, high = low[open_][:MOST_OPEN], high[open_][:MOST_OPEN]
+        if not len(low) or float((high - low).max()) < NARROW:
+            break
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    for at in low:
+        sides = np.array([at - NARROW, at + 2.0 * NARROW])
+        if float(np.abs(formula(sides)).max()) > LARGE * usual:
+            return float(at)
+    return None
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:

@@ -255,6 +255,8 @@ def test_contact_that_a_weak_spring_loses():
         (LOBE, "mass: 1, rpm: 100, preload: 1, transient: true", "dynamics.stiffness", "needed with transient"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, stiffness: 1.0e6, load: 3", "dynamics.load", "leave stiffness out"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, load: 3*x", "dynamics.load", "x"),
+        (LOBE, "mass: 1, rpm: 100, preload: 1, load: 1/(t - 1)", "dynamics.load", "no bound near 57.2958 degrees"),
+        (LOBE, "mass: 1, rpm: 100, preload: 1, load: sqrt(sin(t))", "dynamics.load", "sqrt of a negative number"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, material: cheese", "dynamics.material", "steel"),
         (GROOVE, "mass: 1, rpm: 100, stiffness: 1.0e6, preload: 1", "dynamics.stiffness", "leave it out"),
         (DISCS, "mass: 1, rpm: 100, stiffness: 1.0e6, preload: 1", "dynamics.stiffness", "leave it out"),
@@ -262,10 +264,17 @@ def test_contact_that_a_weak_spring_loses():
 )
 def test_what_is_refused(text, dynamics, field, words):
     with pytest.raises(RecipeErrors) as caught:
-        running(text, dynamics)
+        extremes_of(running(text, dynamics))
     (error,) = caught.value.errors
     assert error.path == field
     assert words in str(error)
+
+
+@pytest.mark.parametrize("load", ["sqrt(1 - cos(t))", "abs(sin(t))", "5 + 1/(2 + sin(t))", "40"])
+def test_loads_that_are_bounded(load):
+    """Corners and roots of 0 are no poles."""
+    found = extremes_of(running(GROOVE, f"mass: 1, rpm: 100, load: {load}"))
+    assert all(least.value == 0.0 for least, _ in found.contacts) or load == "40"
 
 
 def test_a_table_needs_forces():
