@@ -35,6 +35,7 @@ FLOORS = {
         pytest_plugin testing
         sweep
         api
+        camshaft
         output
         report.page
         assembly machining report
@@ -49,9 +50,15 @@ FLOORS = {
         common version
     """,
 }
-WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}
+WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep", "camgeo.camshaft"}
 # Modules of core rooms that stand for a wing, imported only when a recipe or a command asks for it.
-DOORS = {"camgeo.output.parts", "camgeo.output.mechanism", "camgeo.output.gcode", "camgeo.cli.study"}
+DOORS = {
+    "camgeo.output.parts",
+    "camgeo.output.mechanism",
+    "camgeo.output.gcode",
+    "camgeo.cli.study",
+    "camgeo.api.camshaft",
+}
 HEAVY = {
     *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
     *("pyarrow", "dask", "distributed", "OCP"),

@@ -396,6 +396,8 @@ WHERE_ONE_IS_ALL = {
     "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
     "camgeo/sweep/study/margins.py": 1,
     "camgeo/sweep/search/cams.py": 1,  # support functions
+    "camgeo/camshaft/lobes.py": 1,  # a lobe is a cam of one surface; others are refused
+    "camgeo/camshaft/pipeline.py": 1,
 }
 """How often a file takes one surface for all; it goes down as forms of files are taught more."""
 

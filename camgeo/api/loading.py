@@ -7,13 +7,15 @@ from os import PathLike
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.common.arguments import is_a, path_of
-from camgeo.recipe.loading import announced, load_silent, load_text
-from camgeo.recipe.recipe import Recipe
+from camgeo.recipe.loading import announced, load_order, load_silent, load_text
+from camgeo.recipe.recipe import Order, Recipe
 
 if TYPE_CHECKING:
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.schema.change import Value
 
     RecipeSource: TypeAlias = Recipe | str | PathLike[str]
+    OrderSource: TypeAlias = RecipeSource | CamshaftRecipe
 
 NAME = "recipe"  # of what has no file
 
@@ -33,6 +35,14 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return announced(load_text(source, NAME))
     return announced(load_silent(path_of("source", source)))
+
+
+def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:
+    """Give a recipe of a cam or of a camshaft, read from its file where its path is given; raises as `load` does."""
+    if isinstance(recipe, (str, PathLike)):
+        return announced(load_order(path_of("recipe", recipe)))
+    is_a("recipe", recipe, Order, "a Recipe or the path of one")
+    return recipe
 
 
 def recipe_of(recipe: RecipeSource) -> Recipe:

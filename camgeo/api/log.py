@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from kin.judge.check import Check
 
 LOG = logging.getLogger("camgeo")
@@ -26,7 +26,7 @@ def unsaid() -> Iterator[None]:
         LOG.disabled = before
 
 
-def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
+def staged(recipe: Order, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
     """Give what a clock reports of each stage as it begins: the log hears of it, and who wants to know."""
 
     def tell(stage: str) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.check import Figure
     from camgeo.api.design import Design
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
 
 JSON: TypeAlias = "bool | int | float | str | list[JSON] | dict[str, JSON] | None"
 
@@ -75,7 +75,7 @@ class Report(Mapping[str, JSON]):
     where files were judged and none kept.
     """
 
-    recipe: Recipe
+    recipe: Order
     _document: dict[str, Any] = field(repr=False)
     path: Path | None = None
     _paths: tuple[Path, ...] = field(default=(), repr=False)
@@ -118,7 +118,16 @@ class Report(Mapping[str, JSON]):
         """The design, made anew from the recipe."""
         from camgeo.api.design import design
 
-        return design(self.recipe)
+        return design(self._of_one_cam)
+
+    @property
+    def _of_one_cam(self) -> Recipe:
+        """The recipe, which is no camshaft's: that has a design for each lobe, of the lobe's own recipe."""
+        from camgeo.recipe.recipe import Recipe
+
+        if not isinstance(self.recipe, Recipe):
+            raise CallError(f"{self.recipe.name} is a camshaft: design the recipe of a lobe")
+        return self.recipe
 
     @property
     def figures(self) -> Mapping[str, Figure]:
@@ -133,7 +142,7 @@ class Report(Mapping[str, JSON]):
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
         index = self.checks.index(check)
-        return failure(self._document["checks"][index], self._document, self.recipe)
+        return failure(self._document["checks"][index], self._document, self._of_one_cam)
 
     def to_json(self) -> str:
         """Write the report as report.json has it."""

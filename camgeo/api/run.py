@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
-from camgeo.api.loading import recipe_of
+from camgeo.api.loading import order_of
 from camgeo.api.log import LOG, staged, tell_checks
 from camgeo.api.report import Report
 from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
@@ -13,6 +13,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.output import pipeline
 from camgeo.recipe.export import KINDS
+from camgeo.recipe.recipe import Recipe
 from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
@@ -20,12 +21,12 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    from camgeo.api.loading import RecipeSource
+    from camgeo.api.loading import OrderSource
     from camgeo.common.units import Units
 
 
 def export(
-    recipe: RecipeSource,
+    recipe: OrderSource,
     out: str | PathLike[str],
     *,
     only: Sequence[str] = (),
@@ -41,7 +42,7 @@ def export(
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
-    recipe = recipe_of(recipe)
+    recipe = order_of(recipe)
     called("progress", progress)
     is_a("second_opinion", second_opinion, bool, "a bool")
     only, folder = texts_of("only", only), path_of("out", out)
@@ -50,23 +51,34 @@ def export(
     if faults and not listed.intersection(only):
         raise CallError(*faults)
     told = staged(recipe, progress)
-    outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
+    if isinstance(recipe, Recipe):
+        outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
+    else:
+        from camgeo.api import camshaft
+
+        outcome = camshaft.made(recipe, folder, only, told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
 def check(
-    recipe: RecipeSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
+    recipe: OrderSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
 ) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
-    recipe = recipe_of(recipe)
+    recipe = order_of(recipe)
     called("progress", progress)
     is_a("second_opinion", second_opinion, bool, "a bool")
-    outcome = pipeline.check(recipe, told=staged(recipe, progress), second_opinion=second_opinion)
+    told = staged(recipe, progress)
+    if isinstance(recipe, Recipe):
+        outcome = pipeline.check(recipe, told=told, second_opinion=second_opinion)
+    else:
+        from camgeo.api import camshaft
+
+        outcome = camshaft.made(recipe, None, (), told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report))
 
 
 def verify(
-    recipe: RecipeSource,
+    recipe: OrderSource,
     file: str | PathLike[str],
     *files: str | PathLike[str],
     tolerance: float | None = None,
@@ -83,7 +95,7 @@ def verify(
     """
     from kin.read.files import SUFFIXES
 
-    recipe = recipe_of(recipe)
+    recipe = order_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
     if units is not None:
@@ -102,7 +114,12 @@ def verify(
         raise CallError(*faults)
     within = None if within is None else within * recipe.mm
     unit = None if units is None else UNIT_MM[units]
-    report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
+    if isinstance(recipe, Recipe):
+        report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
+    else:
+        from camgeo.api import camshaft
+
+        report = camshaft.judged(recipe, paths, within, unit, second_opinion=second_opinion)
     return _told(Report(recipe, report, None, tuple(paths)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
@@ -12,12 +12,15 @@ from camgeo.common import workers
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from camgeo.api.report import Report
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeError
+
+    AnyRecipe: TypeAlias = Recipe | CamshaftRecipe
 
 PAYS = 4.0  # processor seconds of remaining work from which more processes pay, as each of them imports all anew
 
@@ -43,7 +46,7 @@ class Result:
     errors: tuple[RecipeError, ...] = ()
 
 
-def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
+def results(recipes: Sequence[AnyRecipe], task: Task, jobs: int | None) -> Iterator[Result]:
     """Give the result of each recipe in their order; `jobs` processes at once.
 
     Without `jobs` it begins here, and goes on with a process for each core where what is left pays for starting them.
@@ -63,7 +66,7 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
         warm = warm if done else time.process_time()
 
 
-def _at_once(recipes: list[Recipe], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
+def _at_once(recipes: Sequence[AnyRecipe], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
     """Give the result of each recipe in their order, `count` at once; one at a time they are made in this process."""
     if count == 1:
         for recipe in recipes:
@@ -90,7 +93,7 @@ def _at_once(recipes: list[Recipe], task: Task, count: int, *, fork: bool) -> It
             progress.clear()
 
 
-def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
+def result(recipe: AnyRecipe, task: Task, progress: Progress | None = None) -> Result:
     """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError

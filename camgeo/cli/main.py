@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.batch import Task, result, results
@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
     from camgeo.checks.remedies import Entry
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.recipe.recipe import Order, Recipe
+
+O = TypeVar("O", bound="Order")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -209,19 +212,21 @@ def _watch(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) -> tuple[list[Recipe], dict[int, Entry]]:
+def _loaded(
+    paths: Sequence[str], tolerance: str | None, only: Sequence[str]
+) -> tuple[list[Recipe | CamshaftRecipe], dict[int, Entry]]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong.
 
     Those others come second, by their place in the call, as a list of reports has them.
     """
-    from camgeo.cli.recipes import load, unmade
+    from camgeo.cli.recipes import load_any, unmade
     from camgeo.schema.errors import RecipeErrors
 
-    recipes: list[Recipe] = []
+    recipes: list[Recipe | CamshaftRecipe] = []
     refused: dict[int, Entry] = {}
     for i, path in enumerate(paths):
         try:
-            recipe = load(path)
+            recipe = load_any(path)
             if only and not any(request.kind in only for request in recipe.export.files):
                 raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
         except RecipeErrors as errors:
@@ -232,7 +237,7 @@ def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) ->
     return recipes, refused
 
 
-def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
+def _at(recipe: O, tolerance: str | None) -> O:
     """Give the recipe with the tolerance of the call, in its own unit or the recipe's, if there is one."""
     if tolerance is None:
         return recipe
@@ -240,7 +245,9 @@ def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
     return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _told(recipes: list[Recipe], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
+def _told(
+    recipes: Sequence[Recipe | CamshaftRecipe], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace
+) -> int:
     """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
     from camgeo.cli.recipes import unmade
 
@@ -291,14 +298,14 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
-    from camgeo.cli.recipes import load
+    from camgeo.cli.recipes import load_any
     from camgeo.common.errors import SurroundingsError
     from camgeo.report.document import encoded
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
     try:
-        recipe = _at(load(arguments.recipe), arguments.tolerance)
+        recipe = _at(load_any(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         second = arguments.second_opinion

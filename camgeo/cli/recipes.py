@@ -6,13 +6,14 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import complain, escaped
-from camgeo.recipe.loading import load_silent
+from camgeo.recipe.loading import load_order, load_silent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
 
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.recipe.recipe import Order, Recipe
     from camgeo.schema.errors import RecipeError
 
 
@@ -24,7 +25,15 @@ def load(path: str | PathLike[str]) -> Recipe:
     return recipe
 
 
-def in_one_folder(recipes: Sequence[Recipe]) -> list[str]:
+def load_any(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
+    """Read the recipe of a cam or of a camshaft in the same way."""
+    recipe = load_order(path)
+    for notice in recipe.notices:
+        complain(str(notice))
+    return recipe
+
+
+def in_one_folder(recipes: Sequence[Order]) -> list[str]:
     """Say which recipes of one call would write into the same folder: a file named twice, or a name used twice."""
     paths = [recipe.path.resolve() for recipe in recipes]
     again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]

@@ -8,6 +8,7 @@ so that nothing is sewn; only a set screw's hole is cut by the kernel, which fin
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -108,6 +109,24 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     stack.lid(top, last.wire, above)
     shape = stack.solid()
     return shape if solid.drill is None else _drilled(shape, solid.drill)
+
+
+def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline | None) -> Shape:
+    """Return the kernel's solid of outlines one above the other, each from z to z, with a hole all through it; mm.
+
+    Of two neighbours one has to lie within the other. Raises RegionError as `solid_shape` does.
+    """
+    stack = _Stack()
+    low, high = stretches[0][1], stretches[-1][2]
+    hole = None if bore is None else stack.wall(bore, low, high)
+    walls = [stack.wall(outline, bottom, top) for outline, bottom, top in stretches]
+    stack.lid(low, walls[0][0].wire, [] if hole is None else [hole[0].wire])
+    stack.lid(high, walls[-1][1].wire, [] if hole is None else [hole[1].wire])
+    for (below, above), (wall, following) in zip(pairwise(stretches), pairwise(walls), strict=True):
+        wider = below[0].box()[2] > above[0].box()[2]
+        outer, inner = (wall[1], following[0]) if wider else (following[0], wall[1])
+        stack.lid(above[1], outer.wire, [inner.wire])
+    return stack.solid()
 
 
 def raised(shape: Shape, z: float) -> Shape:

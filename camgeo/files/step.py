@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from functools import reduce
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from camgeo.files.brep import Shape, need_kernel, raised, solid_shape
+from camgeo.files.brep import Shape, need_kernel, raised, solid_shape, stack_shape
 from camgeo.files.curves import misfit
 from camgeo.files.precision import converted
 from camgeo.fit.bound import Bound
@@ -69,6 +69,24 @@ def write_step(
     names = [f"{name} {body.name}".rstrip() for body in bodies]
     path.write_bytes(_text(shapes, names, units, name, about))
     return bound
+
+
+def write_stack(
+    path: Path,
+    stretches: Sequence[tuple[Outline, float, float]],
+    bore: Outline | None,
+    *,
+    units: Literal["mm", "inch"] = "mm",
+    name: str = "",
+    about: str = "",
+) -> float:
+    """Write outlines one above the other, each from z to z, mm; returns how far walls are off them as written, mm.
+
+    Raises MissingExtraError without the kernel, RegionError as `stack_shape` does; OSError as the file system does.
+    """
+    need_kernel()
+    path.write_bytes(_text([stack_shape(stretches, bore)], [name], units, name, about))
+    return max(written_off(outline, units) for outline, _, _ in stretches)
 
 
 def written_off(outline: Outline, units: str) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError, between, cells, pieces
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Event(NamedTuple):
         return degrees(0.5 * (self.opening + self.closing) % TURN)
 
 
-class EventError(ValueError):
+class EventError(KinError, ValueError):
     """A lift that a lobe does not cross once on either flank."""
 
 

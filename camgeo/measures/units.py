@@ -6,12 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
 
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
 
 
-def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | None, str]:
+def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | None, str]:
     """A figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit, with that unit's name; other units stay."""
     name = UNIT_NAMES[recipe.units]
     power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.replace("/", " ").partition(" ")[0])

@@ -251,6 +251,7 @@ def _findings(
     from camgeo.curve.measures import measures
     from camgeo.measures.balance import balances
     from camgeo.measures.remarks import dwells_lost, remarks_of
+    from camgeo.measures.units import of_displacements
 
     with clock.stage("remarks"):
         remarks = remarks_of(recipe, design, checks, files)
@@ -267,6 +268,7 @@ def _findings(
         forces=None if forces is None else forces.section,
         remarks=remarks,
         joints=design.exact.joints,
+        displacements=of_displacements(recipe),
         contours={surface.name: measures(contour) for surface, contour in design.contours},
         balances=balances(recipe, design),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.discs import is_pair
@@ -28,6 +29,12 @@ FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", 
 
 
 KINDS: tuple[FileKind, ...] = get_args(FileKind)
+
+
+As: TypeAlias = Literal[
+    "arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace", "events", "timing"
+]
+"""Forms of files, by their key `as`."""
 
 
 NO_CONTOUR = frozenset({"csv", "html", "glb"})
@@ -63,9 +70,7 @@ class FileRequest:
     """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace"] | None = (
-        None
-    )
+    as_: As | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
@@ -203,8 +208,10 @@ FILES: dict[str, Table] = {
 }
 
 
-def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
-    """Read the list of files; each with its `kind`. A faulty one is left out."""
+def read_files(
+    tables: collections.abc.Mapping[str, Table], reader: Reader, field: Field, node: Node, path: str
+) -> list[Values]:
+    """Read the list of files of these formats; each with its `kind`. A faulty one is left out."""
     found = []
     for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
@@ -213,20 +220,16 @@ def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Valu
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
             reader.fault(item.mark, below, "not a file", described(item), remedy)
             continue
-        if kind.text not in FILES:
-            _refuse_format(reader, kind, below)
+        if kind.text not in tables:
+            reader.fault(kind.mark, below, "unknown file format", shown(kind.text), f"give {either(tuple(tables))}")
         elif options is None:
             found.append({"kind": kind.text, "path": below})
         else:
-            table = Field("", Kind.TABLE, "", table=FILES[kind.text])
+            table = Field("", Kind.TABLE, "", table=tables[kind.text])
             values = reader.field(table, options, join(below, kind.text))
             if values is not None:
                 found.append({"kind": kind.text, "path": below, **values})
     return found
-
-
-def _refuse_format(reader: Reader, kind: Scalar, path: str) -> None:
-    reader.fault(kind.mark, path, "unknown file format", shown(kind.text), f"give {either(tuple(FILES))}")
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:
@@ -239,31 +242,37 @@ def _format(node: Node) -> tuple[Scalar | None, Node | None]:
     return None, None
 
 
-def _files_schema(_: Field) -> Schema:
-    formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in FILES.items()]
-    items = {"anyOf": [{"enum": list(FILES)}, *(table_schema(Table((item,))) for item in formats)]}
+def _files_schema(tables: collections.abc.Mapping[str, Table], _: Field) -> Schema:
+    formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in tables.items()]
+    items = {"anyOf": [{"enum": list(tables)}, *(table_schema(Table((item,))) for item in formats)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
 
 
-EXPORT = mapping(
-    "export",
-    "the files",
-    length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
-    Field(
-        "files",
-        Kind.OWN,
-        "dxf, svg, stl, 3mf, step, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
-        default="[dxf]",
-        form=Form(
-            "a list of files",
-            "a list of files such as [dxf, stl]",
-            read_files,
-            _files_schema,
-            tables=FILES,
-            group="the file",
+def export_of(tables: collections.abc.Mapping[str, Table], example: str, default: str) -> Field:
+    """Make the field of the files that are written, in these formats."""
+    form = Form(
+        "a list of files",
+        "a list of files such as [dxf, stl]" if "dxf" in tables else f"a list of files such as {default}",
+        partial(read_files, tables),
+        partial(_files_schema, tables),
+        tables=tables,
+        group="the file",
+    )
+    return mapping(
+        "export",
+        "the files",
+        length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
+        Field(
+            "files",
+            Kind.OWN,
+            f"{', '.join(tables)}, or mappings such as {example}",
+            default=default,
+            form=form,
         ),
-    ),
-)
+    )
+
+
+EXPORT = export_of(FILES, "{dxf: {as: spline}}", "[dxf]")
 
 
 def check_files(values: Values, reader: Reader) -> None:

@@ -90,7 +90,6 @@ RECIPE = Table(
         ),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
-    later=(("camshaft", "camshafts"),),
 )
 
 

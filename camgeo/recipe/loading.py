@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
-from camgeo.recipe.recipe import load_text, read
-from camgeo.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
-from camgeo.schema.file_bytes import bytes_of
-from camgeo.schema.scalars import Complaint
-from camgeo.schema.yaml_source import MAX_BYTES
+from camgeo.recipe.recipe import file_bytes, is_of_a_camshaft, load_text, of_source, read
+from camgeo.schema.errors import DeprecatedKeyWarning
+from camgeo.schema.yaml_source import read_source
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.recipe.recipe import Order, Recipe
 
-__all__ = ["announced", "load", "load_silent", "load_text", "read"]
+__all__ = ["announced", "load", "load_order", "load_silent", "load_text", "read"]
 
 
 def load(path: str | PathLike[str]) -> Recipe:
@@ -27,7 +27,10 @@ def load(path: str | PathLike[str]) -> Recipe:
     return announced(load_silent(path))
 
 
-def announced(recipe: Recipe) -> Recipe:
+O = TypeVar("O", bound="Order")
+
+
+def announced(recipe: O) -> O:
     """Warn of the former names in a recipe, a DeprecatedKeyWarning for each, and give the recipe back."""
     for notice in recipe.notices:
         warnings.warn(str(notice), DeprecatedKeyWarning, stacklevel=3)
@@ -36,10 +39,14 @@ def announced(recipe: Recipe) -> Recipe:
 
 def load_silent(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file, whose `notices` are left to the caller; raises RecipeErrors as `load` does."""
-    if not str(path):
-        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
-    try:
-        data = bytes_of(path, MAX_BYTES, "recipe")
-    except Complaint as complaint:
-        raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
-    return read(data, path)
+    return read(file_bytes(path), path)
+
+
+def load_order(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
+    """Read the recipe of a cam or of a camshaft, whichever the file holds; raises RecipeErrors as `load` does."""
+    source = read_source(file_bytes(path), str(path))
+    if is_of_a_camshaft(source):
+        from camgeo.recipe.camshaft import read_camshaft
+
+        return read_camshaft(source, Path(path))
+    return of_source(source, path)

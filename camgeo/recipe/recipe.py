@@ -23,11 +23,12 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
-from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import read_source
+from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, keys, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.sweep import Sweep
     from camgeo.schema.change import Value
     from camgeo.schema.reader import Values
+    from camgeo.schema.yaml_source import Source
 
 ANGLES = 3600  # of a turn at which files are judged
 
@@ -58,18 +60,37 @@ class Verify:
 
 
 @dataclass(frozen=True)
-class Recipe(Document):
-    """A recipe, checked as far as no geometry is needed; `mm` is the length of its unit."""
+class Order(Document):
+    """What any recipe says, of one cam or of a camshaft; `mm` is the length of its unit."""
 
     name: str
     about: str
     units: Length
     mm: float
     rotation: Literal["cw", "ccw"]
-    cam: Cam
-    part: Part
     export: Export
     verify: Verify
+
+    def field_of(self, request: FileRequest | None) -> str:
+        """Give the path of a request; that of the list for one that does not stand there."""
+        files = self.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def filenames(self, request: FileRequest) -> tuple[str, ...]:
+        """Name the files of a request that hold what the recipe is of."""
+        return (request.filename(self.name, self.export.files),)
+
+    def request_of(self, filename: str) -> FileRequest | None:
+        """Give the request one of whose files has this name, the first of all bodies' files, or None."""
+        return next((request for request in self.export.files if filename in self.filenames(request)), None)
+
+
+@dataclass(frozen=True)
+class Recipe(Order):
+    """A recipe of a cam, checked as far as no geometry is needed."""
+
+    cam: Cam
+    part: Part
     linkage: Linkage | None = None
     dwell: DwellAsked | None = None
     sweep: Sweep | None = None
@@ -119,18 +140,9 @@ class Recipe(Document):
         """Give the recipe as one in the unit of a file."""
         return self.told_in(request.told_in(self.units))
 
-    def field_of(self, request: FileRequest | None) -> str:
-        """Give the path of a request; that of the list for one that does not stand there."""
-        files = self.export.files
-        return f"export.files[{files.index(request)}]" if request in files else "export.files"
-
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
         """Name the files of a request that hold the cam: one, or one for each of its discs."""
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
-
-    def request_of(self, filename: str) -> FileRequest | None:
-        """Give the request one of whose files has this name, the first of all bodies' files, or None."""
-        return next((request for request in self.export.files if filename in self.filenames(request)), None)
 
     def unstated(self, path: Path) -> float | None:
         """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
@@ -150,7 +162,20 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
             raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
         notices = tuple(notice.without_place(unplaced) for notice in recipe.notices)
         return replace(recipe, notices=notices, unplaced=unplaced)
-    source = read_source(data, str(path))
+    return of_source(read_source(data, str(path)), path)
+
+
+def is_of_a_camshaft(source: Source) -> bool:
+    """Whether a text is the recipe of a camshaft, which has no cam of its own."""
+    return isinstance(source.root, Mapping) and "camshaft" in entries(source.root)
+
+
+def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
+    """Make the recipe of a text that was parsed; raises RecipeErrors."""
+    if is_of_a_camshaft(source):
+        mark = keys(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
+        remedy = "export, check and verify take it; give any other command the recipe of a lobe"
+        raise RecipeErrors([RecipeError(str(path), *mark, "camshaft", "a camshaft is no cam", None, remedy)])
     reader = Reader(source, READERS, RECIPE)
     values = read_values(reader)
     if "name" not in reader.marks:
@@ -171,6 +196,16 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
         kinds=reader.kinds,
     )
     return _built(values, document)
+
+
+def file_bytes(path: str | PathLike[str]) -> bytes:
+    """Read a recipe's file; raises RecipeErrors where there is none, or it is no recipe's."""
+    if not str(path):
+        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
+    try:
+        return bytes_of(path, MAX_BYTES, "recipe")
+    except Complaint as complaint:
+        raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
 
 
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
-from camgeo.measures.units import in_units, of_displacements
+from camgeo.measures.units import in_units
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.remarks import Remark
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
@@ -37,7 +37,10 @@ DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything a run found, before it is put in the recipe's units; all sections already are."""
+    """Everything a run found, before it is put in the recipe's units; all sections already are.
+
+    `displacements` are factor and unit in which those of the follower are told.
+    """
 
     checks: tuple[Check, ...]
     files: tuple[FileResult, ...]
@@ -51,6 +54,7 @@ class Findings:
     forces: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
+    displacements: tuple[float, str] = (1.0, "mm")
     contours: Mapping[str, Measures] = field(default_factory=dict)
     balances: tuple[Balance, ...] = ()
 
@@ -60,7 +64,7 @@ class Findings:
         return all(check.ok for check in self.checks)
 
 
-def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
+def document(recipe: Order, found: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
     linkage = {} if found.linkage is None else {"linkage": found.linkage}
     dynamics = {} if found.dynamics is None else {"dynamics": found.dynamics}
@@ -78,7 +82,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         **({"balance": [_balance(recipe, one) for one in found.balances]} if found.balances else {}),
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
-        "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
+        "joints": [entry for joint in found.joints for entry in _jumps(found, joint)],
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         **linkage,
         **dynamics,
@@ -94,7 +98,7 @@ def encoded(report: object) -> str:
     return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
+def _check(recipe: Order, check: Check) -> dict[str, Any]:
     value, unit = in_units(recipe, check.value, check.unit)
     limit, _ = in_units(recipe, check.limit, check.unit)
     entry: dict[str, Any] = {
@@ -117,7 +121,7 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
     return entry
 
 
-def _remark(recipe: Recipe, remark: Remark) -> dict[str, Any]:
+def _remark(recipe: Order, remark: Remark) -> dict[str, Any]:
     value, unit = in_units(recipe, remark.value, remark.unit)
     rule, _ = in_units(recipe, remark.rule, remark.unit)
     return {
@@ -130,9 +134,9 @@ def _remark(recipe: Recipe, remark: Remark) -> dict[str, Any]:
     }
 
 
-def _jumps(recipe: Recipe, joint: Joint) -> list[dict[str, Any]]:
+def _jumps(found: Findings, joint: Joint) -> list[dict[str, Any]]:
     """What jumps at a joint of the motion: an entry for each derivative."""
-    scale, unit = of_displacements(recipe)
+    scale, unit = found.displacements
     per = ("", "/rad", "/rad^2", "/rad^3")
     at_deg = math.degrees(joint.at)
     return [
@@ -141,7 +145,7 @@ def _jumps(recipe: Recipe, joint: Joint) -> list[dict[str, Any]]:
     ]
 
 
-def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
+def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
     told = listed(file.path.name, file.path.read_bytes())
     entry: dict[str, Any] = {"path": told.pop("path"), "kind": file.request.kind, **told}
     if file.units is not None:
@@ -175,12 +179,12 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     return entry
 
 
-def _between(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
+def _between(recipe: Order, closure: ClosureVerdict) -> dict[str, Any]:
     """What is left to the follower between two surfaces of a file."""
     return {"between": [closure.pushes, closure.stops], **_play(recipe, closure.play)}
 
 
-def _play(recipe: Recipe, play: Play) -> dict[str, Any]:
+def _play(recipe: Order, play: Play) -> dict[str, Any]:
     """What is left to a follower that is held from both sides, over the whole turn; negative: interference."""
     least, unit = in_units(recipe, play.least, play.unit)
     most, _ = in_units(recipe, play.most, play.unit)
@@ -188,7 +192,7 @@ def _play(recipe: Recipe, play: Play) -> dict[str, Any]:
     return {"min": least, "max": most, "unit": unit, **place}
 
 
-def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
+def _surface(recipe: Order, surface: SurfaceVerdict) -> dict[str, Any]:
     """What the judge measured of a surface of a file."""
     return {
         "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
@@ -198,13 +202,13 @@ def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:
     }
 
 
-def _contours(recipe: Recipe, measures: Mapping[str, Measures]) -> dict[str, Any] | None:
+def _contours(recipe: Order, measures: Mapping[str, Measures]) -> dict[str, Any] | None:
     """Perimeter and area of the exact contour, of several by the names of their surfaces."""
     told = {name: _measures(recipe, one.perimeter, one.area) for name, one in measures.items()}
     return told.get("", told) or None
 
 
-def _balance(recipe: Recipe, disc: Balance) -> dict[str, Any]:
+def _balance(recipe: Order, disc: Balance) -> dict[str, Any]:
     """Mass and its moments of a disc: kg and mm whatever the recipe's unit, but for the place of the centre."""
     return {
         **({"surface": disc.surface} if disc.surface else {}),
@@ -218,11 +222,11 @@ def _balance(recipe: Recipe, disc: Balance) -> dict[str, Any]:
     }
 
 
-def _measures(recipe: Recipe, perimeter: float | None, area: float | None) -> dict[str, float | None]:
+def _measures(recipe: Order, perimeter: float | None, area: float | None) -> dict[str, float | None]:
     return {"perimeter": in_units(recipe, perimeter, "mm")[0], "area": in_units(recipe, area, "mm^2")[0]}
 
 
-def _motion(recipe: Recipe, motion: MotionError) -> dict[str, Any]:
+def _motion(recipe: Order, motion: MotionError) -> dict[str, Any]:
     entry: dict[str, Any] = {}
     for key, value in (
         ("max", motion.max),

@@ -101,6 +101,10 @@ class Contour(Pieces):
         """Return the contour enlarged about the origin by a positive factor."""
         return Contour.from_pieces(self.enlarged(factor))
 
+    def turned(self, angle: float) -> Contour:
+        """Return the contour turned counter-clockwise about the origin by an angle, rad."""
+        return Contour.from_pieces(self.rotated(angle))
+
     @cached_property
     def vertices(self) -> Array:
         """Ends of all pieces in order: the starts (n, 2), or starts and ends by turns (2n, 2) if they do not meet."""

@@ -201,6 +201,21 @@ class Pieces:
             beziers=Beziers(self.beziers.control * factor, self.beziers.weight),
         )
 
+    def rotated(self, angle: float) -> Pieces:
+        """Return the pieces turned counter-clockwise about the origin by an angle, rad."""
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        return Pieces(
+            kind=self.kind,
+            start=self.start @ turn,
+            end=self.end @ turn,
+            centre=self.centre @ turn,
+            radius=self.radius,
+            angle=self.angle + angle,
+            sweep=self.sweep,
+            curve=self.curve,
+            beziers=Beziers(self.beziers.control @ turn, self.beziers.weight),
+        )
+
     @cached_property
     def directions(self) -> tuple[Array, Array]:
         """Angles of the tangent at the start and at the end of each piece, radians, 2 x (n,)."""

@@ -109,7 +109,7 @@ def test_errors_of_a_call_can_be_pickled() -> None:
 
 
 def test_type_checkers_see_the_names() -> None:
-    hints = typing.get_type_hints(camgeo.check, None, {"Callable": typing.Callable, "RecipeSource": object})
+    hints = typing.get_type_hints(camgeo.check, None, {"Callable": typing.Callable, "OrderSource": object})
     assert hints["return"] is camgeo.Report
 
 

@@ -22,7 +22,7 @@ from camgeo.checks.declared import CHECKS
 from camgeo.cli.main import main
 from camgeo.measures.remarks import RemarkName
 from camgeo.output import pipeline
-from camgeo.recipe.loading import read
+from camgeo.recipe.loading import load_order, read
 from camgeo.recipe.starter import KINDS
 from camgeo.report.page.content import DRAWN
 
@@ -85,9 +85,21 @@ def test_a_recipe_is_made_and_passes(text):
 
 def test_a_part_of_a_recipe_is_read_beside_a_cam():
     for block in blocks():
-        if block.language == "yaml" and not re.search(r"^cam:", block.text, re.MULTILINE):
+        if block.language == "yaml" and not re.search(r"^(cam|camshaft):", block.text, re.MULTILINE):
             rest = CAM if "part:" not in block.text else CAM.splitlines()[0] + "\n"
             read((rest + block.text).encode(), f"{block.page}:{block.line}")
+
+
+def test_a_camshaft_is_read_beside_its_lobes(tmp_path):
+    shown = [block for block in blocks() if block.language == "yaml" and block.text.startswith("camshaft:")]
+    assert shown
+    for block in shown:
+        for name in re.findall(r"recipe: ([a-z-]+\.yaml)", block.text):
+            source = "intake.yaml" if name in {"intake.yaml", "exhaust.yaml"} else "seal.yaml"
+            shutil.copy(ROOT / "recipes" / "camshafts" / source, tmp_path / name)
+        path = tmp_path / "shaft.yaml"
+        path.write_text(block.text, encoding="utf-8")
+        assert load_order(path).lobes
 
 
 # --- commands ---------------------------------------------------------------------------------------------------------

@@ -1,0 +1,134 @@
+"""The solid of a camshaft: round stretches and lobes, each turned to its angle; a mesh, or exact surfaces."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.curve.ring import steps_along
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.bound import Bound
+from camgeo.fit.pieces import ArcSpline, Polygon
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.files.mesh import Mesh
+    from camgeo.files.precision import Precision
+    from camgeo.fit.cache import Fits
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from kin.numeric.arrays import Array
+
+LOOKS = 4  # places on each arc at which it is looked at
+BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
+
+
+def _rotated(points: Array, angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    turned: Array = points @ np.array([[c, s], [-s, c]])
+    return turned
+
+
+def _placed(outline: Any, angle: float, rotation: str) -> Any:  # noqa: ANN401 - a polygon or a chain of arcs, as given
+    """Turn an outline counter-clockwise, and mirror the drawing where the shaft turns that way."""
+    name = "vertices" if isinstance(outline, Polygon) else "points"
+    turned = replace(outline, **{name: _rotated(getattr(outline, name), angle)})
+    return turned.mirrored() if rotation == "ccw" else turned
+
+
+def camshaft_mesh(
+    recipe: CamshaftRecipe,
+    lobes: Sequence[PlacedLobe],
+    fits: Callable[[PlacedLobe], Fits],
+    *,
+    tolerance: float,
+    precision: Precision,
+) -> tuple[Mesh, Bound, int]:
+    """Closed, oriented mesh of the whole shaft, the bound of its contours (mm), and how many edges the lobes have.
+
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where it does not close.
+    """
+    from camgeo.files.prism import bore_polygon, rounded_contour
+    from camgeo.files.solid import manifold, meshed, prism
+
+    size = max(
+        [lobe.contour.size for lobe in lobes if lobe.contour is not None] + [bar.diameter for bar in recipe.bars]
+    )
+    fine = precision.fit_tolerance(tolerance, 1.01 * size)
+
+    def cylinder(diameter: float, low: float, high: float) -> Any:  # noqa: ANN401 - manifold3d has no types
+        polygon, _ = bore_polygon(diameter, fine)
+        return manifold(*prism(precision.rounded(polygon)[0], low, high, precision))
+
+    shaft, *journals = recipe.bars
+    placed = [(part.low, part.high) for part in recipe.bars] + [(part.low, part.high) for part in recipe.lobes]
+    for height in {z for ends in placed for z in ends}:
+        precision.within("a height", abs(precision.number(height) - height), tolerance)
+    body = cylinder(shaft.diameter, shaft.low, shaft.high)
+    for bar in journals:
+        body += cylinder(bar.diameter, bar.low, bar.high)
+    bound, edges = Bound(0.0, 0.0), 0
+    for lobe in lobes:
+        polygon = _placed(fits(lobe).within("polyline", fine), lobe.at, recipe.rotation)
+        loop, moved, _ = rounded_contour(polygon, precision)
+        bound, edges = bound.wider(polygon.bound.widened(moved)), edges + len(loop)
+        precision.within("the contour", bound.worst, tolerance)
+        body += manifold(*prism(loop, lobe.lobe.low, lobe.lobe.high, precision))
+    if recipe.bore is not None:
+        body -= cylinder(recipe.bore, shaft.low - BEYOND, shaft.high + BEYOND)
+    mesh, merged = meshed(body, precision)
+    bound = bound.widened(merged)
+    precision.within("the contour", bound.worst, tolerance)
+    return mesh, bound, edges
+
+
+def camshaft_outlines(
+    recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], fits: Callable[[PlacedLobe], Fits], tolerance: float
+) -> tuple[list[tuple[ArcSpline, float, float]], Bound, int]:
+    """Stretches of the shaft from below, each a chain of arcs from z to z, mm; bound and arcs of the lobes' contours.
+
+    Raises ToleranceError as fits do.
+    """
+    bound, count = Bound(0.0, 0.0), 0
+    shaft, *journals = recipe.bars
+    parts: list[tuple[ArcSpline, float, float]] = []
+    for lobe in lobes:
+        outline = _placed(fits(lobe).within("arcs", tolerance), lobe.at, recipe.rotation)
+        bound, count = bound.wider(outline.bound), count + outline.count
+        parts.append((outline, lobe.lobe.low, lobe.lobe.high))
+    parts += [(circle(bar.diameter), bar.low, bar.high) for bar in journals]
+    levels = sorted({shaft.low, shaft.high, *(z for _, low, high in parts for z in (low, high))})
+    stretches = []
+    for low, high in pairwise(levels):
+        own = next((outline for outline, a, b in parts if a <= low and high <= b), circle(shaft.diameter))
+        stretches.append((own, low, high))
+    for (below, _, z), (above, _, _) in pairwise(stretches):
+        least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
+        if max(least) < min(most):
+            told = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
+            raise RegionError(f"{told}; leave a gap between them, or give stl or 3mf")
+    return stretches, bound, count
+
+
+def _reach(outline: ArcSpline) -> tuple[float, float]:
+    """Least and greatest distance from the shaft's axis, mm, of an outline's ends and places along its arcs."""
+    distance = np.hypot(*_along(outline).T)
+    return float(distance.min()), float(distance.max())
+
+
+def _along(outline: ArcSpline) -> Array:
+    """Points on every piece of an outline (n, 2)."""
+    starts, ends = outline.points, np.roll(outline.points, -1, axis=0)
+    pieces = zip(starts, ends, outline.bulges.tolist(), strict=True)
+    return np.concatenate([steps_along(start, end, bulge, LOOKS) for start, end, bulge in pieces])
+
+
+def circle(diameter: float) -> ArcSpline:
+    """Circle about the shaft as two halves."""
+    radius = 0.5 * diameter
+    return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))

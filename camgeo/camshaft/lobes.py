@@ -1,0 +1,128 @@
+"""The lobes of a camshaft as exact cams, and the angles at which they stand on the shaft."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.camshaft.events import event, valves_of
+from camgeo.curve.measures import nearest
+from camgeo.measures.limits import limit_checks
+from camgeo.synthesis.design import designed
+from kin.judge.check import Check
+from kin.numeric.records import dataclass, field, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.camshaft.events import Event, Valves
+    from camgeo.common.clock import Clock
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.camshaft import CamshaftRecipe, Engine, Lobe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class PlacedLobe:
+    """A lobe, its exact design, and the angle, rad, by which its zero is turned counter-clockwise as drawn for `cw`."""
+
+    lobe: Lobe
+    design: Design
+    at: float
+    events: dict[float, Event | None] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def contour(self) -> Curve | None:
+        """The contour to be made, before it is turned; None where a check forbids it."""
+        return self.design.only_surface.contour
+
+    def event(self, lift: float) -> Event | None:
+        """When it lifts its follower beyond a lift, mm or rad; None where it does not do so once a turn."""
+        if lift not in self.events:
+            self.events[lift] = event(self.design.exact, self.at, lift)
+        return self.events[lift]
+
+    def rows(self, shaft: Array, order: int) -> Array:
+        """Lift above the lowest position, mm or rad, and derivatives by the shaft angle, at shaft angles (n,), rad."""
+        return self.design.motion.rows(np.mod(shaft - self.at, TURN), order)
+
+
+def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
+    """Design each lobe, those of one recipe once; raises RecipeErrors as `designed` does, or for what is no lobe."""
+    designs: dict[str, Design] = {}
+    lobes = []
+    for i, lobe in enumerate(recipe.lobes):
+        key = str(lobe.recipe.path)
+        if key not in designs:
+            designs[key] = designed(lobe.recipe, clock)
+            _demand_one_outside(recipe, designs[key], i)
+        design = designs[key]
+        lobes.append(PlacedLobe(lobe, design, _angle(recipe, lobe, design, i)))
+    return tuple(lobes)
+
+
+def _demand_one_outside(recipe: CamshaftRecipe, design: Design, index: int) -> None:
+    if len(design.exact.surfaces) != 1 or any(surface.side < 0 for surface in design.exact.surfaces):
+        remedy = "give a cam with one contour, followed from outside"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", "a ring, a groove or a pair is no lobe", None, remedy)
+    if len(design.follower.contacts) > 1 and math.isfinite(design.follower.pivot):
+        remedy = "give a cam with a follower on a stem, or one that touches it once"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", "two contacts on one arm are no lobe's", None, remedy)
+
+
+def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> float:
+    """Angle by which a lobe's zero is turned, rad from 0 to below a turn: as given, or so that its centre is right."""
+    if lobe.at is not None or recipe.engine is None or lobe.cylinder is None:
+        return float(np.mod(lobe.at or 0.0, TURN))
+    unturned = event(design.exact, 0.0, recipe.engine.lift)
+    if unturned is None:
+        remedy = "give a camshaft.engine.lift that each lobe crosses once on its rise and once on its return"
+        told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
+    return float(np.mod(recipe.engine.centre(lobe.cylinder, lobe.valve) - math.radians(unturned.centre), TURN))
+
+
+def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
+    """Events of a cylinder with an intake and an exhaust lobe; None without both."""
+    own = {lobe.lobe.valve: lobe.event(engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
+    intake, exhaust = own.get("intake"), own.get("exhaust")
+    if intake is None or exhaust is None:
+        return None
+    return valves_of(intake, exhaust, math.degrees(engine.firing[cylinder]))
+
+
+def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
+    """Lift of each lobe, mm or rad, at shaft angles (n,), rad: (lobes, n)."""
+    return np.array([lobe.rows(shaft, 0)[0] for lobe in lobes])
+
+
+def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[Check]:
+    """Check the exact cam of each lobe, held against its own recipe's limits, and that it stands out of the shaft."""
+    checks: list[Check] = []
+    told: set[str] = set()
+    for lobe in lobes:
+        key = str(lobe.lobe.recipe.path)
+        if key in told:
+            continue  # lobes of one recipe are one cam
+        told.add(key)
+        own = list(lobe.design.checks)
+        if lobe.lobe.recipe.limits:
+            own += limit_checks(lobe.lobe.recipe, lobe.design, own, [], None)
+        own += _outside_shaft(recipe, lobe)
+        checks += [replace(check, surface=lobe.lobe.name) for check in own]
+    return checks
+
+
+def _outside_shaft(recipe: CamshaftRecipe, lobe: PlacedLobe) -> list[Check]:
+    """Check that a lobe's contour stays outside the shaft."""
+    if lobe.contour is None:
+        return []
+    least, radius = nearest(lobe.contour), 0.5 * recipe.bars[0].diameter
+    detail = f"the shaft has a radius of {radius / recipe.mm:.9g}; a larger base radius, or a thinner shaft"
+    ok = least.value > radius
+    return [Check("shaft", ok, least.value, radius, "mm", sense="at_least", detail="" if ok else detail)]

@@ -1,0 +1,269 @@
+"""From the recipe of a camshaft to files on disk and a verdict on them; as `camgeo.output.pipeline` for one cam."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from camgeo.camshaft.lobes import lobe_checks, placed
+from camgeo.common.clock import Clock
+from camgeo.common.errors import SurroundingsError
+from camgeo.files.errors import MissingExtraError
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.cache import Fits, formula_rounding
+from camgeo.fit.nodes import ToleranceError
+from camgeo.measures.file_result import FileResult
+from camgeo.output.pipeline import REPORT, Outcome
+from camgeo.report.document import Findings, document, encoded
+from camgeo.synthesis.intent import intended, permitted
+from kin.numeric.records import dataclass, field, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.fit.bound import Bound
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.recipe.export import FileRequest
+    from kin.judge.camshaft import CamshaftIntent
+    from kin.judge.check import Check
+
+UNIT_OF = {"glb": 1000.0}  # mm
+COLOUR = "#d08a3c"
+STEPS = 8  # of a turn, as of one cam
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A camshaft in the making: its lobes, and the fits of their contours, one for each cam."""
+
+    recipe: CamshaftRecipe
+    lobes: tuple[PlacedLobe, ...]
+    clock: Clock
+    fits: dict[str, Fits] = field(default_factory=dict)
+
+    def fits_of(self, lobe: PlacedLobe) -> Fits:
+        key, contour = str(lobe.lobe.recipe.path), lobe.contour
+        if contour is None:
+            raise ValueError(f"{lobe.lobe.name}: there is no contour to be made")
+        if key not in self.fits:
+            self.fits[key] = Fits(contour, self.clock, formula_rounding(lobe.design.exact.rounding, contour))
+        return self.fits[key]
+
+    def tolerance(self, request: FileRequest) -> float:
+        return request.tolerance or self.recipe.export.tolerance
+
+    def unit(self, request: FileRequest) -> float:
+        return 25.4 if request.units == "inch" else 1.0
+
+
+def export(
+    recipe: CamshaftRecipe, out: Path, *, only: tuple[str, ...] = (), progress: Callable[[str], None] | None = None
+) -> Outcome:
+    """Write and judge a camshaft's files under `out`/<name>; raises as `camgeo.output.pipeline.export` does."""
+    from camgeo.output.output_folder import Run
+
+    requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
+    with Run(out, recipe.name) as run:
+        findings = _produced(recipe, requests, run.folder, Clock(progress))
+        kept = run.kept() if only else ()
+        report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)
+        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        names = [file.path.name for file in findings.found.files]
+        folder = run.commit(names, keep=kept) if findings.found.ok else run.reject()
+    return Outcome(report, findings.found.ok, folder)
+
+
+def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
+    """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
+    import tempfile
+    from pathlib import Path
+
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        findings = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
+        return Outcome(_report(recipe, findings.found, findings.lobes), findings.found.ok, None)
+
+
+def judged(
+    recipe: CamshaftRecipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
+) -> dict[str, Any]:
+    """Report on solids of any origin, held against a camshaft's lobes; raises as `camgeo.output.pipeline.judged`."""
+    from camgeo.recipe.export import FileRequest
+    from kin.judge.camshaft import verify_camshaft
+    from kin.read.files import SOLIDS, kind_of
+
+    clock = Clock()
+    lobes = placed(recipe, clock)
+    checks, files = lobe_checks(recipe, lobes), []
+    for path in paths:
+        kind = kind_of(path)
+        if kind not in SOLIDS:
+            raise recipe.error(
+                "camshaft", f"a camshaft is judged by its solid, not by {path.name}", None, "give its stl, 3mf or step"
+            )
+        request = recipe.request_of(path.name) or FileRequest(kind)
+        within = (request.tolerance or recipe.export.tolerance) if tolerance is None else tolerance
+        stated = units
+        if stated is None and kind == "stl" and request.units == "inch":
+            stated = 25.4
+        with clock.stage("judge"):
+            verdict = verify_camshaft(path, _intent(recipe, lobes, within), recipe.verify.angles, stated)
+        files.append(FileResult.of(path, FileRequest(kind), within, verdict))
+        checks += verdict.checks
+    findings = _findings(recipe, lobes, checks, files, clock)
+    return _report(recipe, findings, lobes)
+
+
+@dataclass(frozen=True)
+class _Produced:
+    found: Findings
+    lobes: tuple[PlacedLobe, ...]
+
+
+def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> _Produced:
+    lobes = placed(recipe, clock)
+    checks = lobe_checks(recipe, lobes)
+    files: list[FileResult] = []
+    pages = [request for request in requests if request.kind == "html"]
+    if all(lobe.contour is not None for lobe in lobes) and all(check.ok or check.name != "shaft" for check in checks):
+        job = _Job(recipe, lobes, clock)
+        for request in requests:
+            if request.kind == "html":
+                continue
+            path = folder / request.filename(recipe.name, recipe.export.files)
+            file, more = _made(job, request, path)
+            files.append(file)
+            checks += more
+    found = _findings(recipe, lobes, checks, files, clock)
+    for request in pages:
+        from camgeo.camshaft.page import page
+
+        path = folder / request.filename(recipe.name, recipe.export.files)
+        path.write_text(page(recipe, lobes, _report(recipe, found, lobes)), encoding="utf-8", newline="\n")
+        found = replace(found, files=(*found.files, FileResult(path, request)))
+    return _Produced(found, lobes)
+
+
+def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
+    """Write one file; a solid is read back and judged."""
+    recipe = job.recipe
+    match request.kind:
+        case "csv":
+            from camgeo.camshaft.tables import write_events, write_motion
+
+            with job.clock.stage("table"):
+                (write_events if request.as_ == "events" else write_motion)(path, recipe, job.lobes)
+            return FileResult(path, request, units=recipe.mm), ()
+        case "svg":
+            from camgeo.camshaft.timing import timing
+
+            with job.clock.stage("timing"):
+                path.write_text(timing(recipe, job.lobes), encoding="utf-8", newline="\n")
+            return FileResult(path, request), ()
+        case _:
+            return _solid(job, request, path)
+
+
+def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
+    from kin.judge.camshaft import verify_camshaft
+
+    recipe, tolerance, mm = job.recipe, job.tolerance(request), job.unit(request)
+    try:
+        bound, pieces = _written(job, request, path)
+    except ToleranceError as error:
+        where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
+        raise recipe.error(where, str(error)) from error
+    except RegionError as error:
+        raise recipe.error("camshaft", f"within the tolerance, {error}") from error
+    except MissingExtraError as error:
+        raise SurroundingsError(str(error), recipe.path) from error
+    if request.kind == "glb":
+        return FileResult(path, request, units=UNIT_OF["glb"]), ()
+    with job.clock.stage(f"judge {request.kind}"):
+        intent = _intent(recipe, job.lobes, tolerance)
+        verdict = verify_camshaft(path, intent, recipe.verify.angles, mm if request.kind == "stl" else None)
+    return FileResult.of(path, request, tolerance, verdict, (pieces, bound)), verdict.checks
+
+
+def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
+    """Write a solid; the bound of its lobes' contours, mm, and the pieces that they are made of."""
+    recipe, tolerance, mm = job.recipe, job.tolerance(request), job.unit(request)
+    if request.kind == "step":
+        from camgeo.camshaft.body import camshaft_outlines, circle
+        from camgeo.files.step import write_stack
+
+        stretches, bound, pieces = camshaft_outlines(recipe, job.lobes, job.fits_of, 0.5 * tolerance)
+        with job.clock.stage("write step"):
+            bore = None if recipe.bore is None else circle(recipe.bore)
+            more = write_stack(path, stretches, bore, units=request.units or "mm", name=recipe.name, about=recipe.about)
+        return bound.widened(more), pieces
+    from camgeo.camshaft.body import camshaft_mesh
+    from camgeo.files.precision import DECIMALS, SINGLE
+
+    precision = (DECIMALS if request.kind == "3mf" else SINGLE).in_units(mm)
+    with job.clock.stage(f"mesh {request.kind}"):
+        mesh, bound, pieces = camshaft_mesh(recipe, job.lobes, job.fits_of, tolerance=tolerance, precision=precision)
+    with job.clock.stage(f"write {request.kind}"):
+        if request.kind == "stl":
+            from camgeo.files.stl import write_stl
+
+            write_stl(path, mesh, mm=mm, about=recipe.name)
+        elif request.kind == "3mf":
+            from camgeo.files.three_mf import Item, write_3mf
+
+            write_3mf(path, [Item("camshaft", mesh)], title=recipe.name, mm=mm, about=recipe.about)
+        else:
+            import numpy as np
+
+            from camgeo.files.glb import Actor, write_glb
+
+            pose = np.zeros((STEPS + 1, 3))
+            pose[:, 2] = (1.0 if recipe.rotation == "ccw" else -1.0) * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
+            write_glb(path, [Actor("camshaft", mesh, pose, COLOUR)], title=recipe.name)
+    return bound, pieces
+
+
+def _intent(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...], tolerance: float) -> CamshaftIntent:
+    """What kin is given: each lobe as its own recipe has it, its angle and its place."""
+    from kin.judge.camshaft import BarIntent, CamshaftIntent, LobeIntent
+
+    return CamshaftIntent(
+        tuple(
+            LobeIntent(
+                lobe.lobe.name,
+                intended(lobe.lobe.recipe, lobe.design).surfaces[0],
+                lobe.at,
+                lobe.lobe.low,
+                lobe.lobe.high,
+                permitted(lobe.lobe.recipe, tolerance),
+            )
+            for lobe in lobes
+        ),
+        tuple(BarIntent(bar.name, bar.low, bar.high, bar.diameter) for bar in recipe.bars),
+        recipe.bore,
+        recipe.rotation == "ccw",
+        tolerance,
+    )
+
+
+def _findings(
+    recipe: CamshaftRecipe,
+    lobes: tuple[PlacedLobe, ...],
+    checks: list[Check],
+    files: list[FileResult],
+    clock: Clock,
+) -> Findings:
+    from camgeo.curve.measures import measures
+
+    contours = {lobe.lobe.name: measures(lobe.contour) for lobe in lobes if lobe.contour is not None}
+    kinds = {request.kind for request in recipe.export.files}
+    skipped = tuple((kind, "not asked for") for kind in ("stl", "3mf", "step") if kind not in kinds)
+    return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, "of each lobe", contours=contours)
+
+
+def _report(recipe: CamshaftRecipe, findings: Findings, lobes: tuple[PlacedLobe, ...]) -> dict[str, Any]:
+    """The report, with a section on the lobes: where they stand, and when they lift."""
+    from camgeo.camshaft.section import camshaft_section
+
+    return {**document(recipe, findings), "camshaft": camshaft_section(recipe, lobes)}

@@ -1,0 +1,86 @@
+"""The camshaft's section of a report: where its lobes stand, when they lift, how it is balanced."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.camshaft.events import CRANK
+from camgeo.camshaft.lobes import valves
+from camgeo.camshaft.tables import event_lift
+from camgeo.measures.balance import KG
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.recipe.camshaft import CamshaftRecipe
+
+__all__ = ["camshaft_section"]
+
+
+def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any]:
+    """Lobes, an engine's valve events, and the unbalance; lengths in the recipe's unit, angles in degrees."""
+    section: dict[str, Any] = {"lobes": [_lobe(recipe, lobe) for lobe in lobes]}
+    if recipe.engine is not None:
+        section["cylinders"] = [
+            {"cylinder": cylinder, **found._asdict()}
+            for cylinder in recipe.engine.firing
+            if (found := valves(lobes, recipe.engine, cylinder)) is not None
+        ]
+    balance = _balance(recipe, lobes)
+    return section if balance is None else {**section, "balance": balance}
+
+
+def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
+    lift = event_lift(recipe, lobe)
+    swings = lobe.lobe.recipe.cam.arrangement.unit == "deg"
+    entry: dict[str, Any] = {
+        "name": lobe.lobe.name,
+        "recipe": lobe.lobe.recipe.path.name,
+        "at_deg": math.degrees(lobe.at),
+        "from": lobe.lobe.low / recipe.mm,
+        "to": lobe.lobe.high / recipe.mm,
+        "lift": math.degrees(lift) if swings else lift / recipe.mm,
+    }
+    found = lobe.event(lift)
+    if found is None:
+        return {**entry, "opens_deg": None, "closes_deg": None, "centre_deg": None, "duration_deg": None}
+    told = {"opens_deg": found.opens, "closes_deg": found.closes, "centre_deg": found.centre}
+    entry = {**entry, **told, "duration_deg": found.duration}
+    if recipe.engine is not None:
+        entry["opens_crank_deg"] = 2.0 * found.opens % CRANK
+        entry["closes_crank_deg"] = 2.0 * found.closes % CRANK
+    return entry
+
+
+def _balance(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any] | None:
+    """Unbalance of the lobes, and its couple about the middle of the shaft; None where a density is missing.
+
+    U = sum of m_k times the centre of mass, M = sum of U_k (z_k - z_0) (THEORY: balance in two planes); round parts
+    about the axis add nothing to either.
+    """
+    from camgeo.curve.measures import moments
+
+    if any(lobe.lobe.recipe.part.density is None or lobe.contour is None for lobe in lobes):
+        return None
+    middle = 0.5 * (recipe.bars[0].low + recipe.bars[0].high)
+    total, couple = 0.0 + 0.0j, 0.0 + 0.0j
+    for lobe in lobes:
+        if lobe.contour is None or lobe.lobe.recipe.part.density is None:
+            continue
+        found = moments(lobe.contour)
+        length = lobe.lobe.high - lobe.lobe.low
+        unbalance = lobe.lobe.recipe.part.density * KG * length * complex(found.x, found.y) * np.exp(1j * lobe.at)
+        total += unbalance
+        couple += unbalance * (0.5 * (lobe.lobe.high + lobe.lobe.low) - middle)
+    turned = -1.0 if recipe.rotation == "ccw" else 1.0
+    return {
+        "unbalance_kg_mm": abs(total),
+        "unbalance_deg": turned * math.degrees(math.atan2(total.imag, total.real)) % 360.0,
+        "couple_kg_mm2": abs(couple),
+        "couple_deg": turned * math.degrees(math.atan2(couple.imag, couple.real)) % 360.0,
+        "about_z": middle / recipe.mm,
+    }

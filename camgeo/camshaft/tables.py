@@ -1,0 +1,74 @@
+"""Tables of a camshaft: lifts over the shaft's angle, and events; CSV."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.camshaft.events import CRANK
+from camgeo.camshaft.lobes import lifts, valves
+from camgeo.files.table import write_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.recipe.camshaft import CamshaftRecipe
+
+STEP = 1.0  # degree of the shaft
+
+
+def column(name: str) -> str:
+    """A lobe's name as a column has it."""
+    return "".join(letter if letter.isalnum() and letter.isascii() else "_" for letter in name)
+
+
+def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
+    """Write lifts at every degree of the shaft, in the recipe's unit or degrees; of an engine also the crank angle."""
+    angle = np.arange(0.0, 360.0 + STEP, STEP)
+    heads, columns = ["shaft_deg"], [angle]
+    if recipe.engine is not None:
+        heads, columns = [*heads, "crank_deg"], [*columns, 2.0 * angle]
+    for lobe, lift in zip(lobes, lifts(lobes, np.radians(angle)), strict=True):
+        swings = lobe.lobe.recipe.cam.arrangement.unit == "deg"
+        heads.append(f"{column(lobe.lobe.name)}_{'deg' if swings else 'mm' if recipe.mm == 1.0 else 'in'}")
+        columns.append(np.degrees(lift) if swings else lift / recipe.mm)
+    write_table(path, heads, np.column_stack(columns))
+
+
+def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
+    """Write the events of every lobe, degrees of the shaft, and of an engine's cylinders, crank degrees.
+
+    `lobe` and `cylinder` are numbers, from 1 as they are listed; what a lobe does not have is an empty cell.
+    """
+    heads = ["lobe", "at_deg", "opens_deg", "closes_deg", "centre_deg", "duration_deg", "lift"]
+    engine, rows = recipe.engine, []
+    if engine is not None:
+        heads += ["cylinder", "opens_crank_deg", "closes_crank_deg", "duration_crank_deg"]
+        heads += ["ivo_btdc", "ivc_abdc", "evo_bbdc", "evc_atdc", "overlap_crank_deg", "separation_cam_deg"]
+    for number, lobe in enumerate(lobes, 1):
+        lift = event_lift(recipe, lobe)
+        found = lobe.event(lift)
+        told = [math.nan] * 4 if found is None else list(found)
+        scale = math.degrees(1.0) if lobe.lobe.recipe.cam.arrangement.unit == "deg" else 1.0 / recipe.mm
+        row = [number, math.degrees(lobe.at), *told, lift * scale]
+        if engine is not None:
+            cylinder = lobe.lobe.cylinder
+            crank = [math.nan] * 3
+            if found is not None:
+                crank = [2.0 * found.opens % CRANK, 2.0 * found.closes % CRANK, 2.0 * found.duration]
+            own = None if cylinder is None else valves(lobes, engine, cylinder)
+            row += [math.nan if cylinder is None else cylinder, *crank, *([math.nan] * 6 if own is None else own)]
+        rows.append(row)
+    write_table(path, heads, np.array(rows, dtype=np.float64), gaps=True)
+
+
+def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:
+    """Lift, mm or rad, at which a lobe's events are told: the engine's; of a machine's lobes half of the stroke."""
+    if recipe.engine is not None and lobe.lobe.recipe.cam.arrangement.unit == "mm":
+        return recipe.engine.lift
+    lift = lobe.design.motion.rows(np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False), 0)[0]
+    return 0.5 * float(np.ptp(lift)) + float(lift.min())

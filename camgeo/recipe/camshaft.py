@@ -1,0 +1,371 @@
+"""Camshafts: lobes of several recipes on one shaft, phased by cam degrees or by an engine's data."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from camgeo.cams.lift_table import read_path
+from camgeo.recipe.document import Document
+from camgeo.recipe.export import FILES, build_export, export_of
+from camgeo.recipe.keys import RECIPE, UNITS
+from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, read
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.reader import Reader
+from camgeo.schema.readers import READERS
+from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
+from camgeo.schema.yaml_source import Mapping, Scalar, entries, join
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.reader import Values
+    from camgeo.schema.yaml_source import Node, Source
+
+MOST_LOBES = 64
+MOST_CYLINDERS = 16
+LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are told
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A round part of a shaft from z `low` to `high`, mm: the shaft itself or a journal."""
+
+    name: str
+    low: float
+    high: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class Engine:
+    """Crank data, rad: lobe centres of intake after and of exhaust before dead centre, and when cylinders fire.
+
+    `firing` is by the number of the cylinder; `lift` is the tappet's, mm, at which events are told.
+    """
+
+    intake: float
+    exhaust: float
+    firing: dict[int, float]
+    lift: float = LIFT
+
+    def centre(self, cylinder: int, valve: str) -> float:
+        """Cam angle of a lobe's centre, rad, after the firing dead centre of the first cylinder in the order."""
+        after = self.intake if valve == "intake" else -self.exhaust
+        return 0.5 * (TURN + after + self.firing[cylinder])
+
+
+@dataclass(frozen=True)
+class Lobe:
+    """A lobe: its cam's recipe, where it stands on the shaft (mm), and its phase.
+
+    Either `at`, the cam angle (rad) by which its zero is turned, or `cylinder` and `valve`.
+    """
+
+    name: str
+    recipe: Recipe
+    low: float
+    high: float
+    at: float | None = None
+    cylinder: int | None = None
+    valve: str = ""
+
+
+@dataclass(frozen=True)
+class CamshaftRecipe(Order):
+    """A recipe of a camshaft; its `bars` are the shaft, the first, and its journals."""
+
+    lobes: tuple[Lobe, ...]
+    bars: tuple[Bar, ...]
+    bore: float | None = None
+    engine: Engine | None = None
+
+
+# --- keys -------------------------------------------------------------------------------------------------------------
+
+
+def _rows(table: Table, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
+    """Read a list of mappings with the keys of one table."""
+    row = Field("", Kind.TABLE, field.about, table=table)
+    items = enumerate(reader.items(field, node, path, MOST_LOBES))
+    rows = [reader.mapping(row, item, join(path, i)) for i, item in items]
+    whole = [values for values in rows if values is not None]
+    return whole if len(whole) == len(rows) else None
+
+
+def _list_of(name: str, table: Table, about: str, example: str, *, required: bool = False) -> Field:
+    form = Form(
+        f"a list of {name}",
+        f"a list of {name} such as {example}",
+        partial(_rows, table),
+        lambda _: {"type": "array", "items": table_schema(table), "minItems": 1, "maxItems": MOST_LOBES},
+    )
+    return Field(name, Kind.OWN, about, required, default="" if required else "none", form=form)
+
+
+def _angle(name: str, about: str, least: float, most: float, *, required: bool = False) -> Field:
+    return Field(name, Kind.ANGLE, about, required, at_least=least, at_most=most)
+
+
+_PATH = Form(
+    "the path of a recipe",
+    "the path of a lobe's recipe, such as intake.yaml",
+    read_path,
+    lambda _: {"type": "string", "minLength": 1},
+)
+LOBE = Table(
+    (
+        Field("recipe", Kind.OWN, "recipe of the lobe's cam, from this file's folder", required=True, form=_PATH),
+        _angle(
+            "at",
+            "cam degrees by which the lobe's zero is turned counter-clockwise, as drawn with `rotation: cw`",
+            -360,
+            360,
+        ),
+        Field("cylinder", Kind.INTEGER, "number of its cylinder, in place of `at`", at_least=1, at_most=MOST_CYLINDERS),
+        Field("valve", Kind.CHOICE, "which of the cylinder's valves it opens", choices=("intake", "exhaust")),
+        coordinate("z", "height of the lobe's lower face", required=True),
+        length("length", "length of the lobe along the shaft", default="part.thickness of its recipe"),
+    ),
+    alternatives=(("at", ()), ("cylinder", ("valve",))),
+)
+JOURNAL = Table(
+    (
+        coordinate("z", "height of the journal's lower face", required=True),
+        length("length", "length along the shaft", required=True),
+        length("diameter", "diameter", required=True),
+    )
+)
+ENGINE = Table(
+    (
+        Field(
+            "order", Kind.NUMBERS, "firing order", required=True, unit=Kind.INTEGER, at_least=1, at_most=MOST_CYLINDERS
+        ),
+        _angle("intake", "centre of the intake lobes, crank degrees after dead centre", 0, 360, required=True),
+        _angle("exhaust", "centre of the exhaust lobes, crank degrees before dead centre", 0, 360, required=True),
+        length("lift", "lift of the tappet at which events are told", default="1.27 mm"),
+        Field(
+            "firing",
+            Kind.NUMBERS,
+            "crank degrees at which the cylinders of `order` fire",
+            default="even",
+            unit=Kind.ANGLE,
+            at_least=0,
+            at_most=720,
+        ),
+    )
+)
+CAMSHAFT = Field(
+    "camshaft",
+    Kind.TABLE,
+    "lobes of several recipes on one shaft",
+    required=True,
+    table=Table(
+        (
+            mapping(
+                "shaft",
+                "the shaft between the lobes",
+                length("diameter", "diameter", required=True),
+                coordinate("from", "height of its lower end", default="0"),
+                coordinate("to", "height of its upper end", required=True),
+                length("bore", "diameter of a hole all through it", default="none"),
+            ),
+            _list_of("journals", JOURNAL, "its bearings", "[{z: 0, length: 20, diameter: 30}]"),
+            _list_of("lobes", LOBE, "the lobes", "[{recipe: intake.yaml, at: 234, z: 30}]", required=True),
+            Field(
+                "engine",
+                Kind.TABLE,
+                "data of a four-stroke engine, for lobes with `cylinder` and `valve`",
+                default="none",
+                table=ENGINE,
+            ),
+        )
+    ),
+)
+
+
+def _plain(kind: str) -> Table:
+    return Table(tuple(item for item in FILES[kind].fields if item.name in {"units", "tolerance"}))
+
+
+SHAFT_FILES = {
+    **{kind: _plain(kind) for kind in ("stl", "3mf", "step", "glb")},
+    "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "events")),)),
+    "svg": Table((Field("as", Kind.CHOICE, "what is drawn", default="timing", choices=("timing",)),)),
+    "html": Table(()),
+    "dxf": Table(()),  # to say what to do instead
+    "gcode": Table(()),
+}
+OF_A_LOBE = frozenset({"dxf", "gcode"})
+SHAFT = Table(
+    (
+        *(RECIPE.field(name) for name in ("name", "about", "units", "rotation")),
+        CAMSHAFT,
+        export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]"),
+        RECIPE.field("verify"),
+    )
+)
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+
+
+def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
+    """Read the recipe of a camshaft and those of its lobes; raises RecipeErrors with all faults of one of them."""
+    reader = Reader(source, READERS, SHAFT)
+    root = source.root
+    reader.survey(root, "")
+    top = entries(root) if isinstance(root, Mapping) else {}
+    units = top.get("units")
+    if isinstance(units, Scalar) and units.text in UNITS:
+        reader.units, reader.mm = units.text, UNITS[units.text]
+    values = reader.table(SHAFT, root, "") if isinstance(root, Mapping) else {}
+    if "name" not in reader.marks:
+        try:
+            values["name"] = read_name(path.stem)
+        except Complaint as complaint:
+            remedy = f"give `name:` with {NAME_RULE}"
+            reader.fault(root.mark, "name", f"the file's stem is {complaint.problem}", repr(path.stem), remedy)
+    if not reader.errors:
+        _check(values, reader)
+    if reader.errors:
+        raise RecipeErrors(reader.errors)
+    document = Document(
+        path=path,
+        text=source.text,
+        marks=reader.marks,
+        renamed=reader.renamed,
+        notices=tuple(reader.notices),
+        kinds=reader.kinds,
+    )
+    return _built(values, document)
+
+
+def _check(values: Values, reader: Reader) -> None:
+    """Note the faults between fields."""
+    camshaft = values["camshaft"]
+    for file in values.get("export", {}).get("files", []):
+        if file["kind"] in OF_A_LOBE:
+            reader.fault_at(file["path"], f"a camshaft has no {file['kind']}", None, "export the lobe's own recipe")
+    engine = camshaft.get("engine")
+    if engine is not None:
+        order, firing, path = engine["order"], engine.get("firing"), "camshaft.engine"
+        if len(set(order)) < len(order):
+            reader.fault_at(f"{path}.order", "a cylinder fires twice", None, "name each cylinder once")
+        if firing is not None and len(firing) != len(order):
+            remedy = f"give {len(order)}, one for each cylinder of the order"
+            reader.fault_at(f"{path}.firing", f"{len(firing)} angles for {len(order)} cylinders", None, remedy)
+    for i, lobe in enumerate(camshaft["lobes"]):
+        path = f"camshaft.lobes[{i}].cylinder"
+        if "cylinder" in lobe and engine is None:
+            reader.fault_at(path, "needs the engine's data", None, "give camshaft.engine, or `at` in its place")
+        elif "cylinder" in lobe and lobe["cylinder"] not in engine["order"]:
+            remedy = f"give one of {', '.join(map(str, engine['order']))}"
+            reader.fault_at(path, "not in the firing order", str(lobe["cylinder"]), remedy)
+    shaft = camshaft.get("shaft")
+    if shaft is None:
+        mark = reader.marks["camshaft"]
+        remedy = "give its diameter and where it ends, such as {diameter: 24, to: 320}"
+        reader.fault(mark, "camshaft.shaft", "missing", None, remedy)
+        return
+    if not shaft.get("from", 0.0) < shaft["to"]:
+        reader.fault_at("camshaft.shaft.to", "not above its lower end", None, "give a greater height")
+    if not shaft.get("bore", 0.0) < shaft["diameter"]:
+        reader.fault_at("camshaft.shaft.bore", "not below the diameter", None, "give a smaller bore, or leave it out")
+    for i, journal in enumerate(camshaft.get("journals", [])):
+        if not journal["diameter"] > shaft["diameter"]:
+            remedy = "give a larger one, or leave the journal out"
+            reader.fault_at(f"camshaft.journals[{i}].diameter", "not above the shaft's", None, remedy)
+
+
+def _built(values: Values, document: Document) -> CamshaftRecipe:
+    """Make the recipe of values in which there is no fault; the lobes' recipes are read here."""
+    camshaft, mm = values["camshaft"], UNITS[values.get("units", "mm")]
+    shaft, rotation = camshaft["shaft"], values.get("rotation", "cw")
+    low, high = shaft.get("from", 0.0), shaft["to"]
+    journals = [
+        Bar(f"journal {i + 1}", row["z"], row["z"] + row["length"], row["diameter"])
+        for i, row in enumerate(camshaft.get("journals", []))
+    ]
+    cams: dict[str, Recipe] = {}
+    for i, row in enumerate(camshaft["lobes"]):
+        if row["recipe"] not in cams:
+            cams[row["recipe"]] = _cam(document, row["recipe"], f"camshaft.lobes[{i}].recipe")
+    names = _names(camshaft["lobes"], cams)
+    lobes = []
+    for i, (row, name) in enumerate(zip(camshaft["lobes"], names, strict=True)):
+        cam = cams[row["recipe"]]
+        long = row.get("length", cam.part.thickness)
+        if long is None:
+            where, remedy = f"camshaft.lobes[{i}].length", f"give it, or part.thickness in {row['recipe']}"
+            raise document.error(where, "missing, as the lobe's recipe has no thickness", None, remedy)
+        own = replace(cam, rotation=rotation, units=values.get("units", "mm"), mm=mm)
+        lobes.append(
+            Lobe(name, own, row["z"], row["z"] + long, row.get("at"), row.get("cylinder"), row.get("valve", ""))
+        )
+    _demand_apart(document, lobes, journals, (low, high))
+    return CamshaftRecipe(
+        name=values["name"],
+        about=values.get("about", ""),
+        units=values.get("units", "mm"),
+        mm=mm,
+        rotation=rotation,
+        export=build_export({"files": [{"kind": "stl"}], **values.get("export", {})}),
+        verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
+        lobes=tuple(lobes),
+        bars=(Bar("shaft", low, high, shaft["diameter"]), *journals),
+        bore=shaft.get("bore"),
+        engine=_engine(camshaft.get("engine")),
+        **vars(document),
+    )
+
+
+def _engine(values: Values | None) -> Engine | None:
+    if values is None:
+        return None
+    order = values["order"]
+    firing = values.get("firing") or [2.0 * TURN * k / len(order) for k in range(len(order))]
+    return Engine(values["intake"], values["exhaust"], dict(zip(order, firing, strict=True)), values.get("lift", LIFT))
+
+
+def _cam(document: Document, name: str, field: str) -> Recipe:
+    """Read a lobe's recipe; raises RecipeErrors with its faults, or at the field for a cam that is no lobe."""
+    path = document.path.parent / name
+    if not path.is_file():
+        raise document.error(field, "no such file", f"'{name}'", f"give the path of a recipe from {path.parent}")
+    recipe = read(file_bytes(path), path)
+    if recipe.linkage is not None:
+        raise document.error(field, "a lobe drives no linkage", f"'{name}'", "give a recipe without one")
+    return recipe
+
+
+def _names(rows: list[Values], cams: dict[str, Recipe]) -> list[str]:
+    """Name each lobe: by cylinder and valve, or by its recipe; alike ones are counted."""
+    names = [
+        f"cylinder {row['cylinder']} {row['valve']}" if "cylinder" in row else cams[row["recipe"]].name for row in rows
+    ]
+    return [f"{name} {names[: i + 1].count(name)}" if names.count(name) > 1 else name for i, name in enumerate(names)]
+
+
+def _demand_apart(document: Document, lobes: list[Lobe], journals: list[Bar], ends: tuple[float, float]) -> None:
+    """Raise RecipeErrors where a lobe or a journal reaches beyond the shaft, or into another."""
+    fields = [f"camshaft.lobes[{i}].z" for i in range(len(lobes))]
+    fields += [f"camshaft.journals[{i}].z" for i in range(len(journals))]
+    parts: list[Lobe | Bar] = [*lobes, *journals]
+    placed = list(zip(fields, parts, strict=True))
+    low, high = ends
+    for field, part in placed:
+        if part.low < low or part.high > high:
+            span = f"it reaches from {part.low:.9g} to {part.high:.9g} mm, the shaft from {low:.9g} to {high:.9g} mm"
+            raise document.error(field, span, None, "give another z, or a longer shaft")
+    for (_, part), (field, other) in combinations(placed, 2):
+        if part.low < other.high and other.low < part.high:
+            span = f"{other.name} overlaps {part.name}, which reaches from {part.low:.9g} to {part.high:.9g} mm"
+            raise document.error(field, span, None, "give another z or a shorter length")

@@ -1,0 +1,266 @@
+"""The verdict on a camshaft: a solid of round stretches and lobes, each lobe judged in its own section, at its angle.
+
+Every stretch of the shaft between two meant faces is looked at in sections. A lobe's section is turned back by the
+angle at which the lobe is meant to stand and judged as a disc's contour is; so a lobe at another angle is one whose
+follower moves otherwise. By how much it is turned is told by `phase`, where its faces are by `position`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.follower.deviation import deviation
+from kin.judge.bore import bore_check, round_check
+from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
+from kin.judge.contour_checks import judge_contour
+from kin.judge.limits import limit_of
+from kin.judge.verdict import SurfaceVerdict, Verdict
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+from kin.read.errors import ReadError
+from kin.read.files import kind_of, read_solid
+from kin.read.nesting import scaled
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.follower.base import Follower
+    from kin.judge.intent import Limits, SurfaceIntent
+    from kin.numeric.arrays import Array
+    from kin.read.files import AnySolid
+    from kin.read.nesting import Chain
+
+NEAR_FACES = (0.02, 0.98)  # of a lobe's length, besides its middle: where its sections are looked at
+COARSE = 720  # shaft angles at which a lobe's phase is first looked for
+STEPS = 20  # of Newton's method
+SAME = 1e-9  # mm: heights this close are one
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})
+
+
+@dataclass(frozen=True)
+class LobeIntent:
+    """A lobe of a shaft: its surface, turned by `at`, rad, from z = low to high, mm, and what is permitted of it."""
+
+    name: str
+    surface: SurfaceIntent
+    at: float
+    low: float
+    high: float
+    limits: Limits
+
+
+@dataclass(frozen=True)
+class BarIntent:
+    """A round stretch of a shaft from z = low to high, mm."""
+
+    name: str
+    low: float
+    high: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class CamshaftIntent:
+    """What a camshaft is meant to be.
+
+    lobes     apart from one another and from the journals
+    bars      the shaft itself, the first, and its journals, which are thicker
+    bore      diameter of a hole all through it, mm; None for none
+    mirrored  the solid is the mirror image in the x axis (the shaft turns counter-clockwise)
+    tolerance of its round parts and its faces, mm
+    """
+
+    lobes: tuple[LobeIntent, ...]
+    bars: tuple[BarIntent, ...]
+    bore: float | None
+    mirrored: bool
+    tolerance: float
+
+    @property
+    def stretches(self) -> list[tuple[float, float, LobeIntent | BarIntent]]:
+        """From below: from, to, and what is outermost there."""
+        shaft, *journals = self.bars
+        parts: list[LobeIntent | BarIntent] = [*self.lobes, *journals, shaft]
+        levels = sorted({z for part in parts for z in (part.low, part.high)})
+        return [
+            (low, high, next(part for part in parts if part.low <= low and high <= part.high))
+            for low, high in pairwise(levels)
+        ]
+
+
+class _Sections(NamedTuple):
+    """Chains of sections by their heights, in mm and as if not mirrored, the outermost first."""
+
+    solid: AnySolid
+    mirrored: bool
+
+    def at(self, z: float) -> Sequence[Chain]:
+        return scaled(self.solid.section(z).chains, 1.0, mirrored=self.mirrored)
+
+
+def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: float | None = None) -> Verdict:
+    """Judge an STL, 3MF or STEP of a camshaft, its lobes at `angles` equal steps of the shaft; see `verify`.
+
+    Checks of a lobe are told by its name. Raises OSError as the file system does, ValueError for another suffix.
+    """
+    kind = kind_of(path)
+    stretches = [(part, _heights(low, high, part)) for low, high, part in intent.stretches]
+    try:
+        solid = read_solid(path, [z for _, heights in stretches for z in heights], units)
+    except ReadError as error:
+        unread = "readable" if error.reason in NOT_READ else "watertight"
+        return Verdict(kind, (about(failed(unread, error.message), path.name),))
+    if len(solid.sections) < sum(len(heights) for _, heights in stretches):
+        text = "the solid has no section where the camshaft has a lobe or a journal"
+        return Verdict(kind, (about(failed("readable", text), path.name),))
+    sections = _Sections(solid, intent.mirrored)
+    phi = TURN / angles * np.arange(angles, dtype=np.float64)
+    checks = [at_most("watertight", len(solid.faults), 0, "faults", detail="; ".join(solid.faults))]
+    checks.append(_ends(solid, intent))
+    surfaces: list[SurfaceVerdict] = []
+    rounds: dict[str, list[Check]] = {"bore": []}
+    for part, (middle, *others) in stretches:
+        outline, *inner = sections.at(middle)
+        bore = bore_check([chain.contour for chain in inner], intent.bore, intent.tolerance)
+        rounds["bore"] += [] if bore is None else [bore]
+        if isinstance(part, BarIntent):
+            checked = round_check("journal", outline.contour, part.diameter, intent.tolerance)
+            rounds.setdefault(part.name, []).append(replace(checked, surface=part.name))
+            continue
+        surface, found = _lobe(outline, part, phi, solid.uneven)
+        found.append(_worst([_same(sections.at(z)[0], part, z) for z in others]))
+        found.append(_position(solid, part))
+        checks += [replace(check, surface=part.name) for check in found]
+        surfaces.append(surface)
+    checks += [_worst(same) for same in rounds.values() if same]
+    checks.append(_volume(solid, intent, surfaces))
+    chains = tuple(surface.contour for surface in surfaces if surface.contour is not None)
+    named = tuple(about(check, path.name) for check in checks)
+    return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, (chains,), solid.uneven)
+
+
+def _worst(checks: Sequence[Check]) -> Check:
+    """One of several checks alike: one that fails, or that with the greatest figure."""
+    return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))
+
+
+def _heights(low: float, high: float, part: LobeIntent | BarIntent) -> list[float]:
+    shares = (0.5, *NEAR_FACES) if isinstance(part, LobeIntent) else (0.5,)
+    return [low + share * (high - low) for share in shares]
+
+
+def _lobe(outline: Chain, lobe: LobeIntent, phi: Array, uneven: float) -> tuple[SurfaceVerdict, list[Check]]:
+    """Judge a lobe's section, turned back to where its motion begins; its phase first."""
+    chain = outline._replace(contour=outline.contour.turned(-lobe.at))
+    verdict, checks = judge_contour(chain, lobe.surface, phi, lobe.limits, uneven)
+    return replace(verdict, name=lobe.name), [_phase(chain, lobe), *checks]
+
+
+def _phase(chain: Chain, lobe: LobeIntent) -> Check:
+    """Check the angle by which a lobe is turned against the intended one, in degrees of the shaft.
+
+    It is that by which the intended motion fits the measured one best, by least squares; its limit is the permitted
+    motion error over the greatest velocity.
+    """
+    gauge, limits = lobe.surface.gauge, lobe.limits
+    angle = np.arange(COARSE) * TURN / COARSE
+    rest, *_ = gauge.resting(chain.contour)
+    measured = rest.rows(angle + 0.5 * TURN / COARSE)[0] / gauge.si
+    angle += 0.5 * TURN / COARSE
+    turned = _best_turn(gauge, angle, measured)
+    velocity = float(np.abs(_rows(gauge, angle)[1]).max())
+    error, _ = limit_of(gauge.motion_limit, limits.motion, limits.tolerance, 0.0)
+    permitted = np.radians(error) if gauge.unit == "deg" else error
+    detail = f"by the motion it stands {np.degrees(turned):+.6g} degrees from where it is meant, by least squares"
+    if not velocity > 0.0:
+        return Check("phase", True, 0.0, None, "deg", detail="its follower does not move: every angle is right")
+    limit = float(np.degrees(permitted / velocity))
+    return at_most("phase", float(np.degrees(abs(turned))), limit, "deg", detail=detail, slack=1e-9)
+
+
+def _rows(gauge: Follower, angle: Array) -> Array:
+    """Intended position, mm or radians, and its first two derivatives, (3, n)."""
+    return gauge.motion.derivatives(np.mod(angle, TURN), 2)
+
+
+def _best_turn(gauge: Follower, angle: Array, measured: Array) -> float:
+    """Angle d, rad, by which intended s(angle - d) is nearest to what was measured: from all shifts, then closely."""
+    intended = _rows(gauge, angle)[0]
+    spectrum = np.fft.rfft(measured - measured.mean()) * np.conj(np.fft.rfft(intended - intended.mean()))
+    shift = int(np.argmax(np.fft.irfft(spectrum, len(angle))))
+    turned = (shift if shift <= len(angle) // 2 else shift - len(angle)) * TURN / len(angle)
+    for _ in range(STEPS):
+        position, slope, _bend = _rows(gauge, angle - turned)
+        step = float(slope @ (position - measured) / (slope @ slope)) if slope.any() else 0.0
+        turned += step
+        if abs(step) < 1e-12:
+            break
+    return turned
+
+
+def _same(outline: Chain, lobe: LobeIntent, z: float) -> Check:
+    """Check that a section near a face is the lobe's too."""
+    contour, tolerance = outline.contour.turned(-lobe.at), lobe.limits.tolerance
+    strayed = deviation(contour.as_arcs()[0], lobe.surface.gauge.envelope)
+    detail = f"the section at z = {z:.6g} mm"
+    if strayed.rounds != 1:
+        return failed(
+            "thickness", f"{detail} goes {strayed.rounds} times round the exact one", unit="mm", limit=tolerance
+        )
+    size = float(np.abs(contour.vertices).max())
+    return at_most("thickness", strayed.worst[0], tolerance, "mm", detail=detail, slack=1e-9 + ROUNDING * size)
+
+
+def _position(solid: AnySolid, lobe: LobeIntent) -> Check:
+    """Check that a lobe has its faces where they are meant to be."""
+    faces = np.array(solid.faces)
+    if not faces.size:
+        return failed("position", "the solid has no horizontal face", unit="mm", limit=lobe.limits.tolerance)
+    nearest = [float(faces[np.abs(faces - z).argmin()]) for z in (lobe.low, lobe.high)]
+    off = max(abs(nearest[0] - lobe.low), abs(nearest[1] - lobe.high))
+    detail = f"faces at z = {nearest[0]:.9g} and {nearest[1]:.9g} mm, {lobe.low:.9g} and {lobe.high:.9g} mm are meant"
+    checked = at_most("position", off, lobe.limits.tolerance, "mm", detail=detail, slack=SAME)
+    return less_sure(checked, solid.uneven)
+
+
+def _ends(solid: AnySolid, intent: CamshaftIntent) -> Check:
+    """Check both ends of the shaft, and that there is no face where none is meant."""
+    shaft, meant = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
+    off = max(abs(solid.z_min - shaft.low), abs(solid.z_max - shaft.high))
+    stray = [z for z in solid.faces if float(np.abs(meant - z).min()) > intent.tolerance + SAME]
+    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, {shaft.low:.9g} to {shaft.high:.9g} mm is expected"
+    if stray:
+        places = ", ".join(f"{z:.9g}" for z in stray[:5])
+        return failed(
+            "thickness",
+            f"a horizontal face at z = {places} mm, where none is expected; {detail}",
+            unit="mm",
+            limit=intent.tolerance,
+        )
+    return at_most("thickness", off, intent.tolerance, "mm", detail=detail, slack=SAME)
+
+
+def _volume(solid: AnySolid, intent: CamshaftIntent, surfaces: Sequence[SurfaceVerdict]) -> Check:
+    """Check the volume against the areas of the exact sections, within the tolerance times the walls.
+
+    Of a lobe whose exact contour has no closed form, such as a trimmed one, the contour as read counts.
+    """
+    bore, volume, wall = intent.bore or 0.0, 0.0, 0.0
+    read = {surface.name: (surface.area or 0.0, surface.perimeter or 0.0) for surface in surfaces}
+    for low, high, part in intent.stretches:
+        if isinstance(part, BarIntent):
+            area, length = 0.25 * np.pi * part.diameter**2, np.pi * part.diameter
+        else:
+            envelope = part.surface.gauge.envelope
+            area, length = envelope.area_and_perimeter() if envelope.regular else read[part.name]
+        volume += (area - 0.25 * np.pi * bore**2) * (high - low)
+        wall += (length + np.pi * bore + 2.0 * np.pi * intent.tolerance) * (high - low) + 2.0 * area
+    detail = f"{solid.volume:.9g} mm^3, by the intent {volume:.9g}"
+    return at_most(
+        "volume", abs(solid.volume - volume), intent.tolerance * wall, "mm^3", detail=detail, slack=ROUNDING * volume
+    )

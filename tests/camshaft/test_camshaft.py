@@ -1,0 +1,322 @@
+"""Camshafts: lobes where they belong, at their angle, judged in the solid as it lies on disk; an engine's events."""
+
+import csv
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.heavy import trimesh
+
+import camgeo
+from camgeo.cli.main import main
+from kin.judge.camshaft import verify_camshaft
+
+RECIPES = Path(__file__).parents[2] / "recipes"
+INTAKE = """\
+cam:
+  kind: disc
+  base_radius: 18
+  follower: {kind: flat}
+  motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}
+part: {thickness: 14, density: 7850}
+"""
+EXHAUST = INTAKE.replace("lift: 8, half: 68", "lift: 7.6, half: 65")
+ROLLER = """\
+cam:
+  kind: disc
+  base_radius: 30
+  follower: {kind: roller, radius: 8, offset: 4}
+  motion: [{rise: 12, over: 60, law: modified-sine}, {dwell: 30}, {return: 12, over: 90, law: cycloidal}, {dwell: 180}]
+part: {thickness: 10}
+"""
+ENGINE = "  engine: {order: [1, 3, 4, 2], intake: 110, exhaust: 114, lift: 1}\n"
+SHAFT = "  shaft: {diameter: 24, to: 120, bore: 8}\n  journals: [{z: 0, length: 20, diameter: 30}]\n"
+
+
+def shaft(
+    folder: Path, lobes: str, engine: str = "", *, files: str = "[stl]", extra: str = "", body: str = SHAFT
+) -> Path:
+    for name, text in (("intake", INTAKE), ("exhaust", EXHAUST), ("roller", ROLLER)):
+        (folder / f"{name}.yaml").write_text(text)
+    path = folder / "shaft.yaml"
+    rows = "".join(f"    - {{{row}}}\n" for row in lobes.strip().splitlines())
+    text = f"{extra}camshaft:\n{body}  lobes:\n{rows}{engine}export: {{tolerance: 0.01, files: {files}}}\n"
+    path.write_text(text + "verify: {angles: 360}\n")
+    return path
+
+
+TWO = "recipe: intake.yaml, at: 33.3, z: 30\nrecipe: roller.yaml, at: -120, z: 60"
+
+
+def failing(report: camgeo.Report) -> set[str]:
+    return {
+        f"{check.name}, {check.surface}" if check.surface else check.name for check in report.checks if not check.ok
+    }
+
+
+# --- published and worked numbers -------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory: pytest.TempPathFactory) -> camgeo.Report:
+    """Four cylinders of case f20, as tables."""
+    folder = tmp_path_factory.mktemp("engine")
+    lobes = "\n".join(
+        f"recipe: {valve}.yaml, cylinder: {cylinder}, valve: {valve}, z: {40 * k + 20 * j}, length: 14"
+        for k, cylinder in enumerate((1, 2, 3, 4))
+        for j, valve in enumerate(("intake", "exhaust"))
+    )
+    body = "  shaft: {diameter: 24, to: 200}\n"
+    path = shaft(folder, lobes, ENGINE, files="[{csv: {as: events}}, {csv: {as: motion}}, svg]", body=body)
+    return camgeo.export(path, folder / "out")
+
+
+@pytest.mark.parametrize(("cylinder", "intake", "exhaust"), [(1, 235, 123), (3, 325, 213), (4, 55, 303), (2, 145, 33)])
+def test_lobes_stand_where_the_engine_has_them(
+    engine: camgeo.Report, cylinder: int, intake: float, exhaust: float
+) -> None:
+    at = {lobe["name"]: lobe["at_deg"] for lobe in dict(engine)["camshaft"]["lobes"]}
+    assert at[f"cylinder {cylinder} intake"] == pytest.approx(intake, abs=1e-9)
+    assert at[f"cylinder {cylinder} exhaust"] == pytest.approx(exhaust, abs=1e-9)
+
+
+def test_events_of_an_engine(engine: camgeo.Report) -> None:
+    """Case f20: crossings at 1 mm of tappet lift, in closed form."""
+    for row in dict(engine)["camshaft"]["cylinders"]:
+        assert row["intake_opens"] == pytest.approx(-9.750708606, abs=1e-8)
+        assert row["intake_closes"] == pytest.approx(30.249291394, abs=1e-8)
+        assert row["exhaust_opens"] == pytest.approx(29.210020268, abs=1e-8)
+        assert row["exhaust_closes"] == pytest.approx(-18.789979732, abs=1e-8)
+        assert row["overlap"] == pytest.approx(-28.540688338, abs=1e-8)
+        assert row["separation"] == pytest.approx(112, abs=1e-9)
+
+
+def test_tables_of_an_engine(engine: camgeo.Report) -> None:
+    """The same in CSV; lifts at crank 200 are those of case f20."""
+    assert engine.path is not None
+    events = list(csv.DictReader((engine.path / "shaft-events.csv").read_text().splitlines()))
+    assert float(events[0]["opens_crank_deg"]) == pytest.approx(369.750709, abs=1e-6)
+    assert float(events[0]["duration_crank_deg"]) == pytest.approx(200.498582789, abs=1e-8)
+    rows = list(csv.DictReader((engine.path / "shaft-motion.csv").read_text().splitlines()))
+    at_200 = next(row for row in rows if float(row["crank_deg"]) == 200.0)
+    intake = [float(at_200[f"cylinder_{k}_intake_mm"]) for k in (1, 3, 4, 2)]
+    exhaust = [float(at_200[f"cylinder_{k}_exhaust_mm"]) for k in (1, 3, 4, 2)]
+    assert intake == pytest.approx([0, 0, 1.952853268, 1.952853268], abs=1e-8)
+    assert exhaust == pytest.approx([5.821737715, 0, 0, 0], abs=1e-8)
+
+
+def test_balance_of_four_lobes(tmp_path: Path) -> None:
+    """Case f23: the sum is nothing, the couple is not."""
+    rows = [f"recipe: intake.yaml, at: {at}, z: {z}" for at, z in ((235, 0), (145, 30), (325, 60), (55, 90))]
+    body = "  shaft: {diameter: 24, to: 104}\n"
+    path = shaft(tmp_path, "\n".join(rows), files="[csv]", body=body)
+    balance = dict(camgeo.check(path))["camshaft"]["balance"]
+    assert balance["unbalance_kg_mm"] == pytest.approx(0.0, abs=1e-12)
+    assert balance["couple_kg_mm2"] == pytest.approx(26.409844330, abs=1e-6)
+    assert balance["couple_deg"] == pytest.approx(36.565051177, abs=1e-6)
+    assert balance["about_z"] == 52.0
+
+
+def test_lifts_of_a_machine_in_phase(tmp_path: Path) -> None:
+    """Case f24, cam C: zero at 310, its follower along +x."""
+    rows = "recipe: roller.yaml, at: 310, z: 30"
+    (folder := tmp_path / "m").mkdir()
+    path = shaft(folder, rows, files="[csv, svg]")
+    report = camgeo.export(path, folder / "out")
+    assert report.path is not None
+    table = list(csv.DictReader((report.path / "shaft.csv").read_text().splitlines()))
+    lift = {float(row["shaft_deg"]): float(row["roller_mm"]) for row in table}
+    assert lift[0.0] == pytest.approx(11.482835811, abs=1e-8)
+    assert [lift[40.0], lift[130.0]] == pytest.approx([12.0, 0.0], abs=1e-9)
+    assert lift[350.0] == pytest.approx(9.309969066, abs=1e-8)
+    assert "lifts over the shaft" in (report.path / "shaft.svg").read_text()
+
+
+# --- the metal --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def solid(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, camgeo.Report]:
+    folder = tmp_path_factory.mktemp("solid")
+    path = shaft(folder, TWO, files="[stl, 3mf, html]")
+    return path, camgeo.export(path, folder / "out")
+
+
+def test_a_solid_of_two_lobes(solid: tuple[Path, camgeo.Report]) -> None:
+    _, report = solid
+    assert report.ok
+    assert report.path is not None
+    mesh = trimesh.load(report.path / "shaft.stl")
+    assert mesh.is_watertight
+    assert mesh.body_count == 1
+    assert mesh.bounds[:, 2].tolist() == [0.0, 120.0]
+    # the nose of the flat lobe, whose greatest lift is at shaft angle 0, points to `at`
+    (section,) = mesh.section(plane_origin=[0, 0, 37], plane_normal=[0, 0, 1]).discrete[:1] or [None]
+    points = max(mesh.section(plane_origin=[0, 0, 37], plane_normal=[0, 0, 1]).discrete, key=lambda p: np.ptp(p[:, 0]))
+    nose = points[np.hypot(points[:, 0], points[:, 1]).argmax()]
+    assert section is not None
+    assert math.degrees(math.atan2(nose[1], nose[0])) == pytest.approx(33.3, abs=0.5)
+    assert np.hypot(*nose[:2]) == pytest.approx(26.0, abs=0.02)
+
+
+def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> None:
+    _, report = solid
+    assert report.path is not None
+    text = (report.path / "shaft.html").read_text()
+    assert "<script" not in text
+    assert "every check holds" in text
+    assert "<button" not in text
+    assert re.search(r"position, roller", text)
+
+
+OF_A_LOBE = ("phase", "contour", "motion", "thickness")
+PLANTED = {
+    "crank for cam degrees": (TWO.replace("33.3", "66.6"), SHAFT, {f"{check}, intake" for check in OF_A_LOBE}),
+    "a tenth of a degree": (TWO.replace("-120", "-119.9"), SHAFT, {f"{check}, roller" for check in OF_A_LOBE}),
+    "another place": (TWO.replace("z: 60", "z: 60.02"), SHAFT, {"position, roller", "thickness"}),
+    "a thick journal": (TWO, SHAFT.replace("diameter: 30", "diameter: 30.05"), {"journal, journal 1"}),
+    "a wide bore": (TWO, SHAFT.replace("bore: 8", "bore: 8.05"), {"bore"}),
+    "a long shaft": (TWO, SHAFT.replace("to: 120", "to: 120.05"), {"thickness"}),
+}
+
+
+@pytest.mark.parametrize(("lobes", "body", "fails"), PLANTED.values(), ids=PLANTED)
+def test_planted_faults(
+    tmp_path: Path, solid: tuple[Path, camgeo.Report], lobes: str, body: str, fails: set[str]
+) -> None:
+    """A solid of another recipe: a lobe by crank for cam degrees, slightly turned, in another place, other bars."""
+    right, _ = solid
+    made = camgeo.export(shaft(tmp_path, lobes, body=body), tmp_path / "out")
+    assert made.ok
+    assert made.path is not None
+    assert failing(camgeo.verify(right, made.path / "shaft.stl")) == fails
+
+
+def test_a_mirrored_shaft_fails(tmp_path: Path, solid: tuple[Path, camgeo.Report]) -> None:
+    right, _ = solid
+    made = camgeo.export(shaft(tmp_path, TWO, extra="rotation: ccw\n"), tmp_path / "out")
+    assert made.ok
+    assert made.path is not None
+    assert {"phase, intake", "contour, roller", "motion, roller"} <= failing(
+        camgeo.verify(right, made.path / "shaft.stl")
+    )
+
+
+def test_a_phase_is_measured(solid: tuple[Path, camgeo.Report]) -> None:
+    """Judged as if turned by a tenth of a degree more, the lobe is found a tenth of a degree back."""
+    from dataclasses import replace
+
+    from camgeo.camshaft.lobes import placed
+    from camgeo.camshaft.pipeline import _intent
+    from camgeo.common.clock import Clock
+    from camgeo.recipe.loading import load_order
+
+    path, report = solid
+    recipe = load_order(path)
+    intent = _intent(recipe, placed(recipe, Clock()), 0.01)
+    first, second = intent.lobes
+    turned = replace(intent, lobes=(replace(first, at=first.at + math.radians(0.1)), second))
+    assert report.path is not None
+    verdict = verify_camshaft(report.path / "shaft.3mf", turned, 360)
+    check = next(check for check in verdict.checks if check.name == "phase")
+    assert not check.ok
+    assert check.value == pytest.approx(0.1, abs=1e-3)
+    assert "-0.0998" in check.detail
+
+
+def test_a_disc_is_no_camshaft(tmp_path: Path, solid: tuple[Path, camgeo.Report]) -> None:
+    right, _ = solid
+    (tmp_path / "one.yaml").write_text(INTAKE + "export: {tolerance: 0.01, files: [stl]}\n")
+    one = camgeo.export(tmp_path / "one.yaml", tmp_path / "out")
+    assert one.path is not None
+    assert not camgeo.verify(right, one.path / "one.stl").ok
+
+
+# --- what is refused --------------------------------------------------------------------------------------------------
+
+
+REFUSED = {
+    "two in one place": (
+        ("recipe: intake.yaml, at: 0, z: 30\nrecipe: intake.yaml, at: 9, z: 40", ""),
+        "shaft.yaml:6:39: camshaft.lobes[1].z: intake 2 overlaps intake 1, which reaches from 30 to 44 mm; give",
+    ),
+    "no file": (
+        ("recipe: nope.yaml, at: 0, z: 30", ""),
+        "shaft.yaml:5:16: camshaft.lobes[0].recipe: no such file, given 'nope.yaml'; give the path of a recipe from ",
+    ),
+    "no engine": (
+        ("recipe: intake.yaml, cylinder: 1, valve: intake, z: 30", ""),
+        "shaft.yaml:5:39: camshaft.lobes[0].cylinder: needs the engine's data; give camshaft.engine, or `at`",
+    ),
+    "a fifth cylinder": (
+        ("recipe: intake.yaml, cylinder: 5, valve: intake, z: 30", ENGINE),
+        "shaft.yaml:5:39: camshaft.lobes[0].cylinder: not in the firing order, given 5; give one of 1, 3, 4, 2",
+    ),
+    "no valve": (
+        ("recipe: intake.yaml, cylinder: 1, z: 30", ENGINE),
+        "shaft.yaml:5:7: camshaft.lobes[0].valve: missing, needed with cylinder; give intake or exhaust",
+    ),
+    "beyond the shaft": (
+        ("recipe: intake.yaml, at: 0, z: 110", ""),
+        "shaft.yaml:5:39: camshaft.lobes[0].z: it reaches from 110 to 124 mm, the shaft from 0 to 120 mm; ",
+    ),
+}
+
+
+@pytest.mark.parametrize(("recipe", "message"), REFUSED.values(), ids=REFUSED)
+def test_one_line_with_place_and_remedy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], recipe: tuple[str, str], message: str
+) -> None:
+    path = shaft(tmp_path, *recipe)
+    assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert message in told
+    assert told.count("\n") == 1
+    assert not (tmp_path / "out" / "shaft").exists()
+
+
+@pytest.mark.parametrize("kind", ["dxf", "gcode"])
+def test_a_drawing_is_that_of_a_lobe(tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
+    path = shaft(tmp_path, TWO, files=f"[{kind}]")
+    assert main(["check", str(path)]) == 2
+    assert f"a camshaft has no {kind}; export the lobe's own recipe" in capsys.readouterr().err
+
+
+def test_a_shaft_as_thick_as_a_lobe_fails(tmp_path: Path) -> None:
+    path = shaft(tmp_path, TWO, body="  shaft: {diameter: 37, to: 120}\n")
+    report = camgeo.check(path)
+    assert failing(report) == {"shaft, intake"}
+    assert json.loads(report.to_json())["files"] == []
+
+
+@pytest.mark.parametrize(
+    ("recipe", "message"),
+    [("w-booth", "two contacts on one arm are no lobe's"), ("disc-ring", "a ring, a groove or a pair is no lobe")],
+)
+def test_what_is_no_lobe(tmp_path: Path, recipe: str, message: str) -> None:
+    path = shaft(tmp_path, f"recipe: {RECIPES / recipe}.yaml, at: 0, z: 30, length: 9")
+    with pytest.raises(camgeo.RecipeErrors, match=message):
+        camgeo.check(path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["four-cylinder", "packaging"])
+def test_shipped_camshafts(tmp_path: Path, name: str) -> None:
+    report = camgeo.export(RECIPES / "camshafts" / f"{name}.yaml", tmp_path)
+    assert report.ok
+    assert report.path is not None
+    mesh = trimesh.load(report.path / f"{name}.stl")
+    assert mesh.is_watertight
+    assert mesh.body_count == 1
+
+
+def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
+    """They touch; the mesh closes, and every one is judged."""
+    rows = [f"recipe: intake.yaml, at: {15 * k}, z: {4 * k}, length: 4" for k in range(24)]
+    body = "  shaft: {diameter: 24, from: -2, to: 100}\n"
+    report = camgeo.check(shaft(tmp_path, "\n".join(rows), files="[stl]", body=body))
+    assert report.ok
+    assert sum(check.name == "phase" for check in report.checks) == 24
