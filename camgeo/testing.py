@@ -185,15 +185,15 @@ def assert_motion(
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
     name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `second_opinion` asserts too what ezdxf,
-    shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error.
+    shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error, of
+    several surfaces the greatest.
     """
     __tracebackhide__ = True
     names, more = {MOTION.name, *BACKLASH}, second_opinion
-    motion = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)[
-        "motion"
-    ]
-    if motion is None:
+    rows = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)
+    if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
+    motion = max((row["motion"] for row in rows), key=lambda found: float(found["max"]))
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
@@ -206,10 +206,8 @@ def assert_contour(
     `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
     __tracebackhide__ = True
-    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)[
-        "measured_error"
-    ]
-    return error
+    rows = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)
+    return max(float(row["measured_error"]) for row in rows)
 
 
 def _judged(
@@ -221,8 +219,8 @@ def _judged(
     tolerance: float | None,
     angles: int | None = None,
     second_opinion: bool = False,
-) -> Entry:
-    """Judge a file and assert the checks of those names; its entry in the report."""
+) -> list[Entry]:
+    """Judge a file and assert the checks of those names; what the report says of each of its surfaces."""
     __tracebackhide__ = True
     from camgeo import verify as judged
 
@@ -249,7 +247,8 @@ def _judged(
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
     _all_hold(asked, report, recipe, str(path))
     entry: Entry = report["files"][0]
-    return entry
+    surfaces: list[Entry] = entry.get("surfaces", [entry])
+    return surfaces
 
 
 # --- a recipe ---------------------------------------------------------------------------------------------------------

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from arms import ROOT, Pair, centre, follower, polygon
 from drawing import (
     BLUE,
     CONSTRUCTION,
@@ -29,110 +28,15 @@ from drawing import (
     unit,
 )
 
-import camgeo
-
 if TYPE_CHECKING:
-    from drawing import Array, Panel
+    from arms import Position
+    from drawing import Array
 
-    from camgeo.api.design import Design
-
-ROOT = Path(__file__).parents[1]
 THIN = Look("", "load", 1.2)
-STAR = Look("", "output-edge", 1.2, "5 4")
 SHADE = Look("link", "link-edge", 1.2, opacity=0.45)
 OTHER_SHADE = Look("follower", "follower-edge", 1.2, opacity=0.45)
 # the flat pair of the second isoptic figure; the page shows it
 TRIANGULAR = "name: three-faced\ncam: {kind: flat-pair, ratio: 3, arm: 30, delta: {cos: {1: 450}}}\n"
-
-
-@dataclass(frozen=True)
-class Position:
-    """The follower at one shaft angle, in the cam's axes: pivot P, ends A and B of the arms, mm; phi and psi, rad."""
-
-    phi: float
-    psi: float
-    p: Array
-    a: Array
-    b: Array
-
-
-@dataclass(frozen=True)
-class Pair:
-    """A cam for two arms of length `arm` that include 2 alpha; `share` of psi is what its motion gives."""
-
-    design: Design
-    arm: float
-    alpha: float
-    lam: int
-    roller: float
-    share: float = 1.0
-
-    @classmethod
-    def of(cls, source: Path | str) -> Pair:
-        """Design the cam of a recipe."""
-        design = camgeo.design(camgeo.load(source))
-        cam = design.recipe.cam
-        flat = cam.kind == "flat-pair"
-        roller = 0.0 if flat else cam.roller_radius
-        return cls(design, cam.arm, np.pi * cam.mu / cam.lam, cam.lam, roller, 0.5 if flat else 1.0)
-
-    @classmethod
-    def shipped(cls, name: str) -> Pair:
-        """Design a shipped recipe."""
-        return cls.of(ROOT / "recipes" / f"{name}.yaml")
-
-    @property
-    def delta(self) -> float:
-        """Half the law's period, rad."""
-        return np.pi / self.lam
-
-    def psi(self, phi: Array) -> Array:
-        """Follower angle at shaft angles (n,), rad."""
-        swing: Array = self.design.motion(phi) / self.share
-        return swing
-
-    def end(self, phi: Array, side: int) -> Array:
-        """Path of A (`side` -1) or B (1) in the cam's axes, (n, 2): P, and an arm from it."""
-        return self.arm * (unit(phi) + unit(phi - self.psi(phi) + side * self.alpha))
-
-    def at(self, phi: float) -> Position:
-        """Return the position at one shaft angle, rad."""
-        here = np.array([phi])
-        psi = float(self.psi(here)[0])
-        return Position(phi, psi, self.arm * unit(phi), self.end(here, -1)[0], self.end(here, 1)[0])
-
-    def chain(self, phi: float, count: int) -> list[Position]:
-        """Return adjacent positions, each with its A where B of the one before was (W 4.6)."""
-        found = [self.at(phi)]
-        while len(found) < count:
-            last = found[-1]
-            found.append(self.at(last.phi - last.psi + self.alpha))
-        return found
-
-    def pitch(self, count: int = 361) -> Array:
-        """Points of the pitch curve, the first again at the end."""
-        return self.end(np.linspace(0.0, 2.0 * np.pi, count), -1)
-
-
-def follower(panel: Panel, pair: Pair, at: Position) -> None:
-    """Draw the arms, the rollers and the pivot."""
-    for end in (at.a, at.b):
-        panel.line([at.p, end], Look("", "follower-edge", 4.0))
-    for end in (at.a, at.b):
-        panel.circle(end, pair.roller, ROLLER)
-        panel.dot(end)
-    panel.pin(at.p)
-
-
-def polygon(panel: Panel, chain: list[Position], look: Look = STAR) -> None:
-    """Draw the chord polygon of adjacent positions."""
-    panel.line([at.a for at in chain], look, closed=True)
-
-
-def centre(panel: Panel, beside: tuple[float, float] = (-11, -11)) -> None:
-    """Draw the shaft's centre with its letter."""
-    panel.pin((0.0, 0.0))
-    panel.letter((0.0, 0.0), "O", beside)
 
 
 def figure_1(pair: Pair) -> str:
@@ -278,33 +182,6 @@ def figure_5(pair: Pair) -> str:
     panel.letter(pair.pitch()[200] * 1.06, "c̄")
     centre(panel)
     return sheet.text()
-
-
-def figure_6(pair: Pair) -> str:
-    """Its transmission law, and the affinity (4.9) on a rectangle."""
-    sheet = Sheet("Wunderlich 1984, Figure 6: transmission law", 620, 320)
-    delta = np.degrees(pair.delta)
-    names = {0.0: "0", delta: "δ", 2.0 * delta: "2δ", 3.0 * delta: "3δ", 4.0 * delta: "4δ"}
-    turn = Axis(0.0, 4.0 * delta, "φ from a mean position, in δ = π/λ", names)
-    panel = chart(sheet, (55, 34, 540, 230), turn, Axis.of(-20, 20, "ψ, degrees", -20, -10, 0, 10, 20))
-    phi = np.linspace(0.0, 4.0 * delta, 481)
-    start = 0.5 * pair.alpha + pair.delta  # from here psi grows
-    most = np.degrees(swing(pair))
-    panel.line(
-        [(0, 0), (delta, 0), (delta, most), (0, most)], Look("follower", "follower-edge", 1.2, opacity=0.4), closed=True
-    )
-    image = [(delta, 0), (2 * delta, 0), (2 * delta - most, -most), (delta - most, -most)]
-    panel.line(image, Look("link", "link-edge", 1.2, opacity=0.4), closed=True)
-    panel.line(np.column_stack([phi, np.degrees(pair.psi(np.radians(phi) + start))]), CURVE)
-    panel.line([(0, 0), (4 * delta, 0)], QUIET)
-    panel.letter((0, most), "ε", (12, 10))
-    panel.letter((delta - most, -most), "−ε", (-4, -13))
-    return sheet.text()
-
-
-def swing(pair: Pair) -> float:
-    """Greatest psi over a turn, rad."""
-    return float(pair.psi(np.linspace(0.0, 2.0 * np.pi, 72_001)).max())
 
 
 def figure_7(pair: Pair) -> str:
@@ -474,7 +351,6 @@ def figures() -> dict[str, str]:
         "wunderlich-3": figure_3(five),
         "wunderlich-4": figure_4(five),
         "wunderlich-5": figure_5(five),
-        "wunderlich-6": figure_6(five),
         "wunderlich-7": figure_7(five),
         "wunderlich-8": figure_8(Pair.shipped("w-booth")),
         "wunderlich-9": figure_9(nine),

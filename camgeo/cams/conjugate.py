@@ -9,8 +9,23 @@ a turn on, with the offset on the other side; on an arm that leads where the fir
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
+from camgeo.cams.family import Circle
+from camgeo.cams.flat_faced import SizeAdvice
+from camgeo.cams.guided import (
+    LARGER_BASE,
+    MARGIN,
+    Flank,
+    Holding,
+    RoundAdvice,
+    base_told,
+    least_round_prime,
+    led_by,
+    smaller,
+)
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import MOST, Field, Kind, length, mapping
 from kin.law.contacts import LEADING, TRAILING, Contact, Flat, Oscillating, Translating
@@ -18,21 +33,58 @@ from kin.law.programme import IntentError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Advice
+    from camgeo.cams.guided import ExactGuided, GuidedCam
+    from camgeo.curve import moving_frame
+    from camgeo.curve.disc import Face
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Reader, Values
-    from kin.law.contacts import Guide, Touch
+    from kin.law.contacts import Guide, Side, Touch
+    from kin.numeric.arrays import Array
 
 FIRST, SECOND = "disc 1", "disc 2"
 """Names of the two surfaces."""
+RADIUS = "conjugate.radius"
+FEASIBLE = 1e-11  # of the distance: by so much a limit may be missed
 
 
 @dataclass(frozen=True)
-class Conjugate:
-    """The second contact: its touch, how far `apart` it stands, mm or rad, the length of its arm and the gap, mm."""
+class Conjugate(Holding):
+    """The second contact: its touch, how far `apart` it stands, mm or rad, and of a bell crank its arm's length, mm."""
 
+    closure: ClassVar[str] = "form-closure"
+    discs: ClassVar[int] = 2
     touch: Touch
     apart: float
     length: float | None = None
-    gap: float = 0.0
+
+    @property
+    def key(self) -> str:
+        """The key that says how far apart the contacts are."""
+        return "conjugate.distance" if self.length is None else "conjugate.angle"
+
+    @property
+    def larger(self) -> str:
+        """Of disc 1, which leaves less to disc 2."""
+        return f"{LARGER_BASE} and {self.key}"
+
+    @property
+    def beside(self) -> str:
+        """The distance, so that disc 2 stays."""
+        return f" with a {self.key} larger by as much"
+
+    @property
+    def second_arm(self) -> tuple[float, float] | None:
+        """That of disc 2."""
+        return None if self.length is None else (self.length, self.apart)
+
+    def named(self, name: str) -> str:
+        """As told from followers that a spring holds."""
+        return f"{name} on conjugate discs"
+
+    def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
+        """One on each disc."""
+        return Flank(FIRST, side, touch.radius), Flank(SECOND, side, self.touch.radius, disc=1)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
         """Both contacts of the follower."""
@@ -51,34 +103,190 @@ class Conjugate:
         if isinstance(guide, Translating):
             # where the roller's centre passes the shaft nearer than its radius no contour is left
             nearest = 0.0 if isinstance(self.touch, Flat) else math.sqrt(max(radius**2 - guide.offset**2, 0.0))
-            if not second.datum - greatest > nearest:
-                least = first.datum + greatest + nearest
-                raise IntentError(
-                    f"disc 2 would have no base circle at the greatest displacement; a distance above "
-                    f"{upward(least)} mm leaves one",
-                    "conjugate.distance",
-                )
+            shown, unit = 1.0, "mm"
+        else:
+            nearest, shown, unit = _swing(guide.pivot, guide.arm, radius), math.degrees(1.0), "degrees"
+        if second.datum - greatest > nearest:
             return
-        nearest = _swing(guide.pivot, guide.arm, radius)
-        if not second.datum - greatest > nearest:
-            least = math.degrees(first.datum + greatest + nearest)
-            raise IntentError(
-                f"disc 2 would have no base circle at the greatest displacement; an angle above {upward(least)} "
-                "degrees leaves one",
-                "conjugate.angle",
-            )
+        least = upward(shown * (first.datum + greatest + nearest))
+        article = "an" if self.length is not None else "a"
+        word = self.key.rpartition(".")[2]
+        raise IntentError(
+            f"disc 2 would have no base circle at the greatest displacement; {article} {word} above {least} {unit} "
+            "leaves one",
+            self.key,
+        )
 
-    def scaled(self, touch: Touch, scale: float, wider: float = 0.0) -> Conjugate:
-        """The pair drawn larger, with another touch; two faces are `wider` apart before, mm."""
+    def grown(self, out: float, scale: float, *, flat: bool) -> Conjugate:
+        """A smaller second roller, or faces farther apart; the drawing larger."""
+        gap = scale * self.gap
+        if flat:
+            return replace(self, apart=scale * (self.apart + 2.0 * out), gap=gap)
+        touch = smaller(self.touch, out, scale)
         if self.length is None:
-            return Conjugate(touch, scale * (self.apart + wider), None, scale * self.gap)
-        return Conjugate(touch, self.apart, scale * self.length, scale * self.gap)
+            return replace(self, touch=touch, apart=scale * self.apart, gap=gap)
+        return replace(self, touch=touch, length=scale * self.length, gap=gap)
+
+    def advice(self, cam: GuidedCam, own: Advice) -> Advice:
+        """Of disc 2 another distance or angle, or another second roller; all of disc 1 stays."""
+        larger, steep = f"a larger {self.key}", own.less_steep
+        if isinstance(self.touch, Flat):
+            second: Advice = SizeAdvice(size=self.key, free="be free of it", larger=larger, less_steep=steep)
+        else:
+            second = SecondAdvice(cam, self.touch.radius, larger=larger, less_steep=steep, radius_field=RADIUS)
+        return replace(own, others={SECOND: second})
+
+    def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:
+        """Of disc 2 that of the least distance of its base curve."""
+        if surface != SECOND:
+            return own
+        return (Circle("base circle" if isinstance(self.touch, Flat) else "prime circle"),)
+
+    def least_stem(
+        self, law: Displacement, angles: tuple[float, float], offset: float | None
+    ) -> moving_frame.Translating:
+        """Kept on both discs."""
+        return least_pair(law, *angles, self.apart, offset)
+
+    def gentler(self, exact: ExactGuided, rising: float, falling: float, mm: float) -> tuple[str, GuidedCam] | None:
+        """A base radius, with a larger distance where none keeps the angles on both discs at this one; a bell crank."""
+        from camgeo.cams import least_size
+        from camgeo.curve import moving_frame
+
+        cam, guide = exact.cam, exact.follower.contacts[0].guide
+        if not isinstance(guide, Translating):
+            angles = rising - MARGIN, falling - MARGIN
+            try:
+                arm = least_size.least_arm(exact.law, guide.arm, guide.side, *angles, second=self.second_arm)
+            except IntentError:
+                return None
+            return base_told(cam, arm.prime, mm, arm.pivot)
+        found = base_told(cam, least_size.least_stem(exact.law, rising, falling, guide.offset).prime, mm)
+        if found is None:
+            return None
+        told, other = found
+        stem = moving_frame.Translating.on(other.base_radius + cam.touch.radius, guide.offset)
+        least = least_apart(exact.law, rising, falling, stem)
+        if least <= self.apart:
+            return told, other
+        apart = upward(least / mm)
+        farther = replace(self, apart=float(apart) * mm)
+        return f"{told} and a {self.key} of {apart}", other.resized(other.base_radius, None, farther)
+
+    def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:
+        """Of disc 2 a larger distance, or angle."""
+        if surface != SECOND:
+            return Holding.rounder(self, surface, exact, mm)
+        first, second = exact.follower.contacts
+        guide, roller = led_by(second), self.touch.radius
+        prime = least_round_prime(exact.law.scaled(-1.0), guide, roller)
+        if prime is None:
+            return ""
+        shown = 1.0 / mm if self.length is None else math.degrees(1.0)
+        apart = upward(shown * (first.datum + guide.resized(prime).datum))
+        return f"a {self.key} of {apart}"
+
+
+@dataclass(frozen=True)
+class SecondAdvice(RoundAdvice):
+    """Of the roller on disc 2, whose radius alone changes that disc."""
+
+    roller: float
+
+    @property
+    def radius(self) -> float:
+        """Its own."""
+        return self.roller
+
+    def same_pitch(self, mm: float) -> str:  # noqa: ARG002
+        """Nothing else changes: the pitch curve hangs on the distance."""
+        return ""
+
+    @property
+    def most_radius(self) -> float:
+        """How near its centre comes to the shaft, mm."""
+        from camgeo.curve.measures import nearest
+
+        _, second = self.cam.exact().surfaces
+        return nearest(second.base).value
 
 
 def _swing(pivot: float, arm: float, radius: float) -> float:
     """Angle at the pivot, rad, at which an arm's end is a radius from the shaft; 0 where it never is."""
     cosine = (pivot**2 + arm**2 - radius**2) / (2.0 * pivot * arm)
     return math.acos(cosine) if cosine < 1.0 else 0.0
+
+
+# --- least sizes -----------------------------------------------------------------------------------------------------
+
+
+def least_pair(
+    motion: Displacement, rising: float, falling: float, apart: float, offset: float | None = None
+) -> moving_frame.Translating:
+    """Stem with the least prime circle of disc 1 that keeps both pressure angles (rad) on both of two conjugate discs.
+
+    The contacts are `apart`, mm; the best offset is found, or the given one kept. Raises IntentError where they are not
+    far enough apart.
+    """
+    from camgeo.cams import least_size
+    from camgeo.curve import moving_frame
+
+    a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)
+    rows = np.array(_pair_rows(motion, rising, falling))
+    if offset is None:  # least where two limits of one disc meet
+        crossing = [(rows[i, 2] - rows[i + 1, 2]) / (rows[i, 1] - rows[i + 1, 1]) for i in (0, 2)]
+        least = min(_least_apart(rows, e) for e in crossing)
+    else:
+        least = _least_apart(rows, offset)
+    if apart < least:
+        raise IntentError(
+            f"no base radius keeps the pressure angles on both discs; a distance of at least {upward(least)} mm does",
+            "conjugate.distance",
+        )
+    if offset is not None:
+        return moving_frame.Translating(
+            least_size.positive_foot(float((rows[:2, 2] - rows[:2, 1] * offset).max())), offset
+        )
+    rows[2:, 2] -= apart
+    scale = np.hypot(1.0, np.array([a, b, b, a]))
+    d, e = least_size.nearest_in(rows / scale[:, None], np.zeros(2), FEASIBLE * apart)
+    return moving_frame.Translating(least_size.positive_foot(float(d)), float(e))
+
+
+def _pair_rows(motion: Displacement, rising: float, falling: float) -> list[tuple[float, float, float]]:
+    """Rows (x, y, c) of ``x d + y e >= c`` of disc 1, then of disc 2, these to be less by the distance.
+
+    Disc 2 drives the return, so that its own rise has the limit of that.
+    """
+    from camgeo.cams import least_size
+
+    a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)
+    (up, down), (back, forth) = (
+        least_size.stem_needs(motion, rising, falling),
+        least_size.stem_needs(motion.scaled(-1.0), falling, rising),
+    )
+    return [(1.0, a, up), (1.0, -b, down), (-1.0, -b, back), (-1.0, a, forth)]
+
+
+def _least_apart(rows: Array, offset: float) -> float:
+    """How far apart two contacts on a stem at least are, mm, by the rows of both discs."""
+    needs = rows[:, 2] - rows[:, 1] * offset
+    return float(needs[:2].max() + needs[2:].max())
+
+
+def least_apart(motion: Displacement, rising: float, falling: float, stem: moving_frame.Translating) -> float:
+    """How far beyond the roller of a stem the second one at least is, mm, that keeps disc 2's pressure angles (rad)."""
+    rows = np.array(_pair_rows(motion, rising, falling))
+    return stem.foot + float((rows[2:, 2] - rows[2:, 1] * stem.offset).max())
+
+
+def opposite_face(motion: Displacement, contact: Contact[Guide, Touch]) -> Face:
+    """The face opposite the first one, over the shaft angle; `motion` is that of the first."""
+    from camgeo.curve.disc import StraightFace
+
+    guide = contact.guide
+    offset = guide.offset if isinstance(guide, Translating) else 0.0
+    return StraightFace(motion.scaled(-1.0), contact.zero, 0.0, offset, contact.turned)
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------
@@ -131,4 +339,4 @@ def conjugate_of(values: Values, touch: Touch) -> Conjugate:
     if "radius" in values:
         touch = replace(touch, radius=values["radius"])
     apart = values["angle"] if "angle" in values else values["distance"]
-    return Conjugate(touch, apart, values.get("length"), values.get("gap", 0.0))
+    return Conjugate(touch, apart, values.get("length"), gap=values.get("gap", 0.0))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Preload, Undercut
-from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
+from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.cams.preload import PRELOAD, build_preload, preloaded
 from camgeo.schema.fields import Table, length
@@ -19,6 +19,7 @@ from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.guided import Holding
     from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
@@ -49,7 +50,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     @property
     def advice(self) -> RoundAdvice:
         """In the words of the roller."""
-        return RoundAdvice(self, less_steep=LARGER_BASE)
+        return RoundAdvice(self, larger=LARGER_BASE, less_steep=SMALLER_STROKE)
 
     @property
     def led(self) -> moving_frame.Translating:
@@ -72,7 +73,12 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         contacts = opposite(self.touch, apart, self.led.foot)
         return Follower("roller yoke", contacts, ("constant-diameter", "pressure-angle"), "form-closure")
 
-    def resized(self, base: float, pivot: float | None = None) -> ConstantDiameterCam:  # noqa: ARG002 - it has no arm
+    def resized(  # it has no arm
+        self,
+        base: float,
+        pivot: float | None = None,  # noqa: ARG002
+        holding: Holding | None = None,  # noqa: ARG002
+    ) -> ConstantDiameterCam:
         """With another base radius."""
         return replace(self, base_radius=base)
 

@@ -8,6 +8,7 @@ from camgeo.cams.conjugate import CONJUGATE, check_conjugate, conjugate_of
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.groove import TRACK, Groove
+from camgeo.cams.guided import Holding
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -154,6 +155,8 @@ def _size(cam: Values, reader: Reader) -> None:
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
         if error.field.endswith(".pivot"):
             remedy = "leave it out, or give base_radius in place of sizing"
+        if path.startswith("cam.conjugate"):  # which says what would do
+            remedy = "or give base_radius instead"
         reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
 
 
@@ -180,18 +183,25 @@ def _values(cam: Values) -> Values:
     else:
         side = TRAILING if arm.get("side", "trailing") == "trailing" else LEADING
         guide = Oscillating(arm["pivot"], side, arm.get("length"))
-    track, touch = cam.get("track"), _touch(follower, arm or {})
+    touch = _touch(follower, arm or {})
     return {
         "base_radius": cam["base_radius"],
         "guide": guide,
         "touch": touch,
         "motion": cam["motion"],
         "undercut": cam.get("undercut", "refuse"),
-        "side": -1 if track == "internal" else 1,
-        "groove": Groove(**track["groove"]) if isinstance(track, dict) else None,
+        "side": -1 if cam.get("track") == "internal" else 1,
+        "holding": _holding(cam, touch),
         "beyond": follower.get("beyond", 0.0),
-        "conjugate": conjugate_of(cam["conjugate"], touch) if "conjugate" in cam else None,
     }
+
+
+def _holding(cam: Values, touch: Touch) -> Holding:
+    """What holds the follower on the cam."""
+    if "conjugate" in cam:
+        return conjugate_of(cam["conjugate"], touch)
+    track = cam.get("track")
+    return Groove(**track["groove"]) if isinstance(track, dict) else Holding()
 
 
 def _touch(follower: Values, arm: Values) -> Touch:

@@ -6,13 +6,12 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.conjugate import FIRST, SECOND, Conjugate
-from camgeo.cams.family import Advice, Circle, ExactCam, Follower, GrownError, Surface, Undercut
+from camgeo.cams.conjugate import opposite_face
+from camgeo.cams.family import Advice, Circle, ExactCam, Follower, Surface, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
-from camgeo.cams.groove import Groove, GrooveAdvice
-from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, Flank, GuidedCam, RoundAdvice
+from camgeo.cams.guided import SMALLER_STROKE, ExactGuided, ExactLed, GuidedCam, Holding, RoundAdvice, smaller
 from camgeo.curve.curve import Curve
-from kin.law.contacts import Arrangement, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
+from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Shoe, Translating
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -39,22 +38,13 @@ class DiscCam(GuidedCam):
     motion: MotionAsked
     undercut: Undercut
     side: Side = 1
-    groove: Groove | None = None
     beyond: float = 0.0
-    conjugate: Conjugate | None = None
-
-    @property
-    def flanks(self) -> tuple[Flank, ...]:
-        """The one that the roller runs on, or both of its groove or pair; `base_radius` is that of the first."""
-        if self.conjugate is not None:
-            first = Flank(FIRST, 1, self.touch.radius)
-            return first, Flank(SECOND, 1, self.conjugate.touch.radius, disc=1)
-        return super().flanks if self.groove is None else self.groove.flanks(self.touch.radius)
+    holding: Holding = Holding()
 
     @property
     def arrangement(self) -> Arrangement:
-        """One touch, which a spring, gravity, a groove or a second disc holds on the cam."""
-        discs = 1 if self.conjugate is None else 2
+        """One touch, which a spring, gravity or a groove holds on the cam, or one on each of two discs."""
+        discs = self.holding.discs
         return Arrangement(type(self.guide), type(self.touch), discs, discs)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
@@ -76,13 +66,9 @@ class DiscCam(GuidedCam):
         checks: tuple[str, ...] = ("pressure-angle",)
         if isinstance(self.touch, Flat):
             checks += ("contact-travel",) if self.touch.width is None else ("contact-travel", "face-width")
-        name, first = f"{self.guide.word} {self.touch.word}", Contact(self.guide, self.touch, self.datum)
-        if self.conjugate is not None:
-            return Follower(f"{name} on conjugate discs", self.conjugate.contacts(first), checks, "form-closure")
-        if self.groove is None:
-            return Follower(name, (first,), checks)
-        contacts = tuple(replace(first, touch=Roller(one.radius), surface=one.name) for one in self.flanks)
-        return Follower(name, contacts, checks, "form-closure")
+        first, name = Contact(self.guide, self.touch, self.datum), f"{self.guide.word} {self.touch.word}"
+        holding = self.holding
+        return Follower(holding.named(name), holding.contacts(first), checks, holding.closure)
 
     @property
     def datum(self) -> float:
@@ -98,13 +84,19 @@ class DiscCam(GuidedCam):
 
     @property
     def advice(self) -> Advice:
-        """In the words of the touch."""
+        """In the words of the touch, and of what holds it."""
+        return self.holding.advice(self, self.own_advice)
+
+    @property
+    def own_advice(self) -> Advice:
+        """What would help a cam with one contact."""
+        larger, trims = self.holding.larger, self.holding.trims
         if isinstance(self.touch, Flat):
-            beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else ""
-            return SizeAdvice(beside=beside, beyond=self.beyond, free="be free of it", less_steep=LARGER_BASE)
-        if self.groove is not None:
-            return GrooveAdvice(self, self.groove.clearance, less_steep=LARGER_BASE, trims=False)
-        return RoundAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field)
+            beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else self.holding.beside
+            return SizeAdvice(
+                beside=beside, beyond=self.beyond, free="be free of it", larger=larger, less_steep=SMALLER_STROKE
+            )
+        return RoundAdvice(self, larger=larger, less_steep=SMALLER_STROKE, radius_field=self.radius_field, trims=trims)
 
     @property
     def radius_field(self) -> str:
@@ -132,16 +124,6 @@ class DiscCam(GuidedCam):
             return moving_frame.Translating.on(self.prime, self.guide.offset)
         return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.arm, self.guide.side)
 
-    @property
-    def gap(self) -> float:
-        """Axial gap between conjugate discs, mm."""
-        return 0.0 if self.conjugate is None else self.conjugate.gap
-
-    def demand(self, law: Displacement) -> None:
-        """Raise IntentError where a second disc has no base circle."""
-        if self.conjugate is not None:
-            self.conjugate.demand(Contact(self.guide, self.touch, self.datum), law.range[1])
-
     def face(self, motion: Displacement) -> Face:
         """The flat face over the shaft angle; raises IntentError where it cannot be driven."""
         from camgeo.curve.disc import StraightFace, SwingingFace
@@ -156,18 +138,10 @@ class DiscCam(GuidedCam):
         """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)
 
-    def second_face(self, motion: Displacement, contact: Contact[Guide, Touch]) -> Face:
-        """The face that conjugate discs have opposite, over the shaft angle."""
-        from camgeo.curve.disc import StraightFace
-
-        guide = contact.guide
-        offset = guide.offset if isinstance(guide, Translating) else 0.0
-        return StraightFace(motion.scaled(-1.0), contact.zero, 0.0, offset, contact.turned)
-
-    def resized(self, base: float, pivot: float | None = None) -> DiscCam:
-        """With another base radius, and of an arm another pivot."""
+    def resized(self, base: float, pivot: float | None = None, holding: Holding | None = None) -> DiscCam:
+        """With another base radius, of an arm another pivot, and perhaps held otherwise."""
         guide = self.guide if pivot is None or isinstance(self.guide, Translating) else replace(self.guide, pivot=pivot)
-        return replace(self, base_radius=base, guide=guide)
+        return replace(self, base_radius=base, guide=guide, holding=holding or self.holding)
 
     def grown(self, out: float, scale: float) -> DiscCam:
         """A smaller roller on the same pitch curve, or a larger base circle under a face."""
@@ -176,26 +150,16 @@ class DiscCam(GuidedCam):
                 guide: Guide = Translating(scale * offset)
             case Oscillating(pivot=pivot, side=side, length=length):
                 guide = Oscillating(scale * pivot, side, None if length is None else scale * length)
-        if isinstance(self.touch, Flat):
-            width = None if self.touch.width is None else scale * self.touch.width
+        touch, more = self.touch, out if isinstance(self.touch, Flat) else self.side * out
+        if isinstance(touch, Flat):
             # on an arm the same swing of a face that stands farther out
-            nearer = scale * (self.touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
-            face = Flat(self.touch.tilt, width, nearer)
-            pair = self.conjugate and self.conjugate.scaled(face, scale, 2.0 * out)
-            return replace(self, base_radius=scale * (self.base_radius + out), guide=guide, touch=face, conjugate=pair)
-        touch = _less(self.touch, out, scale)
-        pair = self.conjugate and self.conjugate.scaled(_less(self.conjugate.touch, out, scale), scale)
-        base, groove = scale * (self.base_radius + self.side * out), self.groove and self.groove.scaled(scale)
-        return replace(self, base_radius=base, guide=guide, touch=touch, groove=groove, conjugate=pair)
-
-
-def _less(touch: Touch, out: float, scale: float) -> Touch:
-    """A round touch smaller by `out` mm and then scaled; raises GrownError where nothing of it is left."""
-    radius, kind = touch.radius, Shoe if isinstance(touch, Shoe) else Roller
-    if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
-        raise GrownError("the shoe radius" if kind is Shoe else "the roller's radius", radius)
-    left = scale * (radius - out)
-    return kind(left) if left else KnifeEdge()
+            nearer = scale * (touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
+            touch = Flat(touch.tilt, None if touch.width is None else scale * touch.width, nearer)
+        else:
+            touch = smaller(touch, out, scale)
+        base = scale * (self.base_radius + more)
+        holding = self.holding.grown(out, scale, flat=isinstance(touch, Flat))
+        return replace(self, base_radius=base, guide=guide, touch=touch, holding=holding)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,15 +173,13 @@ class ExactFaced(ExactLed):
         """The envelope of the face (`camgeo.curve.disc`), its parameter the shaft angle."""
         from camgeo.curve.disc import face_shape
 
-        self.cam.demand(self.law)
-        _, *others = self.follower.contacts
-        faces = [self.cam.face(self.law), *(self.cam.second_face(self.law, contact) for contact in others)]
+        flanks, (_, *others) = self.flanks, self.follower.contacts
+        faces = [self.cam.face(self.law), *(opposite_face(self.law, contact) for contact in others)]
         surfaces = []
-        for face, flank in zip(faces, self.cam.flanks, strict=True):
+        for face, flank in zip(faces, flanks, strict=True):
             whole = Curve.whole(face_shape(face))
             series = {"slope": face.slope, "contact": face.contact}
             pressure, place = face.pressure_angle, face.place
-            surfaces.append(
-                Surface(whole, whole, pressure=pressure, place=place, series=series, name=flank.name, disc=flank.disc)
-            )
+            surface = Surface(whole, whole, pressure=pressure, place=place, series=series, name=flank.name)
+            surfaces.append(replace(surface, disc=flank.disc))
         return tuple(surfaces)

@@ -119,6 +119,10 @@ class Follower:
         places, surfaces = {contact.place for contact in self.contacts}, {contact.surface for contact in self.contacts}
         return Arrangement(type(first.guide), type(first.touch), len(places), min(len(places), len(surfaces)))
 
+    def sense(self, surface: str) -> Side:
+        """Whether a surface pushes the follower out, 1, or back, -1."""
+        return next(contact.sense for contact in self.contacts if contact.surface == surface)
+
     def running(self, contact: Contact[Guide, Touch]) -> Touch:
         """The touch that runs where a contact is: that of the first one there, where a flank's gauge is wider."""
         return next(first.touch for first in self.contacts if first.place == contact.place)
@@ -190,17 +194,30 @@ class Advice(ABC):
 
     gain                  by how much the follower is off per mm of the contour's error, None where that differs
     least_pressure_angle  pressure angle without any motion, degrees: no smaller stroke stays below it
+    larger                what size of the cam, made larger, makes the pressure angle less; empty where none does
     less_steep            what makes the motion less steep; empty where the recipe gives no stroke
     less_swing            how the follower comes to swing less
     radius_field          what the radius of the touch is called
     trims                 whether undercut may be cut off
+    others                what would help on surfaces where that is something else, by their names
     """
 
     gain: float | None = field(default=None, kw_only=True)
     least_pressure_angle: float = field(default=0.0, kw_only=True)
+    larger: str = field(default="", kw_only=True)
     less_steep: str = field(default=SMALLER_SWING, kw_only=True)
     radius_field: str = field(default="roller radius", kw_only=True)
     trims: bool = field(default=True, kw_only=True)
+    others: Mapping[str, Advice] = field(default_factory=dict, kw_only=True)
+
+    def on(self, surface: str) -> Advice:
+        """What would help on a surface."""
+        return self.others.get(surface, self)
+
+    @property
+    def radius(self) -> float:
+        """Radius of a round touch, mm; 0 of others."""
+        return 0.0
 
     @abstractmethod
     def free_of_undercut(self, free_at: float, mm: float) -> str:
@@ -343,6 +360,19 @@ class ExactCam(ABC):
         """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
         return ()
 
+    def circles(self, surface: str) -> tuple[Circle, ...]:  # noqa: ARG002 - most have one disc
+        """Circles about the shaft for a drawing of the disc with a surface."""
+        return self.cam.circles()
+
+    def steepest(self, surface: Surface) -> tuple[Extreme, Extreme] | None:
+        """Greatest tangents of a surface's pressure angle on the follower's rise and return; None of none proved."""
+        slope = surface.extremes("slope")
+        if slope is None:
+            return None
+        least, most = slope
+        down = replace(least, value=-least.value)
+        return (most, down) if self.follower.sense(surface.name) > 0 else (down, most)
+
     @property
     def gap(self) -> float:
         """Axial gap between discs on the shaft, mm."""
@@ -377,8 +407,8 @@ class ExactCam(ABC):
         """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known."""
         return None
 
-    def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002
-        """Say what makes the roller half the pitch curve's least convex radius (mm); empty where nothing rolls."""
+    def rounder_pitch(self, surface: str, mm: float) -> str:  # noqa: ARG002
+        """Say what makes a surface's roller half the pitch curve's least convex radius; empty where nothing rolls."""
         return ""
 
     @abstractmethod

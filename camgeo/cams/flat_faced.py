@@ -52,7 +52,7 @@ class SizeAdvice(Advice):
         across = upward(math.hypot(width, 2.0 * self.beyond / mm))
         return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
-    def larger(self, by: float, unit: str = "") -> str:
+    def enlarged(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
         if by == 0.0:  # a radius that is 0 needs no more than not to be
             return f"a larger {self.size}{self.beside}"
@@ -60,11 +60,11 @@ class SizeAdvice(Advice):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A larger cam."""
-        return f"{self.larger(free_at / mm)} would {self.free}"
+        return f"{self.enlarged(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """A larger cam."""
-        return self.larger(limit - value, unit)
+        return self.enlarged(limit - value, unit)
 
 
 class FlatFacedCam(Cam):

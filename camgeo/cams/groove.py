@@ -6,38 +6,55 @@ roller by its clearance, all of it on the outer flank, whose gauge is a roller t
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.guided import Flank, RoundAdvice
+from camgeo.cams.guided import Flank, Holding, RoundAdvice
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.read_scalar import read_choice
 from camgeo.schema.yaml_source import Mapping
-from kin.numeric.records import dataclass
+from kin.law.contacts import Roller
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Advice
+    from camgeo.cams.guided import GuidedCam
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
+    from kin.law.contacts import Contact, Guide, Side, Touch
 
 
 @dataclass(frozen=True)
-class Groove:
+class Groove(Holding):
     """A groove: its width less the roller's diameter, and its depth from the top face, None where none is given; mm."""
 
+    closure: ClassVar[str] = "form-closure"
+    trims: ClassVar[bool] = False
     clearance: float = 0.0
     depth: float | None = None
 
-    def flanks(self, radius: float) -> tuple[Flank, ...]:
-        """Both, about the path of a roller of that radius, mm: the inner one pushes it out, the outer one stops it."""
-        wider = radius + self.clearance
+    def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:  # noqa: ARG002 - the metal lies on both
+        """The inner one, which pushes the roller out, and the outer one, which stops it."""
+        inner, outer = touch.radius, touch.radius + self.clearance
         return (
-            Flank("inner", 1, radius, "GROOVE_INNER", self.depth),
-            Flank("outer", -1, wider, "GROOVE_OUTER", self.depth),
+            Flank("inner", 1, inner, "GROOVE_INNER", self.depth),
+            Flank("outer", -1, outer, "GROOVE_OUTER", self.depth),
         )
 
-    def scaled(self, scale: float) -> Groove:
+    def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
+        """One roller on either flank, as wide as the gauge that judges it."""
+        flanks = self.flanks(first.touch, 1)
+        return tuple(replace(first, touch=Roller(flank.radius), surface=flank.name) for flank in flanks)
+
+    def grown(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
         """The groove drawn larger."""
-        return Groove(scale * self.clearance, None if self.depth is None else scale * self.depth)
+        return Groove(clearance=scale * self.clearance, depth=None if self.depth is None else scale * self.depth)
+
+    def advice(self, cam: GuidedCam, own: Advice) -> Advice:
+        """A roller smaller by the clearance, unless the size is found."""
+        if not isinstance(own, RoundAdvice):
+            return own
+        return GrooveAdvice(cam, self.clearance, larger=own.larger, less_steep=own.less_steep, trims=own.trims)
 
 
 @dataclass(frozen=True)

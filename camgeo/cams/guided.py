@@ -8,16 +8,16 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from camgeo.cams.family import Advice, Cam, Circle, ExactCam, Surface
+from camgeo.cams.family import Advice, Cam, Circle, ExactCam, GrownError, Surface
 from camgeo.cams.position import Position, position_of
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from kin.law.contacts import Roller, Translating
+from kin.law.contacts import KnifeEdge, Roller, Shoe, Translating
 from kin.law.programme import IntentError
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Follower
@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
 
-LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
-_MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
+LARGER_BASE = "a larger base radius"
+SMALLER_STROKE = "a smaller stroke, or the same over a wider angle"
+MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,11 @@ class RoundAdvice(Advice):
     """Of a round touch: a smaller radius on the same pitch curve."""
 
     cam: GuidedCam
+
+    @property
+    def radius(self) -> float:
+        """That of the cam's touch."""
+        return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller on the same pitch curve."""
@@ -76,15 +82,126 @@ class Flank(NamedTuple):
     disc: int = 0
 
 
+@dataclass(frozen=True)
+class Holding:
+    """What holds a follower on its cam: a spring or gravity, or the contacts themselves; on one surface.
+
+    `closure` is the name of the check on what is left to a follower between two surfaces, empty where there is none;
+    `discs` is how many there are on the shaft, `gap` how far apart, mm; `trims` whether undercut may be cut off.
+    """
+
+    closure: ClassVar[str] = ""
+    discs: ClassVar[int] = 1
+    trims: ClassVar[bool] = True
+    gap: float = field(default=0.0, kw_only=True)
+
+    @property
+    def larger(self) -> str:
+        """What size, made larger, makes the pressure angle less."""
+        return LARGER_BASE
+
+    @property
+    def beside(self) -> str:
+        """What else is larger with a larger base radius under a flat face."""
+        return ""
+
+    @property
+    def second_arm(self) -> tuple[float, float] | None:
+        """Length of the second arm of a bell crank, mm, and the angle between both, rad; None without one."""
+        return None
+
+    def named(self, name: str) -> str:
+        """The follower's name in reports, from that of its guide and touch."""
+        return name
+
+    def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
+        """Every surface that the follower touches."""
+        return (Flank("", side, touch.radius),)
+
+    def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
+        """Every contact of the follower, one on each surface, from the first."""
+        return (first,)
+
+    def demand(self, first: Contact[Guide, Touch], greatest: float) -> None:
+        """Raise IntentError where another contact could not be led to the greatest displacement, mm or rad."""
+
+    def grown(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002
+        """With the metal grown by `out` mm and then scaled; raises GrownError where a touch would be nothing."""
+        return self
+
+    def advice(self, cam: GuidedCam, own: Advice) -> Advice:  # noqa: ARG002
+        """What would help, from what would help a cam with one contact."""
+        return own
+
+    def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002
+        """Circles about the shaft beside a surface, from those of a cam with one contact."""
+        return own
+
+    def least_stem(
+        self, law: Displacement, angles: tuple[float, float], offset: float | None
+    ) -> moving_frame.Translating:
+        """Stem with the least prime circle that keeps pressure angles, rad; its offset is found unless given."""
+        from camgeo.cams.least_size import least_stem
+
+        return least_stem(law, *angles, offset)
+
+    def gentler(self, exact: ExactGuided, rising: float, falling: float, mm: float) -> tuple[str, GuidedCam] | None:
+        """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known.
+
+        It is the least base radius on this stem; for this length of arm that with the pivot's distance.
+        """
+        from camgeo.cams.least_size import least_arm, least_stem
+
+        cam, guide = exact.cam, exact.follower.contacts[0].guide
+        if isinstance(guide, Translating):
+            return base_told(cam, least_stem(exact.law, rising, falling, guide.offset).prime, mm)
+        try:
+            arm = least_arm(exact.law, guide.arm, guide.side, rising - MARGIN, falling - MARGIN)
+        except IntentError:
+            return None
+        return base_told(cam, arm.prime, mm, arm.pivot)
+
+    def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002
+        """Say which size makes a roller half of the pitch curve's least convex radius; empty where none does."""
+        cam, roller = exact.cam, exact.cam.touch.radius
+        prime = least_round_prime(exact.law, cam.led, roller)
+        return "" if prime is None else f"a base radius of {upward((prime - cam.side * roller) / mm)}"
+
+
+def smaller(touch: Touch, out: float, scale: float) -> Touch:
+    """A round touch smaller by `out` mm and then scaled; raises GrownError where nothing of it is left."""
+    radius, kind = touch.radius, Shoe if isinstance(touch, Shoe) else Roller
+    if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
+        raise GrownError("the shoe radius" if kind is Shoe else "the roller's radius", radius)
+    left = scale * (radius - out)
+    return kind(left) if left else KnifeEdge()
+
+
+def base_told(cam: GuidedCam, prime: float, mm: float, pivot: float | None = None) -> tuple[str, GuidedCam] | None:
+    """Say a base radius, from a prime circle, mm, and of an arm the pivot's distance, with the cam; None for none."""
+    base = (prime - cam.side * cam.touch.radius) / mm
+    if base <= 0.0:
+        return None
+    size, place = upward(base), "" if pivot is None else f"{pivot / mm:.6g}"
+    told = f"a base radius of {size}{place and f' with a pivot at {place}'}"
+    return told, cam.resized(float(size) * mm, float(place) * mm if place else None)
+
+
+def least_round_prime(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
+    """Prime circle, mm, at which a roller is half of the pitch curve's least convex radius; None where none is."""
+    from camgeo.cams.least_size import least_prime
+    from camgeo.curve.moving_frame import CentreShape
+
+    try:
+        return least_prime(lambda p: CentreShape(law, guide.resized(p)), 2.0 * roller, guide.prime)
+    except IntentError:
+        return None
+
+
 class GuidedCam(Cam):
     """A cam whose follower's centre is led along a line or about a pivot."""
 
     base_radius: float
-
-    @property
-    def flanks(self) -> tuple[Flank, ...]:
-        """Every surface that the follower touches, in the order of its contacts."""
-        return (Flank("", self.side, self.touch.radius),)
 
     @property
     @abstractmethod
@@ -100,16 +217,13 @@ class GuidedCam(Cam):
         """The follower that a motion calls for."""
 
     @property
-    def gap(self) -> float:
-        """Axial gap between its discs, mm."""
-        return 0.0
-
-    def demand(self, law: Displacement) -> None:
-        """Raise IntentError where another contact than the first could not be led through a motion."""
+    def holding(self) -> Holding:
+        """What holds the follower on the cam."""
+        return Holding()
 
     @abstractmethod
-    def resized(self, base: float, pivot: float | None = None) -> GuidedCam:
-        """The cam with another base radius, and of an arm another distance of the pivot, mm."""
+    def resized(self, base: float, pivot: float | None = None, holding: Holding | None = None) -> GuidedCam:
+        """The cam with another base radius, of an arm another distance of the pivot, mm, and perhaps held otherwise."""
 
     @abstractmethod
     def grown(self, out: float, scale: float) -> GuidedCam:
@@ -173,10 +287,21 @@ class ExactLed(ExactCam):
         """Those that the recipe gives."""
         return self.cam.joints()
 
+    def circles(self, surface: str) -> tuple[Circle, ...]:
+        """The cam's, or those of a second disc."""
+        return self.cam.holding.circles(surface, self.cam.circles())
+
     @property
     def gap(self) -> float:
         """As the recipe gives it."""
-        return self.cam.gap
+        return self.cam.holding.gap
+
+    @property
+    def flanks(self) -> tuple[Flank, ...]:
+        """Every surface with where it stands; raises IntentError where a contact cannot be led through the motion."""
+        holding = self.cam.holding
+        holding.demand(self.follower.contacts[0], self.law.range[1])
+        return holding.flanks(self.cam.touch, self.cam.side)
 
     def grown(self, out: float, scale: float) -> ExactCam:
         """The same pitch curve, or a face farther out; a lift is scaled with the drawing, a swing is not."""
@@ -196,11 +321,10 @@ class ExactGuided(ExactLed):
         """
         from camgeo.curve.moving_frame import CentreShape
 
-        self.cam.demand(self.law)
         contacts = {contact.surface: contact for contact in reversed(self.follower.contacts)}
         paths: dict[Contact[Guide, Touch], tuple[CentreShape, Curve]] = {}  # one for a roller between two flanks
         surfaces = []
-        for flank in self.cam.flanks:
+        for flank in self.flanks:
             contact = contacts[flank.name]
             if contact.place not in paths:
                 pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), led_by(contact))
@@ -218,35 +342,10 @@ class ExactGuided(ExactLed):
         return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, disc, layer, depth)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """The least base radius on this stem; for this length of arm that with the pivot's distance."""
-        from camgeo.cams.least_size import least_arm, least_stem
+        """By what holds the follower."""
+        return self.cam.holding.gentler(self, rising, falling, mm)
 
-        guide, pivot = self.follower.contacts[0].guide, ""
-        if isinstance(guide, Translating):
-            prime = least_stem(self.law, rising, falling, guide.offset).prime
-        else:
-            try:
-                arm = least_arm(self.law, guide.arm, guide.side, rising - _MARGIN, falling - _MARGIN)
-            except IntentError:
-                return None
-            prime, pivot = arm.prime, f"{arm.pivot / mm:.6g}"
-        base = (prime - self.cam.side * self.cam.touch.radius) / mm
-        if base <= 0.0:
-            return None
-        size = upward(base)
-        told = f"a base radius of {size}{pivot and f' with a pivot at {pivot}'}"
-        return told, self.cam.resized(float(size) * mm, float(pivot) * mm if pivot else None)
-
-    def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002 - the least radius is found anew
-        """The base radius at which the roller is half of the pitch curve's least convex radius."""
-        from camgeo.cams.least_size import least_prime
-        from camgeo.curve.moving_frame import CentreShape
-
-        if not isinstance(self.cam.touch, Roller):
-            return ""
-        law, guide, roller = self.law, self.cam.led, self.cam.touch.radius
-        try:
-            prime = least_prime(lambda p: CentreShape(law, guide.resized(p)), 2.0 * roller, guide.prime)
-        except IntentError:
-            return ""
-        return f"a base radius of {upward((prime - self.cam.side * roller) / mm)}"
+    def rounder_pitch(self, surface: str, mm: float) -> str:
+        """By what holds the follower."""
+        rolls = isinstance(self.cam.touch, Roller)
+        return self.cam.holding.rounder(surface, self, mm) if rolls else ""

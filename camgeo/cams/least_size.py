@@ -14,7 +14,8 @@ K. O. Kortanek, SIAM Review 35, 1993).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeVar
+from itertools import product
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
@@ -60,6 +61,14 @@ _RESTS = 256  # of a swinging face
 _LOOSE = 1e-4  # of the pivot's distance: what radii between the angles looked at may be less
 
 
+class _Planes(Protocol):
+    """Rows (x, y, c) of half planes ``x X + y Y >= c`` over the shaft angle."""
+
+    def __call__(self, tau: Series, at: Side = 1) -> list[tuple[Series, Series, Series]]:
+        """Give them as series."""
+        ...
+
+
 def _demand_angles(rising: float, falling: float) -> None:
     for name, angle in (("at_most", rising), ("on_return", falling)):
         if not 0.0 < angle < 0.5 * math.pi:
@@ -93,68 +102,97 @@ def least_stem(motion: Displacement, rising: float, falling: float, offset: floa
     up, down = stem_needs(motion, rising, falling)
     a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)
     if offset is not None:
-        return Translating(_positive(max(up - offset * a, down + offset * b)), offset)
+        return Translating(positive_foot(max(up - offset * a, down + offset * b)), offset)
     for need, angle, sign, other in ((up, rising, 1.0, b), (down, falling, -1.0, a)):
         # foot of the perpendicular from the shaft on one limit's edge, if the other limit is kept there
         d, e = need * math.sin(angle) ** 2, sign * need * math.sin(angle) * math.cos(angle)
         if d - sign * other * e >= (down if sign > 0 else up):
-            return Translating(_positive(d), e)
+            return Translating(positive_foot(d), e)
     e = (up - down) / (a + b)
-    return Translating(_positive(up - e * a), e)
+    return Translating(positive_foot(up - e * a), e)
 
 
-def _positive(foot: float) -> float:
+def positive_foot(foot: float) -> float:
+    """Give the foot d of a stem back, mm; raises IntentError where it is none."""
     if not foot > 0.0:
         raise IntentError("a motion that stands still needs no pressure angle; give a base radius", "sizing")
     return foot
 
 
-def least_arm(motion: Displacement, length: float, side: int, rising: float, falling: float) -> Oscillating:
+def least_arm(
+    motion: Displacement,
+    length: float,
+    side: int,
+    rising: float,
+    falling: float,
+    *,
+    second: tuple[float, float] | None = None,
+) -> Oscillating:
     """Arm of a length, mm, with the pivot that gives the least prime circle within both pressure angles (rad).
 
-    Raises IntentError where no pivot keeps them.
+    `second` is the length of the second arm of a bell crank, mm, and the angle between both, rad: its disc keeps the
+    same angles, on the rise and on the return of the first. Raises IntentError where no pivot keeps them.
     """
     _demand_angles(rising, falling)
-    ahead, behind = (rising, falling) if side > 0 else (falling, rising)
-
-    def planes(tau: Series, at: Side = 1) -> list[tuple[Series, Series, Series]]:
-        """Rows (x, y, c) of the half planes ``x X + y Y >= c``."""
-        s = motion.on(tau, at)
-        pace = (s.derivative() * float(side) + 1.0) * length
-        s = cut(s, pace.order)
-        first, second = s - ahead, s + behind
-        return [
-            (elementary.cos(first), -elementary.sin(first), pace * math.cos(ahead)),
-            (-elementary.cos(second), elementary.sin(second), pace * -math.cos(behind)),
-        ]
+    planes = [_half_planes(motion, length, side, rising, falling)]
+    if second is not None:
+        planes.append(_half_planes(motion.scaled(-1.0), second[0], -side, falling, rising, apart=second[1]))
 
     rows = np.empty((0, 3))
     shaft = np.array([length, 0.0])
     for _ in range(_CUTS):
         worst, added = 0.0, []
-        for kind in (0, 1):
+        for of_arm, kind in product(planes, (0, 1)):
 
-            def broken(tau: Series, at: Side = 1, kind: int = kind, shaft: Array = shaft) -> Series:
-                x, y, c = planes(tau, at)[kind]
+            def broken(
+                tau: Series, at: Side = 1, of_arm: _Planes = of_arm, kind: int = kind, shaft: Array = shaft
+            ) -> Series:
+                x, y, c = of_arm(tau, at)[kind]
                 return c - x * float(shaft[0]) - y * float(shaft[1])
 
             found = greatest(broken, stretches(motion))
             worst = max(worst, found.value)
-            added.append([float(row.c[0, 0]) for row in planes(Jet.variable(found.at, 1))[kind]])
+            added.append([float(row.c[0, 0]) for row in of_arm(Jet.variable(found.at, 1))[kind]])
         if worst <= _BROKEN * length:
             break
         rows = np.vstack([rows, added])
         to, before = np.array([length, 0.0]), shaft
-        shaft = _nearest(rows, to, _FEASIBLE * length)
+        shaft = nearest_in(rows, to, _FEASIBLE * length)
         if bool((shaft == before).all()):  # a corner that breaks a plane at hand, and was let pass
-            shaft = _nearest(rows, to, 0.5 * _BROKEN * length)
+            shaft = nearest_in(rows, to, 0.5 * _BROKEN * length)
     else:
         raise IntentError("the least prime circle of the arm was not found", "sizing")
     x, y = shaft
     return Oscillating(math.hypot(x, y), length, math.atan2(y, x), side)
 
 
-def _nearest(rows: Array, to: Array, slack: float) -> Array:
+def _half_planes(
+    motion: Displacement, length: float, side: int, rising: float, falling: float, *, apart: float | None = None
+) -> _Planes:
+    """Rows (x, y, c) of the half planes ``x X + y Y >= c`` for the shaft's place, as a function of the shaft angle.
+
+    The shaft is seen from the pivot, x along the lowest arm; `apart` is the angle, rad, of an arm on its other side.
+    """
+    ahead, behind = (rising, falling) if side > 0 else (falling, rising)
+
+    def planes(tau: Series, at: Side = 1) -> list[tuple[Series, Series, Series]]:
+        s = motion.on(tau, at)
+        pace = (s.derivative() * float(side) + 1.0) * length
+        s = cut(s, pace.order)
+        first, second = s - ahead, s + behind
+        rows = [
+            (elementary.cos(first), -elementary.sin(first), pace * math.cos(ahead)),
+            (-elementary.cos(second), elementary.sin(second), pace * -math.cos(behind)),
+        ]
+        if apart is None:
+            return rows
+        x, y = math.cos(apart), math.sin(apart)
+        return [(u * x + v * y, u * y - v * x, c) for u, v, c in rows]
+
+    return planes
+
+
+def nearest_in(rows: Array, to: Array, slack: float) -> Array:
     """Point nearest to a given one (2,) in the meet of half planes, rows (m, 3); IntentError where that is empty."""
     normals, level = rows[:, :2], rows[:, 2]
     feet = to + np.maximum(level - normals @ to, 0.0)[:, None] * normals

@@ -239,6 +239,11 @@ class PairAdvice(Advice):
 
     cam: PairCam
 
+    @property
+    def radius(self) -> float:
+        """That of the cam's touch."""
+        return self.cam.touch.radius
+
     def less_swing(self, mm: float) -> str:
         """An arc nearer to the circle about the shaft."""
         if not isinstance(self.cam.route, ArcRoute):

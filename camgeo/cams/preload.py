@@ -17,7 +17,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.cams.family import Cam, Follower, Margin, Proof, Surface
+    from camgeo.cams.family import Cam, Circle, Follower, Margin, Proof, Surface
     from camgeo.cams.position import Position
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
@@ -113,9 +113,18 @@ class Preloaded(ExactCam):
         """Of the nominal cam."""
         return self.nominal.less_pressure(rising, falling, mm)
 
-    def rounder_pitch(self, radius: float, mm: float) -> str:
+    def rounder_pitch(self, surface: str, mm: float) -> str:
         """Of the nominal cam."""
-        return self.nominal.rounder_pitch(radius, mm)
+        return self.nominal.rounder_pitch(surface, mm)
+
+    @property
+    def gap(self) -> float:
+        """The nominal one."""
+        return self.nominal.gap
+
+    def circles(self, surface: str) -> tuple[Circle, ...]:
+        """The nominal ones."""
+        return self.nominal.circles(surface)
 
     def grown(self, out: float, scale: float) -> ExactCam:
         """Drawn larger, with as much interference; it is scaled with the drawing."""

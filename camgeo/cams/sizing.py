@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cams.disc_cams import DiscCam, ExactFaced
 from camgeo.cams.family import Advice
-from camgeo.cams.guided import LARGER_BASE, ExactGuided
+from camgeo.cams.guided import SMALLER_STROKE, ExactGuided
 from camgeo.common.rounding import downward, upward
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.law.contacts import Flat, Oscillating, Translating
@@ -76,10 +76,10 @@ class SizedDiscCam(DiscCam):
     sizing: Sizing
 
     @property
-    def advice(self) -> SizedAdvice:
+    def own_advice(self) -> SizedAdvice:
         """In the words of `sizing`."""
-        trims = self.groove is None
-        return SizedAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field, trims=trims)
+        trims = self.holding.trims
+        return SizedAdvice(self, less_steep=SMALLER_STROKE, radius_field=self.radius_field, trims=trims)
 
     @property
     def sizes(self) -> dict[str, float]:
@@ -101,6 +101,11 @@ class SizedAdvice(Advice):
     """
 
     cam: SizedDiscCam
+
+    @property
+    def radius(self) -> float:
+        """That of the cam's touch."""
+        return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A radius of curvature as large as the roller, which makes it half of the pitch curve's."""
@@ -146,28 +151,18 @@ def _shown(size: float) -> str:
 
 def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
     """The figures that are at their limits, and at which shaft angle, degrees."""
-    limits, surface, bounds = cam.sizing, exact.surfaces[0], {}
-    slope = surface.extremes("slope")
-    if limits.angles is not None and slope is not None:
-        low, high = slope
-        for name, reached, limit, at in (
-            ("pressure-angle-rise", high.value, limits.angles[0], high.at),
-            (ON_RETURN, -low.value, limits.angles[1], low.at),
-        ):
-            if math.atan(reached) > limit - _NEAR:
-                bounds[name] = degrees(at)
-    if limits.radius is not None:
-        for surface in _beside(exact):
+    limits, bounds = cam.sizing, {}
+    for surface in exact.surfaces:
+        of, steepest = f" of {surface.name}" if cam.holding.discs > 1 else "", exact.steepest(surface)
+        if limits.angles is not None and steepest is not None:
+            for name, most, limit in zip(("pressure-angle-rise", ON_RETURN), steepest, limits.angles, strict=True):
+                if math.atan(most.value) > limit - _NEAR:
+                    bounds[f"{name}{of}"] = degrees(most.at)
+        if limits.radius is not None:
             radius, at = _bend(surface)
             if radius < limits.radius * (1.0 + _NEAR):
-                bounds["radius-of-curvature"] = exact.motion.shaft_deg(at)
+                bounds[f"radius-of-curvature{of}"] = exact.motion.shaft_deg(at)
     return bounds
-
-
-def _beside(exact: ExactCam) -> list[Surface]:
-    """Surfaces beside the path that is sized: the one, or both flanks of a groove."""
-    first = exact.surfaces[0]
-    return [surface for surface in exact.surfaces if surface.base is first.base]
 
 
 def _bend(surface: Surface) -> tuple[float, float]:
@@ -201,13 +196,12 @@ def sized(cam: SizedDiscCam) -> SizedDiscCam:
 
 def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
     """A roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
-    from camgeo.cams.least_size import least_stem
     from camgeo.curve import moving_frame
 
     limits = cam.sizing
     stem = moving_frame.Translating(0.0, limits.place or 0.0)
     if limits.angles is not None:
-        stem = least_stem(motion, *limits.angles, limits.place)
+        stem = cam.holding.least_stem(motion, limits.angles, limits.place)
     stem = _opened(cam, motion, _rounder(cam, motion, stem, settled=limits.place is not None))
     return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
@@ -223,7 +217,7 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
     if limits.angles is not None:
         if pivot is not None:
             raise IntentError("the pivot is found with the pressure angle", "follower.arm.pivot")
-        arm = least_arm(motion, length, side, *limits.angles)
+        arm = least_arm(motion, length, side, *limits.angles, second=cam.holding.second_arm)
     elif pivot is None:
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
     else:
@@ -256,29 +250,28 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 def _demand_kept(cam: SizedDiscCam) -> None:
     """Raise IntentError where a size that was found does not keep its limits, by the exact figures."""
-    from camgeo.curve.extremes import greatest, least
-    from camgeo.curve.moving_frame import CentreShape
-    from camgeo.curve.rates import stretches
     from kin.law.programme import IntentError
 
     limits = cam.sizing
     exact = cam.exact()
-    shape = exact.surfaces[0].base.shape
-    if limits.angles is not None and isinstance(shape, CentreShape):
-        over = stretches(shape.law)
-        up, down = greatest(shape.slope, over).value, -least(shape.slope, over).value
-        for name, reached, limit in zip(("rise", "return"), (up, down), limits.angles, strict=True):
-            angle, most = math.degrees(math.atan(reached)), math.degrees(limit)
-            if angle > most + SLACK:
-                raise IntentError(
-                    f"the least size for the radius of curvature has a pressure angle of {angle:.6g} degrees on the "
-                    f"{name}, more than {most:.6g}; give a base radius, or a smaller radius of curvature",
-                    "sizing",
-                )
-    for surface in _beside(exact) if limits.radius is not None else ():
-        found, _ = _bend(surface)
-        if limits.radius is not None and found < limits.radius * (1.0 - SLACK):
-            raise IntentError(f"the size found has a radius of curvature of {found:.9g} mm", "sizing")
+    for surface in exact.surfaces:
+        several, steepest = cam.holding.discs > 1, exact.steepest(surface)
+        where = f" of {surface.name}" if several else ""
+        if limits.angles is not None and steepest is not None:
+            for name, reached, limit in zip(("rise", "return"), steepest, limits.angles, strict=True):
+                angle, most = math.degrees(math.atan(reached.value)), math.degrees(limit)
+                if angle > most + SLACK:
+                    raise IntentError(
+                        f"the least size for the radius of curvature has a pressure angle{where} of {angle:.6g} "
+                        f"degrees on the {name}, more than {most:.6g}; give a base radius, or a smaller radius of "
+                        "curvature",
+                        "sizing",
+                    )
+        if limits.radius is not None:
+            found, _ = _bend(surface)
+            if found < limits.radius * (1.0 - SLACK):
+                less = f"; {cam.advice.on(surface.name).larger} leaves more" if several else ""
+                raise IntentError(f"the size found has a radius of curvature{where} of {found:.9g} mm{less}", "sizing")
 
 
 def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled: bool) -> _GuideT:
@@ -315,9 +308,10 @@ def _opened(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) -> _GuideT:
     from camgeo.curve.backwards import least_hollow
     from camgeo.curve.moving_frame import CentreShape
 
-    if cam.groove is None or cam.sizing.radius is None:
+    outer = [flank.radius for flank in cam.holding.flanks(cam.touch, cam.side) if flank.side < cam.side]
+    if not outer or cam.sizing.radius is None:
         return guide
-    radius = cam.sizing.radius + cam.touch.radius + cam.groove.clearance
+    radius = cam.sizing.radius + outer[0]
     prime = least_prime(
         lambda size: CentreShape(motion, guide.resized(size)), radius, guide.prime, lambda curve: least_hollow(curve)[0]
     )

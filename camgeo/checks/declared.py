@@ -276,7 +276,7 @@ def _convex(scene: Scene) -> str:
 
 
 def _one_face(scene: Scene) -> str:
-    single = not (scene.yoke or scene.swings)
+    single = not (scene.yoke or scene.swings or scene.follower.closure)  # of others that one tells what is left
     return "the breadth is not constant: a single flat face follows" if single else ""
 
 

@@ -52,7 +52,7 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
         return ""
-    return recipe.cam.advice.rounder(value, limit, unit)
+    return recipe.cam.advice.on(check.get("surface", "")).rounder(value, limit, unit)
 
 
 def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
@@ -178,12 +178,16 @@ def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | No
 
 
 class Missed(NamedTuple):
-    """A figure that misses its bound, in mm and degrees; `tolerance` is that of the file, mm, None without one."""
+    """A figure that misses its bound, in mm and degrees; `tolerance` is that of the file, mm, None without one.
+
+    `surface` is that of which it is, empty where there is one.
+    """
 
     value: float
     bound: float
     unit: str
     tolerance: float | None = None
+    surface: str = ""
 
 
 def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
@@ -194,7 +198,7 @@ def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     if value > bound:
         own = _to_lower(recipe, figure, missed)
         return f"{own}{limit.field('at_most')} of {_outward(value, up=True)}"
-    own = _to_raise(recipe, figure, value, bound)
+    own = _to_raise(recipe, figure, value, bound, missed.surface)
     return f"{own}{limit.field('at_least')} of {_outward(value, up=False)}"
 
 
@@ -215,27 +219,30 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         both = figure == PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
         key = "on_return" if figure == ON_RETURN else "at_most and on_return" if both else "at_most"
         return f"{key} of {missed.bound:.6g} under sizing, or " if missed.bound > 0.0 else ""
-    less = recipe.cam.advice.less_steep
-    if figure in {*PEAKS, *AT_SPEED} or recipe.cam.sizes:  # the size of the cam changes none of them, or is found
-        less = less.removeprefix("a larger base radius, ")
+    advice = recipe.cam.advice.on(missed.surface)
+    less = advice.less_steep
+    if advice.larger and not (
+        figure in {*PEAKS, *AT_SPEED} or recipe.cam.sizes
+    ):  # no size changes them, or it is found
+        less = f"{advice.larger}, {less}"
     return f"{less}, or " if less and missed.bound > 0.0 else ""
 
 
-def _to_raise(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Tell what would raise a figure to a bound, in the recipe's unit."""
+def _to_raise(recipe: Recipe, figure: str, value: float, bound: float, surface: str) -> str:
+    """Tell what would raise a figure of a surface to a bound, in the recipe's unit."""
     unit, own, by = "in" if recipe.units == "inch" else "mm", "", bound - value
+    advice = recipe.cam.advice.on(surface)
     if figure == RADIUS and recipe.cam.sizes:
-        own = recipe.cam.advice.rounder(value, bound, unit)
-    elif figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch.radius:
+        own = advice.rounder(value, bound, unit)
+    elif figure in {RADIUS, HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
-        roller, hollow = recipe.cam.touch.radius / recipe.mm, figure == HOLLOW_RADIUS
-        advice = recipe.cam.advice
+        roller, hollow = advice.radius / recipe.mm, figure == HOLLOW_RADIUS
         wider = recipe.cam.side > 0 and roller + by < advice.most_radius / recipe.mm
         if wider if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
             own = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
             own += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:
-        own = recipe.cam.advice.rounder(0.0, by, unit)
+        own = advice.rounder(0.0, by, unit)
     elif figure == LEAST_WALL and lone_ring(recipe):
         own = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:

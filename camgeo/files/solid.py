@@ -16,7 +16,7 @@ from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,12 +81,26 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
     outer, moved, dropped = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
     precision.within("the contour", bound.worst, tolerance)
+    part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
+    facts = MeshFacts(0, len(outer), 0, dropped, moved, bound, None)
+    return hubbed(part, facts, solid, tolerance=tolerance, precision=precision)
+
+
+def hubbed(
+    part: Any,  # noqa: ANN401 - manifold3d has no types
+    facts: MeshFacts,
+    solid: Solid,
+    *,
+    tolerance: float,
+    precision: Precision,
+) -> tuple[Mesh, MeshFacts]:
+    """Closed, oriented mesh of a manifold3d disc with its hub, and without what is cut out of both; as of `joined`."""
+    moved, bound = facts.displacement, facts.bound
     for height in (solid.thickness, solid.low, solid.high, solid.chamfer or 0.0):
         precision.within("a height", abs(precision.number(height) - height), tolerance)
 
     # a corner between two walls that are off by e each is off by up to 2 e over the sine of its angle
     fine = tolerance if solid.drill is None else 0.5 * tolerance * solid.drill.slope
-    part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
     off = 0.0
     if solid.hub is not None:
         circle, straddle = bore_polygon(solid.hub, precision.fit_tolerance(fine, 0.5 * solid.hub))
@@ -108,7 +122,9 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
     mesh, merged = meshed(part, precision)
     bound, off, moved = bound.widened(merged), off + merged, moved + merged
     precision.within("the contour", bound.worst, tolerance)
-    return mesh, MeshFacts(len(mesh.triangles), len(outer), 0, dropped, moved, bound, Bound(off, off))
+    besides = Bound(off, off)
+    triangles = len(mesh.triangles)
+    return mesh, replace(facts, triangles=triangles, displacement=moved, bound=bound, bore_bound=besides)
 
 
 def manifold(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types

@@ -199,20 +199,27 @@ def _extremes(surface: Surface, name: str) -> tuple[Extreme, Extreme]:
     return found
 
 
+def _steepest(design: Design, surface: Surface) -> list[Measured]:
+    """Greatest pressure angles of a surface on the follower's rise and return."""
+    steepest = design.exact.steepest(surface)
+    if steepest is None:
+        raise TypeError("no slope is known of this follower")
+    return [
+        Measured(math.degrees(math.atan(most.value + most.slack)), "deg", degrees(most.at), surface=surface.name)
+        for most in steepest
+    ]
+
+
 def _on_rise(_: Recipe, design: Design) -> Measured:
     def rising(surface: Surface) -> Measured:
-        most = _extremes(surface, "slope")[1]
-        value = math.degrees(math.atan(most.value + most.slack))
-        return Measured(value, "deg", degrees(most.at), surface=surface.name)
+        return _steepest(design, surface)[0]
 
     return _greatest(map(rising, design.exact.surfaces))
 
 
 def _on_return(_: Recipe, design: Design) -> Measured:
     def falling(surface: Surface) -> Measured:
-        least = _extremes(surface, "slope")[0]
-        value = math.degrees(math.atan(least.slack - least.value))
-        return Measured(value, "deg", degrees(least.at), surface=surface.name)
+        return _steepest(design, surface)[1]
 
     return _greatest(map(falling, design.exact.surfaces))
 

@@ -72,7 +72,8 @@ def _held(
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
         detail = measured.detail if value is None or math.isinf(value) else ""
         if value is not None and not ok:
-            detail = f"{of_limit(recipe, limit, Missed(value, bound, measured.unit, tolerance))} would satisfy it"
+            missed = Missed(value, bound, measured.unit, tolerance, measured.surface)
+            detail = f"{of_limit(recipe, limit, missed)} would satisfy it"
         name, of = LIMIT + limit.figure, measured.surface
         found.append(Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, of))
     return found

@@ -57,6 +57,7 @@ RemarkName = Literal[
     "metric-keyway",
     "no-motion",
     "pivot-clearance",
+    "no-play",
     "pressure-angle",
     "shaft-outside",
     "sharp-corner",
@@ -94,6 +95,7 @@ def remarks_of(
         *_motion(recipe, design),
         _law_error(recipe, design),
         _implied(recipe, design, checks, files),
+        _stuck(recipe, design, files),
         _acceleration(recipe, design.exact.joints),
         *_output(recipe, design),
         _shaft(recipe, design),
@@ -119,7 +121,8 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     bounded = (limit.figure for limit in recipe.limits if limit.at_most is not None)
     if not {PRESSURE.name, ON_RISE, ON_RETURN}.isdisjoint(bounded):
         return None
-    made = next((check for check in design.checks if check.name == PRESSURE.name), None)
+    angles = [check for check in design.checks if check.name == PRESSURE.name and check.value is not None]
+    made = max(angles, key=lambda check: check.value or 0.0, default=None)
     kind = "oscillating" if recipe.cam.arrangement.unit == "deg" else "translating"
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
@@ -139,6 +142,8 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
             return None
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
+    if made.surface and not of:
+        of = f" on {made.surface}"
     told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
     found = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
     if found is not None:
@@ -180,18 +185,19 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     bent = [(made.bent.value, made) for made in round_about if made.bent.value is not None]
     if not design.contours or not bent:
         return None
-    radius, sharpest = min(bent, key=lambda row: row[0])
-    roller = recipe.cam.touch.radius
+    radius, sharpest = min(bent, key=lambda row: HALF * row[0] - row[1].surface.radius)
+    roller, surface = sharpest.surface.radius, sharpest.surface.name
     if not HALF * radius < roller:
         return None
-    size = design.exact.rounder_pitch(radius, recipe.mm)
+    size = design.exact.rounder_pitch(surface, recipe.mm)
     if recipe.cam.sizes:
-        size = recipe.cam.advice.rounder(radius / recipe.mm, roller / recipe.mm, recipe.units)
+        size = recipe.cam.advice.on(surface).rounder(radius / recipe.mm, roller / recipe.mm, recipe.units)
     if not size:
         return None
+    where = f" on {surface}" if sharpest.surface.disc else ""
     told = (
-        f"the roller's radius, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's least "
-        f"convex radius; up to half is the rule, which {size} keeps"
+        f"the roller's radius{where}, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's "
+        f"least convex radius; up to half is the rule, which {size} keeps"
     )
     return Remark("large-roller", roller, HALF * radius, "mm", told, sharpest.bent.at_deg)
 
@@ -241,6 +247,25 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
         return None
     told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
     return Remark("pivot-clearance", found.value, 0.0, "mm", told, found.at_deg)
+
+
+def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remark | None:
+    """A roller that files within a coarse tolerance leave no play in its groove, though the recipe gives it some."""
+    first, *others = design.follower.contacts
+    clearance = max((other.touch.radius - first.touch.radius for other in others), default=0.0)
+    left = [(closure, file) for file in files for closure in file.closures]
+    if not (clearance > 0.0 and left and design.follower.arrangement.contacts == 1):
+        return None
+    closure, file = min(left, key=lambda pair: pair[0].play.least)
+    play = closure.play
+    if play.least > 0.0:
+        return None
+    least = _length(recipe, play.least) if play.unit == "mm" else f"{play.least:.3g} deg"
+    told = (
+        f"{file.path.name} leaves the roller {least} between {closure.pushes} and {closure.stops}: it sticks there; "
+        f"a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
+    )
+    return Remark("no-play", play.least, 0.0, play.unit, told, play.least_at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:

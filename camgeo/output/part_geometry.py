@@ -68,7 +68,17 @@ def part_mesh(
     if body.pocket is not None:
         from camgeo.files.prism import pocketed
 
-        return pocketed(outlines, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision)
+        plain = body.hub is None and all(opening.depth is None for opening in body.openings)
+        kept = outlines if plain else outlines[: len(outlines) - len(body.openings)]
+        mesh, facts = pocketed(
+            kept, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision
+        )
+        if plain:
+            return mesh, facts
+        from camgeo.files.solid import hubbed, manifold
+
+        disc = manifold(mesh.points, mesh.triangles)
+        return hubbed(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
     from camgeo.files.solid import joined
 
     polygon = outlines[0].outline

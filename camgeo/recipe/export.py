@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.track import is_ring
-from camgeo.schema.errors import shown
+from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
@@ -66,7 +66,8 @@ class FileRequest:
 
     `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
-    mechanism. `units` is the file's own unit, None for the kind's (`told_in`).
+    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `overlays` are what a page shows
+    besides.
     """
 
     kind: FileKind
@@ -76,6 +77,7 @@ class FileRequest:
     compensation: Compensation | None = None
     parts: Literal["cam", "all"] = "cam"
     units: Length | None = None
+    overlays: tuple[str, ...] = ()
 
     def told_in(self, units: Length) -> Length:
         """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
@@ -123,6 +125,11 @@ class Export:
     tolerance: float
     files: tuple[FileRequest, ...]
 
+    @property
+    def overlays(self) -> tuple[str, ...]:
+        """What pages show over the mechanism, each once."""
+        return tuple(dict.fromkeys(name for request in self.files for name in request.overlays))
+
 
 _TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
 
@@ -136,6 +143,57 @@ def _units(default: str) -> Field:
 
 
 _OF_RECIPE, _OF_SOLID = _units("the recipe's"), _units("mm")
+
+
+OVERLAYS = {
+    "instant-centres": "plate",
+    "chord-polygon": "swings",
+    "isoptic": "swings",
+    "pedal": "swings",
+    "evolute": "",
+}
+"""What a page can show over a mechanism, and what of its cam's offers that needs; a linkage leaves the evolute."""
+
+
+def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
+    """Read the names of overlays, those that the cam's family has, each once."""
+    linked = bool(reader.kinds["linkage"])
+    there = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    names: list[str] = []
+    for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
+        word = item.text if isinstance(item, Scalar) else ""
+        if word in names:
+            reader.fault(item.mark, join(path, i), "the same overlay twice", shown(word), "leave one out")
+        elif word in there:
+            names.append(word)
+        elif word in OVERLAYS:
+            of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
+            remedy = f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", shown(word), remedy)
+        else:
+            remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), "no overlay", described(item), remedy)
+    return tuple(names)
+
+
+_OVERLAYS = Field(
+    "overlays",
+    Kind.OWN,
+    "constructions shown over the mechanism, which turn with it, as far as its family has them",
+    default="none",
+    form=Form(
+        "a list of overlays",
+        f"a list of {either(tuple(OVERLAYS), 'and')}",
+        _read_overlays,
+        lambda _: {
+            "type": "array",
+            "items": {"enum": list(OVERLAYS)},
+            "minItems": 1,
+            "maxItems": len(OVERLAYS),
+            "uniqueItems": True,
+        },
+    ),
+)
 
 
 FILES: dict[str, Table] = {
@@ -203,7 +261,7 @@ FILES: dict[str, Table] = {
             _OF_RECIPE,
         )
     ),
-    "html": Table(()),
+    "html": Table((_OVERLAYS,)),
     "gcode": Table((_OF_RECIPE, _TOLERANCE)),
 }
 
@@ -346,6 +404,7 @@ def _request(kind: FileKind, file: Values) -> FileRequest:
         build_compensation(file),
         chosen.get("parts", "cam"),
         chosen.get("units"),
+        chosen.get("overlays", ()),
     )
 
 

@@ -49,7 +49,8 @@ _DWELLS = (
 
 
 def _disc(title: str, base: str, stroke: str, follower: Given) -> _Starter:
-    unfit = ("offset", "tilt", "width") if "arm" in follower else ()
+    unfit: tuple[str, ...] = ("offset", "tilt", "width") if "arm" in follower else ()
+    unfit += ("conjugate",) if follower["kind"] == "knife-edge" or (unfit and follower["kind"] == "flat") else ()
     cam: Given = {"base_radius": base, "follower": follower, "motion": _DWELLS.format(stroke)}
     return _Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
 
@@ -106,6 +107,18 @@ _STARTERS = {
     ),
     "disc-shoe": _disc("a curved shoe on a stem", "30", "10", {"kind": "shoe", "radius": "60"}),
     "disc-knife-edge": _disc("a knife edge on a stem", "30", "12", {"kind": "knife-edge"}),
+    "disc-conjugate": _Starter(
+        "Two discs on one shaft, for a stem with a roller on either side of it.",
+        "disc",
+        {
+            "base_radius": "36",
+            "follower": {"kind": "roller", "radius": "9", "offset": "6"},
+            "conjugate": {"distance": "120", "radius": "11", "gap": "2"},
+            "motion": _DWELLS.format("24"),
+        },
+        {"part": {"thickness": "12", "bore": "20"}},
+        unfit=("track", "length", "angle", "arm", "hub", "set_screw", "dynamics", "mechanism"),
+    ),
     "disc-ring": _Starter(
         "A ring for a roller that runs inside it, on a stem.",
         "disc",
@@ -116,7 +129,7 @@ _STARTERS = {
             "motion": _DWELLS.format("12"),
         },
         {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
-        unfit=(*OF_A_DISC, "mechanism"),
+        unfit=(*OF_A_DISC, "conjugate", "mechanism"),
     ),
     "disc-groove": _Starter(
         "A disc with a groove that pushes a roller on a stem out and back.",

@@ -79,12 +79,6 @@ def _check_groove(values: Values, reader: Reader) -> None:
         elif kind in DEEP and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"
             reader.fault_at(path, f"{kind} of a groove needs its blank", None, remedy)
-        elif kind in DEEP - {"step"} and (
-            "hub" in part or part.get("mark", {"as": "cut"}).get("as", "engrave") == "engrave"
-        ):
-            what = "hub" if "hub" in part else "mark"
-            remedy = f"leave {kind} out, or part.{what}"
-            reader.fault_at(path, f"{kind} of a groove is made without a hub or an engraved mark", None, remedy)
 
 
 def _check_cutter(values: Values, clearance: float, reader: Reader) -> None:

@@ -206,7 +206,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
-    trim = recipe.cam.undercut == "trim"
+    trim, advice = recipe.cam.undercut == "trim", recipe.cam.advice.on(surface.name)
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius
@@ -225,7 +225,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
         found = undercuts(surface.curve)
     except UndercutError as error:
         kind = "global" if roomy else "local"
-        free = "" if error.free_at is None else f"; {recipe.cam.advice.free_of_undercut(error.free_at, recipe.mm)}"
+        free = "" if error.free_at is None else f"; {advice.free_of_undercut(error.free_at, recipe.mm)}"
         return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
     outcome, contour = "", None if found else surface.curve
     if trim and found:
@@ -242,7 +242,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
     free_at = (min if surface.radius else max)((cut.free_at for cut in found), default=0.0)
-    free = recipe.cam.advice.free_of_undercut(free_at, recipe.mm)
+    free = advice.free_of_undercut(free_at, recipe.mm)
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and surface.radius == 0.0 and not cuts:
@@ -253,7 +253,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
         worst = max(cuts, key=lambda cut: cut.depth)
         detail = f"{_extent(surface, shaft_deg, worst)}; {free}{outcome}"
         small = worst.depth <= SMALL * surface.curve.size
-        if recipe.cam.advice.trims and not trim and small and _can_be_trimmed(surface.curve):
+        if advice.trims and not trim and small and _can_be_trimmed(surface.curve):
             detail += "; or let what is lost be cut off: undercut: trim"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0

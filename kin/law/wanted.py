@@ -19,6 +19,7 @@ from kin.law.bounds import undecided
 from kin.law.programme import IntentError
 from kin.law.segment import Harmonics
 from kin.numeric.elementary import asin
+from kin.numeric.errors import UnsettledError
 from kin.numeric.newton import zeros
 from kin.numeric.records import dataclass
 
@@ -34,9 +35,11 @@ _CLOSE = 1e-6  # of the greatest error: no series is nearer by a larger part
 _NOTHING = 1e-12  # rad: an error that is the rounding of both laws
 _STEPS = 80  # of the exchange
 _LOOKS = 48  # places for each extreme to come
+_SETTLED = 1e-13  # rad: Newton's next step would be its square
 _SECTIONS = 44  # of an interval by the golden ratio: to rounding
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _SHARE = 0.999  # of l^2: beyond it the arcsine goes on as its tangent while a series is looked for
+_HALVINGS = 12  # of a step that leads no nearer
 _STEEP = 0.02  # least slope of phi over t while a series is looked for
 
 
@@ -62,26 +65,28 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
     """
     search = _Search(wanted, np.arange(1, harmonics + 1, 2))
     coefficients = search.on_grid(search.projected())
-    best = (math.inf, coefficients, search.extremes(coefficients), 0.0)
+    best, least = _Extremes.none(), 0.0
+    nearest_yet = coefficients
     for _ in range(_STEPS):
-        found = search.extremes(coefficients)
-        reference = search.reference(found)
-        greatest = float(np.abs(found.error).max())
-        least = max(search.least(reference), best[3])
-        if not greatest < best[0]:
+        try:
+            found = search.extremes(coefficients)
+        except UnsettledError:
             break
-        best = (greatest, coefficients, found, least)
-        if greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least):
+        reference = search.reference(found)
+        least = max(least, search.least(reference))
+        if not found.greatest < best.greatest:
+            break
+        best, nearest_yet = found, coefficients
+        if found.greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least) or not search.least(reference):
             break
         coefficients = coefficients + search.levelled(reference, reference.error, search.rows(coefficients, reference))
-    greatest, coefficients, found, least = best
-    if not greatest <= max(_NOTHING, (1 + _CLOSE) * least):
-        far, near = math.degrees(greatest), math.degrees(least)
+    if not best.greatest <= max(_NOTHING, (1 + _CLOSE) * least):
+        other = "a smaller stroke" if harmonics == MOST_HARMONICS else "other harmonics"
         raise IntentError(
-            f"no series up to harmonic {harmonics} is known to be nearest: one of greatest error {far:.4g} degrees was "
-            f"found, and none is below {near:.4g}; other harmonics may do",
+            f"the nearest series up to harmonic {harmonics} was not found, as the law is steep; {other} may do",
             "delta.harmonics",
         )
+    coefficients, greatest, found = nearest_yet, best.greatest, best
     half = len(coefficients) // 2
     worst = int(np.argmax(np.abs(found.error)))
     series = [dict(zip(search.odd.tolist(), part.tolist(), strict=True)) for part in np.split(coefficients, [half])]
@@ -95,6 +100,16 @@ class _Extremes:
     tau: Array
     t: Array
     error: Array
+
+    @staticmethod
+    def none() -> _Extremes:
+        """Those of no series, which is infinitely far."""
+        return _Extremes(np.zeros(1), np.zeros(1), np.full(1, math.inf))
+
+    @property
+    def greatest(self) -> float:
+        """Greatest error in size."""
+        return float(np.abs(self.error).max())
 
     def taken(self, index: NDArray[np.intp]) -> _Extremes:
         """Those at an index."""
@@ -142,7 +157,7 @@ class _Search:
             return psi - value, np.maximum(1.0 + 0.5 * slope, _STEEP)
 
         bound = np.full(tau.shape, 4.0 + 40.0 * float(np.abs(coefficients).sum()))
-        psi = zeros(over, -bound, bound, wanted, 1e-15)
+        psi = zeros(over, -bound, bound, wanted, _SETTLED)
         return psi - wanted, shaft - 0.5 * psi
 
     def extremes(self, coefficients: Array) -> _Extremes:
@@ -222,22 +237,31 @@ class _Search:
 
         A step is halved until the greatest error falls, so that a first series far off leads there too.
         """
-        error, t = self._shown(coefficients, self.grid)
+        error, t = self._tried(coefficients)
+        while not np.isfinite(error).all():
+            coefficients = 0.5 * coefficients
+            error, t = self._tried(coefficients)
         for _ in range(_STEPS):
             places = _Extremes(self.grid, t, error)
             step = self._exchanged(places, self.rows(coefficients, places))
-            before = float(np.abs(error).max())
-            for halving in range(12):
+            for halving in range(_HALVINGS):
                 trial = coefficients + 0.5**halving * step
-                error, t = self._shown(trial, self.grid)
-                if np.abs(error).max() < before:
+                error, t = self._tried(trial)
+                if np.abs(error).max() < places.greatest:
                     break
             else:
                 return coefficients
             coefficients = trial
-            if np.abs(error).max() > (1 - 1e-4) * before:
+            if np.abs(error).max() > (1 - 1e-4) * places.greatest:
                 return coefficients
         return coefficients
+
+    def _tried(self, coefficients: Array) -> tuple[Array, Array]:
+        """Error and polar angles on the grid: infinite of a series that turns so steeply that none are found."""
+        try:
+            return self._shown(coefficients, self.grid)
+        except UnsettledError:
+            return np.full(self.grid.shape, math.inf), self.grid
 
     def _exchanged(self, places: _Extremes, rows: Array) -> Array:
         """The change of the coefficients (2 m,) that is best for the linear problem at places."""

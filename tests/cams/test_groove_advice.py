@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from camgeo.output.pipeline import export
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 
@@ -68,6 +69,22 @@ def test_a_size_obeys_both_flanks(name):
     assert radii[bound] == pytest.approx(least, rel=1e-3)
     assert min(radii.values()) > least * (1.0 - 1e-9)
     assert "radius-of-curvature at" in recipe.cam.advice.size_found(designed(recipe).exact, 1.0)
+
+
+def remarks(folder, clearance, tolerance):
+    text = GROOVE.replace("clearance: 0.05", f"clearance: {clearance}, depth: 3").replace("SIZE", "base_radius: 40")
+    text = text.replace("RADIUSARM", "8").replace("RISE", "14").replace("LAW", "cycloidal")
+    text += f"part: {{thickness: 6, outer: 150}}\nexport: {{tolerance: {tolerance}, files: [stl]}}\n"
+    outcome = export(read(text.encode(), Path("g.yaml")), folder)
+    assert outcome.ok
+    return {remark["name"]: remark for remark in outcome.report["remarks"]}
+
+
+def test_a_tolerance_that_takes_the_play_is_remarked_on(tmp_path):
+    said = remarks(tmp_path, 0.005, 0.04)["no-play"]
+    assert said["value"] < 0.0
+    assert "a tolerance below 0.0025 leaves it play" in said["sentence"]
+    assert "no-play" not in remarks(tmp_path, 0.005, 0.00249)
 
 
 def test_a_sized_groove_is_freed_by_what_is_told():

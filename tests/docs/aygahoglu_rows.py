@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from support.linkage_reference import BREADTH, CAMS, FIGURES, PI, lift
 from support.page_tables import PaperRow, Section
+from support.pages import SHAFT as SHAFT_ANGLES
+from support.pages import along, origin, overlaid
 from support.places import RECIPES
 
 import camgeo
+from kin.linkage.trace import traced
 
 if TYPE_CHECKING:
     from camgeo.api.design import Design
@@ -69,6 +72,23 @@ def breadth(*cams):
     reach = np.array([(curve(cam) * unit(THETA)).sum(axis=1) for cam in cams])
     both = (reach[:, : COUNT // 2] + reach[:, COUNT // 2 :]).ravel()
     return float(both[np.abs(both - BREADTH).argmax()])
+
+
+def traced_off():
+    """Curvature of the path of D, whose trace is the first of coupler-curve, less that of a circle about B, 1/mm."""
+    theta = np.linspace(0.0, TURN, COUNT)
+    path = traced(mechanism("coupler-curve"), "coupler", (0.0, 0.0), theta)
+    moving = path.speed > 1e-3
+    return most(np.abs(path.curvature[moving]) - 1.0 / 90.0)
+
+
+def evolute_off(cam):
+    """From the page's contact to its centre of curvature, less p + p'' of the paper's formula, mm."""
+    found = overlaid(f"as-figure-{cam}", "evolute")
+    normal = found["normal of the contact"]
+    along_it = (origin(found["centre of curvature"]) - origin(normal)) / along(normal)
+    rows = lift(cam, SHAFT_ANGLES, (0.0, 0.0))
+    return max(most(along_it.real - rows[0] - rows[2]), most(along_it.imag))
 
 
 def curvature_off(cam):
@@ -340,9 +360,9 @@ def paper() -> list[PaperRow]:
             "[long-dwell](gallery.md#linkages) rests longer",
         ),
         beyond.said("3.2, section 4", "slider-crank, and more links, alike", "two recipes", "the paper shows none"),
-        bars.said(
-            "Figures 8, 12", "turning with traces of moving points", "not yet made", "`linkage.trace`", published="-"
+        at("coupler-curve", "Figures 8 to 11", "figures-8-to-11-four-bars").zero(
+            "Figures 8, 12", "turning with traces: D's path, its curvature less 1/r₄, 1/mm", traced_off(), 1e-9
         ),
-        yoke.said("Figure 5", "tangents, evolute turning on the page", "not yet made", "an overlay", published="-"),
+        yoke.zero("Figure 5", "turning on the page with its evolute: ρ less p + p″, mm", evolute_off("2a"), 1e-9),
     ]
     return rows

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from support.page_tables import PaperRow, Row, Section
+from support.pages import SHAFT, origin, overlaid
 from support.places import RECIPES
 
 import camgeo
@@ -281,8 +282,14 @@ def paper() -> list[PaperRow]:
         one.said("section 2", "only one I₂₃, else the faces' distance would change", "as 10", "an argument"),
         one.said("section 1", "no return spring; a preload stiffens", "none", "no figure is given of it"),
         one.said("section 6", "half a turn of the motion is free", "as 3", "a longer motion is refused"),
-        one.said("Figure 1", "turning, on the page", "not yet made", "an overlay", published="-"),
+        one.zero("Figure 1", "turning on the page: Q less S′ on the line of I₁₂ and I₁₃, mm", shown_off(), 1e-9),
     ]
+
+
+def shown_off():
+    """The page's instant centre Q over the turn, less S' across the follower's line, mm."""
+    found = overlaid("shu-wu", "instant-centres")["instant centre of cam and follower"]
+    return float(np.abs(origin(found) - 1j * design().motion(SHAFT, derivative=1)).max())
 
 
 def span_of_return():

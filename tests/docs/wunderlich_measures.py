@@ -7,6 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from support.pages import along, origin, overlaid
 from support.places import RECIPES
 
 import camgeo
@@ -482,3 +483,24 @@ def law_error(name):
     """What the product's check of that name proves, deg."""
     checks = pair(name).design.checks
     return next(check.value for check in checks if check.name == "law-error")
+
+
+def shown_off():
+    """Of the page's overlays at every step of the turn, mm: where a chord ends less where the next begins, and how far
+    a face leaves the curve c* that it should touch."""
+    gaps, faces = [0.0], []
+    for name in ("w-figure-5", "w-booth", "w-figure-9"):
+        chords = list(overlaid(name, "chord-polygon").values())
+        length = 2 * pair(name).arm * np.sin(pair(name).alpha)
+        after = [*chords[1:], chords[0]]
+        gaps += [most(origin(a) + length * along(a) - origin(b)) for a, b in zip(chords, after, strict=True)]
+    found = overlaid("w-figure-5", "isoptic, pedal")
+    x, y = found["curve of the faces"].shapes[0].rings[0].points.T
+    ring = x + 1j * y
+    for step in range(0, 720, 40):
+        turned = np.exp(1j * found["pedal"].pose[step, 2])
+        for end in "AB":
+            ray = along(found[f"perpendicular to the face through {end}"])[step]
+            foot = origin(found[f"foot {end}"])[step]
+            faces.append(((ring * turned - foot) / ray).real.max())
+    return max(gaps), most(faces)

@@ -39,6 +39,7 @@ from wunderlich_measures import (
     rim_closed,
     rosette_off,
     rotation_off,
+    shown_off,
     slants,
     swing_of_arc,
     swing_off,
@@ -170,6 +171,7 @@ def paper() -> list[PaperRow]:
     leaf, every = Section("w-rosette", place["rosette"]), Section("w-*", place["conditions"])
     law, wanted = Section("w-law", place["Figure 6"]), Section("w-wanted-law", place["wanted law"])
     error, extremes = wanted_off()
+    chords, faces_off = shown_off()
     a, b = slants(0.75 * PI)
     x_off, alpha_off, delta_off_ = swing_off("w-figure-9")
     _, (x, y), (x1, y1) = xy("w-figure-9")
@@ -325,11 +327,8 @@ def paper() -> list[PaperRow]:
         on["Figure 5"].said(
             "section 1", "vibration, springs, the earlier conjecture", "none", "no figure is given of them"
         ),
-        on["Figure 5"].said(
-            "Figures 4, 5, 8, 9",
-            "chord polygon, isoptic, pedal turning on the page",
-            "not yet made",
-            "overlays",
-            published="-",
+        Section("w-figure-*", place["Figure 5"]).zero(
+            "Figures 4, 5, 8, 9", "turning on the page: chords to the next one, mm", chords, 1e-9
         ),
+        on["flat pairs"].zero("section 5", "isoptic and pedal turning on the page: faces to c*, mm", faces_off, 2e-3),
     ]

@@ -143,3 +143,15 @@ def test_a_law_with_corners():
     wanted = from_law(4, 3, 1.0, motion, corners=True)
     found = nearest(wanted, 15)
     assert math.degrees(proved_error(found, wanted)) < 0.15
+
+
+@pytest.mark.parametrize("harmonics", [1, 7])
+def test_a_law_all_but_too_steep(harmonics) -> None:
+    """44 degrees in 45, whose image all but jumps: the best series is found, or an error says that it is not."""
+    parts = [Segment(kind, math.radians(45), math.radians(44), law("constant-velocity")) for kind in ("rise", "return")]
+    wanted = from_law(2, 1, 1.0, programme(parts, math.pi / 2), corners=True)
+    if harmonics == 1:
+        assert nearest(wanted, 1).error == pytest.approx(nearest(wanted, 1).least, rel=1e-6)
+    else:
+        with pytest.raises(IntentError, match="nearest series up to harmonic 7 was not found"):
+            nearest(wanted, harmonics)

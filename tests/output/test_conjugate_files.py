@@ -17,6 +17,7 @@ from camgeo.output.dispatch import DISCS, SURFACES, demand_taught
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
+from camgeo.testing import assert_contour, assert_motion
 
 RECIPE = """\
 cam:
@@ -98,6 +99,38 @@ def test_other_programs_find_two_discs_in_place(made):
     assert view.extents[1] == pytest.approx(0.026)  # upward in glTF, in metres
 
 
+def dense(path):
+    """Points (n,) of a drawing's contour, complex, each arc cut by its bulge into parts of some 6 microns at most."""
+    (contour,) = ezdxf.readfile(path).modelspace().query("LWPOLYLINE[layer=='CUT']")
+    rows = [(complex(x, y), b) for x, y, b in contour.get_points("xyb")]
+    found = []
+    for (start, bulge), (end, _) in zip(rows, rows[1:] + rows[:1], strict=True):
+        share = np.arange(0.0, 1.0, 0.006 / abs(end - start))
+        if abs(bulge) > 1e-12:
+            centre = 0.5 * (start + end) + 0.5j * (end - start) * (1 - bulge**2) / (2 * bulge)
+            found.append(centre + (start - centre) * np.exp(4j * np.arctan(bulge) * share))
+        else:
+            found.append(start + share * (end - start))
+    return np.concatenate(found)
+
+
+def test_the_play_is_that_of_every_point_of_both_drawings(made):
+    """The stem is pushed out by roller 1 and stopped by roller 2; nothing of this is camgeo's."""
+    _, report = made
+    one, two = (dense(report.path / f"pair-{k}.dxf") for k in (1, 2))
+    (play,) = report["files"][1]["play"]
+    worst = [play["min_at_deg"], play["max_at_deg"]]
+    left = []
+    for theta in np.radians([*worst, *range(0, 360, 9)]):
+        near, far = one * np.exp(-1j * theta) - 6j, two * np.exp(-1j * theta) - 6j
+        near, far = near[np.abs(near.imag) < 9], far[np.abs(far.imag) < 11]
+        pushed = (near.real + np.sqrt(81 - near.imag**2)).max()
+        left.append(120 + (far.real - np.sqrt(121 - far.imag**2)).min() - pushed)
+    assert left[:2] == pytest.approx([play["min"], play["max"]], abs=2e-6)
+    assert play["min"] - 1e-6 < min(left)
+    assert max(left) < play["max"] + 2e-6
+
+
 def test_one_disc_is_judged_alone_and_says_what_is_left_out(made):
     recipe, report = made
     alone = camgeo.verify(recipe, report.path / "pair-2.dxf")
@@ -117,6 +150,15 @@ def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):
     assert [file["path"] for file in told["files"]] == ["right.dxf", "left.dxf"]
     failed = {(check["name"], check.get("surface"), check["file"]) for check in told["checks"] if not check["ok"]}
     assert failed >= {("contour", "disc 1", "right.dxf"), ("contour", "disc 2", "left.dxf")}
+
+
+def test_assertions_take_the_worst_of_both_discs(made):
+    recipe, report = made
+    (entry,) = [entry for entry in report["files"] if entry["path"] == "pair.3mf"]
+    both = [one["measured_error"] for one in entry["surfaces"]]
+    assert assert_contour(recipe, report.path / "pair.3mf") == max(both) > min(both)
+    alone = report["files"][1]["motion"]
+    assert assert_motion(recipe, report.path / "pair-2.dxf").max == alone["max"]
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------

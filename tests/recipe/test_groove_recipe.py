@@ -35,10 +35,10 @@ def faults(text):
 
 def test_a_groove_is_read():
     cam = recipe(GROOVE).cam
-    assert (cam.kind, cam.side, cam.groove) == ("disc", 1, Groove(0.03, 6.0))
-    assert recipe(GROOVE.replace("clearance: 0.03, depth: 6", "")).cam.groove == Groove()
+    assert (cam.kind, cam.side, cam.holding) == ("disc", 1, Groove(0.03, 6.0))
+    assert recipe(GROOVE.replace("clearance: 0.03, depth: 6", "")).cam.holding == Groove()
     inches = GROOVE.replace("clearance: 0.03, depth: 6", "clearance: 0.001 in")
-    assert recipe(inches).cam.groove.clearance == pytest.approx(0.0254)
+    assert recipe(inches).cam.holding.clearance == pytest.approx(0.0254)
 
 
 HUB = "hub: {diameter: 20, height: 5"
@@ -63,14 +63,6 @@ REFUSED = {
         "clearance: 0.03, depth: 6", "clearance: 0.03", "export.files[1]", "stl needs the depth of the groove",
     ),
     "no blank": (", outer: 130", "", "export.files[1]", "stl of a groove needs its blank"),
-    "hubbed": (
-        "bore: 10", f"bore: 10, {HUB}, side: bottom}}", "export.files[1]",
-        "stl of a groove is made without a hub or an engraved mark",
-    ),
-    "marked": (
-        "bore: 10", "bore: 10, mark: {as: engrave, width: 2, length: 5, depth: 1}", "export.files[1]",
-        "stl of a groove is made without a hub or an engraved mark",
-    ),
     "cutter": (
         "export:", "manufacture: {cutter: 16.1}\nexport:", "manufacture.cutter",
         "wider than the groove",

@@ -236,7 +236,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "part: {x: 1}\n", f"2:8: part.x: unknown key; the keys here are {PART}"),
         (
             SUPPORT + "export: {files: [{html: {x: 1}}]}\n",
-            "2:26: export.files[0].html.x: unknown key; there are no keys here",
+            "2:26: export.files[0].html.x: unknown key; the keys here are overlays",
         ),
         (
             FLAT_PAIR,

@@ -7,14 +7,17 @@ import math
 import re
 import time
 import urllib.request
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camgeo.output.pipeline import shown
-from camgeo.recipe.loading import load
+from camgeo.recipe.loading import load, load_text
+from camgeo.report.page.content import content
 from camgeo.report.page.page import page
 from camgeo.report.page.scene import STEPS
+from camgeo.synthesis.design import designed
 from support.places import RECIPES
 
 if TYPE_CHECKING:
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.scene import Body
 
 SHOWN = ("shu-wu", "as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "w-law", "w-ellipse")
 SHAFT = 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
@@ -45,6 +49,29 @@ class Made:
     def plot(self, title: str, series: int = 0) -> np.ndarray:
         (entry,) = (plot for plot in self.data["plots"] if plot["title"] == title)
         return unpacked(entry["series"][series], STEPS + 1)
+
+
+@cache
+def overlaid(name: str, names: str) -> dict[str, Body]:
+    """Overlays of a shipped recipe's page by the names of their bodies, without its files.
+
+    The shaft turns clockwise, and the pivot or the normal of face 1 is on the x axis.
+    """
+    text = (RECIPES / f"{name}.yaml").read_text(encoding="utf-8")
+    text = re.sub(r"  files: .*", f"  files: [{{html: {{overlays: [{names}]}}}}]", text)
+    recipe = load_text(text, f"{name}.yaml")
+    scene = content(recipe, designed(recipe), ()).scene
+    return {body.name: body for body in scene.bodies if body.kind == "overlays"}
+
+
+def origin(body: Body) -> np.ndarray:
+    """Where the origin of a body stands over the turn, complex."""
+    return body.pose[:, 0] + 1j * body.pose[:, 1]
+
+
+def along(body: Body) -> np.ndarray:
+    """The direction of its x axis over the turn, complex."""
+    return np.exp(1j * body.pose[:, 2])
 
 
 CACHE: dict[str, Made] = {}

@@ -9,6 +9,7 @@ import numpy as np
 from camgeo.curve.ring import Ring, disc
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
+from camgeo.report.page.overlays import Stage, overlaid
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
@@ -156,6 +157,8 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
         bodies = linked(driven, size)
         if recipe.linkage is not None:
             bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
+        stage = Stage(view_of(recipe, design), driven.cam, driven.theta, reach, size)
+        bodies += overlaid(recipe.export.overlays, stage)
         return (
             Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),
@@ -169,6 +172,7 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
     discs = _discs(design, drawn, bore, size, -SHAFT)
+    bodies += overlaid(recipe.export.overlays, Stage(view, -SHAFT, SHAFT, reach, size))
     return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
 
 

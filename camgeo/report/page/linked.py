@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kin.numeric.elementary import Jet
 
 QUARTER = 0.25 * TURN
+TRACED = 3  # every so many places a path has a point
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,8 +272,8 @@ def traced(driven: Driven, traces: Sequence[TracedPoint], mm: float, size: float
     found = []
     for trace in traces:
         x, y = map(value, driven.mechanism.chain.carrier_of(trace.on).pose(driven.solved).point(*trace.point))
-        path = Shape("trace", (Ring.through(np.column_stack([x, y]), closed=False),), trace.name(mm))
-        dot = Shape("trace dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
+        path = Shape("overlay", (Ring.through(np.column_stack([x, y])[::TRACED], closed=False),), trace.name(mm))
+        dot = Shape("overlay dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
         found += [
             Body(trace.name(mm), OVERLAYS, (path,), still()),
             Body(f"point of {trace.name(mm).removeprefix('path of ')}", OVERLAYS, (dot,), poses(x, y, 0.0)),

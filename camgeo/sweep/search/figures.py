@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, RADIUS, SIZE, there
+from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, NEEDS, RADIUS, SIZE, there
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import rebuilt
@@ -75,6 +75,8 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
         given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
     if recipe.part.density is not None and recipe.linkage is None:
         given.add("part.density")
+    if (wanted := NEEDS["wanted"]) in recipe.marks:
+        given.add(wanted)
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 
 
