@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -66,10 +66,10 @@ def float_check(running: Running, found: Extremes) -> Check | None:
     return Check(FLOAT.name, held, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
 
 
-def forces_section(running: Running, found: Extremes) -> dict[str, Any]:
+def forces_section(running: Running, found: Extremes) -> dict[str, object]:
     """The report's section."""
     names, turn = running.turn.names, running.turn
-    section: dict[str, Any] = {
+    section: dict[str, object] = {
         "rpm": running.train.rpm,
         "contacts": [{"contact": name, **_range(one, "N")} for name, one in zip(names, found.contacts, strict=True)],
         "torque": _range(found.torque, "N m"),
@@ -101,7 +101,7 @@ def forces_section(running: Running, found: Extremes) -> dict[str, Any]:
 class Forces(NamedTuple):
     """The report's section, and the check of a rigid follower."""
 
-    section: dict[str, Any]
+    section: dict[str, object]
     checks: tuple[Check, ...]
 
 
@@ -168,7 +168,7 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     return figures
 
 
-def _range(found: tuple[Extreme, Extreme], unit: str) -> dict[str, Any]:
+def _range(found: tuple[Extreme, Extreme], unit: str) -> dict[str, object]:
     least, most = found
     return {
         "min": least.value,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -117,12 +117,12 @@ def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
     return least, greatest
 
 
-def preload_section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
+def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
     """The report's section on the preload: its force, and the load along the travel at which a contact is lost."""
     preload = design.exact.preload
     if preload is None:
         return None
-    section: dict[str, Any] = {
+    section: dict[str, object] = {
         "interference": preload.interference / recipe.mm,
         "unit": "in" if recipe.units == "inch" else "mm",
     }

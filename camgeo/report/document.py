@@ -50,8 +50,8 @@ class Findings:
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
-    preload: dict[str, Any] | None = None
-    forces: dict[str, Any] | None = None
+    preload: dict[str, object] | None = None
+    forces: dict[str, object] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     displacements: tuple[float, str] = (1.0, "mm")
