@@ -141,7 +141,7 @@ def _guided(scene: Scene) -> bool:
 
 
 def _ground(scene: Scene) -> bool:
-    return scene.recipe.manufacture is not None and scene.recipe.manufacture.wheel is not None
+    return scene.recipe.wheel is not None
 
 
 def _walled(scene: Scene) -> bool:
@@ -152,6 +152,10 @@ def _walled(scene: Scene) -> bool:
 
 def _contour(_: Scene, file: FileRequest) -> bool:
     return file.kind not in NO_CONTOUR
+
+
+def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
+    return file.ground or _contour(scene, file)
 
 
 def _drawing(_: Scene, file: FileRequest) -> bool:
@@ -388,11 +392,11 @@ CHAMFER = Declared(
 )
 SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="part.set_screw")
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
-CONTOUR = Declared("contour", ("mm",), of_file=_contour, field="export.tolerance", in_frame=True)
+CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 MOTION = Declared(
     "motion",
     ("mm", "deg"),
-    of_file=_contour,
+    of_file=_ground_or_drawn,
     why_not=_motion_lost,
     field="export.tolerance",
     own_field="verify.motion_error",

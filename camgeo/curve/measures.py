@@ -234,7 +234,14 @@ class StarError(CurveError):
 
 
 def polar_radius(curve: Curve, angles: Array) -> Array:
-    """Distance of a contour from the shaft (n,) at polar angles (n,), each a root on the exact curve.
+    """Distance of a contour from the shaft (n,) at polar angles (n,); raises as `polar_parameters`."""
+    point = curve.sample(polar_parameters(curve, angles)).point
+    radius: Array = np.hypot(point[:, 0], point[:, 1])
+    return radius
+
+
+def polar_parameters(curve: Curve, angles: Array) -> Array:
+    """Parameters (n,) of a contour at polar angles (n,), each a root on the exact curve.
 
     Raises StarError unless each ray is proved to cross the contour once.
     """
@@ -262,9 +269,8 @@ def polar_radius(curve: Curve, angles: Array) -> Array:
     if open_.any():
         cosine, sine = cosine[open_], sine[open_]
         at[open_] = roots(beside, low[open_], high[open_], (ends[0][open_], ends[1][open_]), CLOSE)
-    point = curve.sample(at).point
-    radius: Array = np.hypot(point[:, 0], point[:, 1])
-    return radius
+    found: Array = at
+    return found
 
 
 def _turned(curve: Curve) -> tuple[Array, Array]:

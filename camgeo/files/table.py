@@ -16,11 +16,13 @@ DIGITS = 12
 """Of a number: of a metre the last is 1e-9 mm. What a double has beyond is its own rounding."""
 
 
-def write_table(path: Path, columns: Sequence[str], rows: NDArray[np.float64], *, gaps: bool = False) -> None:
+def write_table(
+    path: Path, columns: Sequence[str], rows: NDArray[np.float64], *, gaps: bool = False, head: Sequence[str] = ()
+) -> None:
     """Write rows (n, k) under k column names; lines end in a line feed on every system.
 
-    With `gaps` a nan becomes an empty cell. Raises ValueError where the shapes disagree, a name would need quoting or a
-    number is not finite; OSError as the file system does.
+    Lines of the `head` stand first, behind a #. With `gaps` a nan becomes an empty cell. Raises ValueError where the
+    shapes disagree, a name would need quoting or a number is not finite; OSError as the file system does.
     """
     if rows.ndim != 2 or rows.shape[1] != len(columns):
         raise ValueError(f"table: rows of shape {rows.shape} under {len(columns)} columns")
@@ -37,5 +39,5 @@ def write_table(path: Path, columns: Sequence[str], rows: NDArray[np.float64], *
     text = (line * len(rows)) % tuple(numbers)
     if gaps:
         text = text.replace("nan", "")
-    text = ",".join(columns) + "\n" + text
-    path.write_bytes(text.encode("ascii"))
+    text = "".join(f"# {line}\n" for line in head) + ",".join(columns) + "\n" + text
+    path.write_bytes(text.encode("ascii", "replace"))

@@ -87,6 +87,8 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("csv", "motion"): 2,
     ("csv", "contacts"): 2,
     ("csv", "polar"): 1,
+    ("csv", "grinding"): 1,
+    ("csv", "lift"): 1,
     ("csv", "inspection"): 2,
     ("csv", "forces"): 2,
 }

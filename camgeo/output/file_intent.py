@@ -43,6 +43,10 @@ def shaft_of_file(
 
 def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
     """What kin is given of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several."""
+    if kind == "csv":
+        from camgeo.machining.grinding import grinding_intent
+
+        return replace(intended(recipe, design), grinding=grinding_intent(recipe, design))
     if kind != "gcode":
         return intended(recipe, design)
     if recipe.manufacture is None:

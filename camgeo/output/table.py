@@ -24,12 +24,26 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
+    if request.ground:
+        return _ground(job, request, path)
     name = request.as_ or "motion"
     with job.clock.stage(_STAGES[name]):
         columns, rows = _TABLES[name](job, request)
         write_table(path, columns, rows, gaps=name in _GAPS)
     units = job.recipe.told_for(request).mm
     return Made((FileResult(path, request, units=units),))
+
+
+def _ground(job: Job, request: FileRequest, path: Path) -> Made:
+    """A table by which a lobe is ground: written, read back, and the metal judged that its wheel leaves."""
+    from camgeo.fit.bound import Bound
+    from camgeo.machining.grinding import ground_table
+
+    recipe = job.recipe.told_for(request)
+    with job.clock.stage("grinding"), job.refusals(request):
+        made = ground_table(recipe, job.design, request, job.tolerance(request), job.field(request))
+        write_table(path, made.columns, made.rows, head=made.head)
+    return job.judged(request, path, Bound(made.error, made.error), len(made.rows) - 1)
 
 
 def _motion(job: Job, request: FileRequest) -> Columns:

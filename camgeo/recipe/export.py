@@ -12,6 +12,7 @@ from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -32,7 +33,19 @@ KINDS: tuple[FileKind, ...] = get_args(FileKind)
 
 
 As: TypeAlias = Literal[
-    "arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection", "trace", "events", "timing"
+    "arcs",
+    "polyline",
+    "spline",
+    "exact",
+    "motion",
+    "contacts",
+    "polar",
+    "inspection",
+    "trace",
+    "events",
+    "timing",
+    "grinding",
+    "lift",
 ]
 """Forms of files, by their key `as`."""
 
@@ -57,6 +70,13 @@ ALL_PARTS: dict[FileKind, str] = {"stl": "cam", "3mf": "parts", "glb": "assembly
 """Ends of the name of the first file of all bodies."""
 
 
+GROUND = frozenset({"grinding", "lift"})
+"""Tables by which a lobe is ground."""
+
+
+WHOLE = 1e-9  # rad by which steps may miss a turn
+
+
 SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their own
 
 
@@ -66,8 +86,9 @@ class FileRequest:
 
     `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
-    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `overlays` are what a page shows
-    besides.
+    mechanism. `units` is the file's own unit, None for the kind's (`told_in`). `step`, rad, is that of a grinder's
+    table, `roller` the radius, mm, of the one whose lift is tabled.
+    `overlays` are what a page shows besides.
     """
 
     kind: FileKind
@@ -77,7 +98,14 @@ class FileRequest:
     compensation: Compensation | None = None
     parts: Literal["cam", "all"] = "cam"
     units: Length | None = None
+    step: float | None = None
+    roller: float | None = None
     overlays: tuple[str, ...] = ()
+
+    @property
+    def ground(self) -> bool:
+        """Whether it is a table that a lobe is ground by, whose contour is judged."""
+        return self.as_ in GROUND
 
     def told_in(self, units: Length) -> Length:
         """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
@@ -256,9 +284,19 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "which table it is",
                 default="motion",
-                choices=("motion", "contacts", "polar", "inspection", "trace", "forces"),
+                choices=("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "forces"),
             ),
+            Field(
+                "step",
+                Kind.ANGLE,
+                "of grinding and lift, between rows; 360 degrees are a whole number of it",
+                default="the largest that holds the tolerance",
+                above=0,
+                at_most=10,
+            ),
+            length("roller", "of lift, diameter of the roller on a stem through the shaft whose lift it is"),
             _OF_RECIPE,
+            _TOLERANCE,
         )
     ),
     "html": Table((_OVERLAYS,)),
@@ -364,6 +402,8 @@ def check_files(values: Values, reader: Reader) -> None:
             if not train or "linkage" in reader.marks or "stiffness" in train:
                 remedy = "give dynamics without stiffness and no linkage, or leave this out"
                 reader.fault_at(path, "a table of forces needs a train whose forces are found", None, remedy)
+        if request.kind == "csv":
+            _check_table(file, request, values, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
             reader.fault_at(f"{path}.step.as", "the chamfer of a spline is not a spline", f"'{request.as_}'", remedy)
@@ -376,6 +416,29 @@ def check_files(values: Values, reader: Reader) -> None:
             name = names[i].removeprefix("NAME")
             remedy = "give each another `as` or `version`, or a recipe of its own"
             reader.fault_at(path, "a second file of one name", f"<name>{name}", remedy)
+
+
+def _check_table(file: Values, request: FileRequest, values: Values, reader: Reader) -> None:
+    """Note what a grinder's table lacks, and what belongs to one alone."""
+    path, keys = f"{file['path']}.csv", ("step", "tolerance", "roller")
+    for key in keys:
+        if key in file and (not request.ground or (key == "roller" and request.as_ == "grinding")):
+            kind = "lift" if key == "roller" else "grinding"
+            reader.fault_at(f"{path}.{key}", f"belongs to a table as {kind}", None, "leave it out")
+    if not request.ground:
+        return
+    if request.as_ == "grinding" and "manufacture.wheel" not in reader.marks:
+        remedy = "give manufacture.wheel, its diameter, such as `manufacture: {wheel: 400}`"
+        reader.fault_at(f"{path}.as", "a grinder's table needs the wheel", "'grinding'", remedy)
+    if request.as_ == "lift" and "roller" not in file:
+        reader.fault_at(f"{path}.as", "the lift of a roller needs its diameter", "'lift'", "give roller beside it")
+    if request.step is not None:
+        count = round(TURN / request.step)
+        if abs(count * request.step - TURN) > WHOLE:
+            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
+            reader.fault_at(f"{path}.step", "360 degrees are no whole number of it", None, remedy)
+    if values.get("cam", {}).get("track", "external") != "external":
+        reader.fault_at(f"{path}.as", "a wheel grinds the outside of a disc", None, "leave the table or track out")
 
 
 TOLERANCE = 0.001  # mm
@@ -404,6 +467,8 @@ def _request(kind: FileKind, file: Values) -> FileRequest:
         build_compensation(file),
         chosen.get("parts", "cam"),
         chosen.get("units"),
+        chosen.get("step"),
+        None if "roller" not in chosen else 0.5 * chosen["roller"],
         chosen.get("overlays", ()),
     )
 

@@ -12,7 +12,7 @@ from camgeo.recipe.dynamics import DYNAMICS, check_train
 from camgeo.recipe.export import EXPORT, check_files
 from camgeo.recipe.figures import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
-from camgeo.recipe.machining import MANUFACTURE, check_allowance
+from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
 from camgeo.recipe.part import PART, check_part
 from camgeo.recipe.preload import check_preload
 from camgeo.recipe.sweep import SWEEP, check_sweep
@@ -143,6 +143,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_discs(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)
+    check_cutter(reader)
     check_allowance(values.get("manufacture", {}), reader)
     check_limits(values.get("limits", []), reader)
     if "sweep" in values:

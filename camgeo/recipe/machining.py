@@ -33,7 +33,6 @@ class Manufacture:
     holes: bool = False
     unreached: float = 0.0
     layer: bool = False
-    wheel: float | None = None
 
     @property
     def radius(self) -> float:
@@ -94,7 +93,7 @@ MOST_RPM = 1_000_000
 
 MANUFACTURE = Table(
     (
-        length("cutter", "diameter of the cutter that mills the contour", required=True),
+        length("cutter", "diameter of the cutter that mills the contour"),
         length("feed", "feed along the contour, a minute; needed by gcode"),
         length("plunge", "feed downwards, a minute; needed by gcode"),
         Field(
@@ -158,6 +157,15 @@ COMPENSATION = (
 """By what the part of a file is made different from the nominal one."""
 
 
+def check_cutter(reader: Reader) -> None:
+    """Note a part that is to be milled without a cutter: of a grinder the wheel alone is given."""
+    milled = any(f"manufacture.{field.name}" in reader.marks for field in MANUFACTURE.fields if field.name != "wheel")
+    if milled and "manufacture.cutter" not in reader.marks:
+        field = MANUFACTURE.field("cutter")
+        remedy = f"{reader.wanted(field)}: {field.about}"
+        reader.fault(reader.marks["manufacture"], "manufacture.cutter", "missing", None, remedy)
+
+
 def check_allowance(milling: Values, reader: Reader) -> None:
     """Note an allowance that is too much for a last pass of this cutter."""
     if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.25 * milling["cutter"]:
@@ -187,6 +195,13 @@ def check_slight(values: Values, reader: Reader) -> None:
             if value is not None and value < least * mm:
                 remedy = f"give at least {least:.6g} {unit}"
                 reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
+
+
+def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]:
+    """Make the milling, where there is any, and the radius of the grinding wheel, mm."""
+    milling = {name: value for name, value in values.items() if name != "wheel"}
+    wheel = values.get("wheel")
+    return Manufacture(**milling) if milling else None, None if wheel is None else 0.5 * wheel
 
 
 def build_compensation(file: Values) -> Compensation | None:

@@ -20,7 +20,7 @@ from camgeo.recipe.export import build_export
 from camgeo.recipe.figures import Limit, build_limits
 from camgeo.recipe.keys import RECIPE, UNITS, read_values
 from camgeo.recipe.linkage import DwellAsked, build_linkage
-from camgeo.recipe.machining import Manufacture
+from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
 from camgeo.schema.errors import RecipeError, RecipeErrors
@@ -87,7 +87,10 @@ class Order(Document):
 
 @dataclass(frozen=True)
 class Recipe(Order):
-    """A recipe of a cam, checked as far as no geometry is needed."""
+    """A recipe of a cam, checked as far as no geometry is needed.
+
+    `wheel` is the radius of the grinding wheel, mm, None where none is given.
+    """
 
     cam: Cam
     part: Part
@@ -96,6 +99,7 @@ class Recipe(Order):
     sweep: Sweep | None = None
     dynamics: Dynamics | None = None
     manufacture: Manufacture | None = None
+    wheel: float | None = None
     mechanism: MechanismAsked | None = None
     limits: tuple[Limit, ...] = ()
 
@@ -215,6 +219,7 @@ def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recip
 
 def _built(values: Values, document: Document) -> Recipe:
     """Make the recipe of values in which there is no fault."""
+    milling, wheel = build_manufacture(values.get("manufacture", {}))
     linkage = build_linkage(values["linkage"]) if "linkage" in values else None
     cam = build_cam(values["cam"], values["mm"])
     return Recipe(
@@ -231,7 +236,8 @@ def _built(values: Values, document: Document) -> Recipe:
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,
-        manufacture=Manufacture(**values["manufacture"]) if "manufacture" in values else None,
+        manufacture=milling,
+        wheel=wheel,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         limits=build_limits(values.get("limits", [])),
         **vars(document),

@@ -151,14 +151,14 @@ def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
     if file.units is not None:
         named = (name for name, mm in UNIT_MM.items() if math.isclose(mm, file.units, rel_tol=1e-6))
         entry["units"] = next(named, f"{file.units:.9g} mm")
-    if file.request.kind in NO_CONTOUR:
+    if file.request.kind in NO_CONTOUR and not file.surfaces:
         return entry
     mm = recipe.mm
     if file.body != "cam":
         entry["body"] = file.body
     if file.request.kind == "dxf":
         entry |= {"as": file.request.as_, "version": file.request.version}
-    elif file.request.kind == "svg":
+    elif file.request.kind == "svg" or file.request.ground:
         entry["as"] = file.request.as_
     if file.request.compensation is not None:
         entry["compensation"] = file.request.compensation.entry(mm)

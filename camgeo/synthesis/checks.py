@@ -113,14 +113,13 @@ def jam_angle(exact: ExactCam) -> tuple[float, float]:
 
 def guide_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
     """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
-    found, train, made = [], recipe.dynamics, recipe.manufacture
+    found, train, wheel = [], recipe.dynamics, recipe.wheel
     if train is not None and train.guide is not None:
         value, at = jam_angle(exact)
         limit = math.degrees(train.guide.jam)
         found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
-    if made is None or made.wheel is None:
+    if wheel is None:
         return found
-    wheel = 0.5 * made.wheel
     for surface, contour in contours:
         radius, place = hollow_radius(surface.side, contour)
         at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)

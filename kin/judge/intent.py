@@ -8,6 +8,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.follower.base import Follower
+    from kin.judge.grinding import Grinding
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.law.contacts import Side
@@ -109,6 +110,7 @@ class PartIntent:
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
     milling     how a program mills it
+    grinding    how a grinder's table is meant
     linkage     that it drives; None for a plain follower
     closures    what is left between its surfaces
     name        by which checks tell it from other discs on its shaft; empty where there is no other
@@ -124,6 +126,7 @@ class PartIntent:
     layers: tuple[Layer, ...] = ()
     cross_holes: tuple[CrossHole, ...] = ()
     milling: Milling | None = None
+    grinding: Grinding | None = None
     linkage: LinkageIntent | None = None
     closures: tuple[ClosureIntent, ...] = ()
     name: str = ""

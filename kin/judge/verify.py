@@ -54,14 +54,14 @@ class UnitsError(KinError, ValueError):
 
 
 def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
-    """Judge a drawing, a solid or a milling program, told apart by the suffix, at `angles` equal steps of the shaft.
+    """Judge a drawing, solid, milling program or grinder's table, by its suffix, at `angles` equal steps of the shaft.
 
     What a file states as its unit counts; `units`, mm, is that of one that states none. A file from which no contour
     can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
     another unit than `units`, and ValueError for another suffix or no angles.
     """
     kind = kind_of(path)
-    read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
+    read = {"gcode": _of_program, "csv": _of_table}.get(kind, _of_solid if kind in SOLIDS else _of_drawing)
     return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
 
 
@@ -157,6 +157,18 @@ def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | Non
     checks = [_units_check(program.units_mm, units, part, found), _count_check("closed", _crossing_places(found))]
     checks += [*done.checks, *_opening_checks(found.holes, [], part, limits)]
     return _Read(checks, found.surfaces, chains, program.units_mm)
+
+
+def _of_table(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
+    """Read a grinder's table, and the surface that its wheel leaves."""
+    from kin.judge.grinding import ground
+
+    if part.grinding is None or len(part.surfaces) > 1:
+        raise ReadError("unsupported", "a table is judged that grinds one surface", path)
+    made = ground(path, part.grinding, limits.tolerance)
+    _demand_same(made.units, units, path)
+    chains = scaled((made.chain,), 1.0, mirrored=part.mirrored)
+    return _Read([], tuple(chains), chains, made.units, made.off)
 
 
 def _opening_checks(

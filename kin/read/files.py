@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kin.read.mesh.stl import Solid
     from kin.read.step.step import StepSolid
 
-Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode"]
+Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode", "csv"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 SOLIDS = frozenset({"stl", "3mf", "step"})
 OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}

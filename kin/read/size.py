@@ -18,6 +18,7 @@ MOST_BYTES = {
     "3mf": 64_000_000,
     "step": 16_000_000,
     "gcode": 32_000_000,
+    "csv": 16_000_000,
 }
 MOST_PIECES = 1_000_000  # of the contours of a drawing: a polygon within 1e-9 mm may have more than half of that
 

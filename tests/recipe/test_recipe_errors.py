@@ -75,7 +75,7 @@ tolerance: 4
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
             "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, "
-            "or under the file dxf, svg, stl, 3mf, step, glb or gcode"
+            "or under the file dxf, svg, stl, 3mf, step, glb, csv or gcode"
         ),
     ]
 

@@ -66,7 +66,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
     figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
-            made = replace(recipe_with(recipe, paths, row), manufacture=None)
+            made = replace(recipe_with(recipe, paths, row), manufacture=None, wheel=None)
             made = made if weighed else replace(made, part=Part())
             design = designed(made)
         except RecipeErrors:

@@ -1,0 +1,216 @@
+"""The grinder's table: how far the wheel's centre stands from the shaft over the angle of the work, X over C.
+
+With g = c.T and h = c.N of the wheel's path c, the contour's parallel at the wheel's radius, X = |c| and
+
+    dX/dC = X g/h,   d2X/dC2 = X g^2/h^2 + X^3/h^2 (1 - k X^2/h),   k = omega/sigma.
+
+Joined by straight lines over steps H the table is off by up to H^2/8 of the greatest second derivative; where every
+place of the wheel is within that of the exact one, so is the metal that it leaves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.common.rounding import downward, upward
+from camgeo.curve.curve import Curve, CurveError
+from camgeo.curve.extremes import divided
+from camgeo.curve.measures import StarError, nearest, polar_parameters
+from camgeo.curve.undercut.causes import UndercutError
+from camgeo.machining.cutter import cutter_path
+from camgeo.synthesis.checks import hollow_radius
+from kin.judge.grinding import Grinding
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.errors import RecipeErrors
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+CELLS = 16_384  # intervals of the turn over which the second derivative is bounded
+SHARE = 0.99  # of the tolerance that straight joins may take, the rest being for the table's digits
+TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
+BELOW = 0.95  # of the largest wheel, with which rows need not be too close
+COARSEST, FINEST = 10.0, 1e-3  # degrees
+NOTHING = 1e-13  # of a direction or of the size: rounding about 0
+DIGITS = 5e-12  # of a length as a table has it
+
+
+class Table(NamedTuple):
+    """A table: names of its columns, rows (n + 1, k), the lines of its head, and what straight joins leave, mm."""
+
+    columns: tuple[str, ...]
+    rows: Array
+    head: tuple[str, ...]
+    error: float
+
+
+def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> Table:
+    """Make the table of a request within a tolerance, mm; `field` is the path of the request, for errors.
+
+    Raises RecipeErrors for a wheel or roller that the contour does not let in, a step that is too wide for the
+    tolerance, and a tolerance that takes too fine a one.
+    """
+    wheel = _Wheel.of(recipe, request, field)
+    path = _path(recipe, design, wheel)
+    try:
+        bend, far = greatest_bend(path), path.size
+    except CurveError as failure:
+        ((_, contour),) = design.contours
+        raise _refused(recipe, wheel, str(failure), 2.0 * hollow_radius(1, contour)[0]) from failure
+    count = _count(recipe, request, bend, (tolerance - DIGITS * far, tolerance), field)
+    error = _left(360.0 / count, bend) + DIGITS * far
+    angle = 2.0 * math.pi * np.arange(count) / count
+    turned = -1.0 if recipe.rotation == "ccw" else 1.0
+    try:
+        at = path.sample(polar_parameters(path, turned * angle))
+    except StarError as failure:
+        raise recipe.error(field, str(failure), None, "leave the table out") from failure
+    distance = np.hypot(at.point[:, 0], at.point[:, 1])
+    degrees, unit = 360.0 * np.arange(count + 1) / count, "in" if recipe.units == "inch" else "mm"
+    length = _length(2.0 * wheel.radius, recipe)
+    head = [f"{recipe.name}: {{}}; c_deg: direction of its centre from the shaft, as the part is drawn"]
+    if request.as_ == "lift":
+        zero = _zero(path)
+        lift = np.where(np.abs(distance - zero) < NOTHING * far, 0.0, distance - zero)
+        rows = [degrees, _closed(lift / recipe.mm)]
+        columns: tuple[str, ...] = ("c_deg", f"lift_{unit}")
+        head[0] = head[0].format(f"lift of a roller {length} across on a stem through the shaft")
+        head.append(f"at lift 0 its centre is {_length(zero, recipe)} from the shaft")
+    else:
+        outward = np.where(np.abs(at.normal) < NOTHING, 0.0, at.normal)
+        normal = np.mod(np.degrees(np.arctan2(turned * outward[:, 1], outward[:, 0])), 360.0)
+        rows = [degrees, _closed(distance / recipe.mm), _closed(np.where(normal < 360.0, normal, 0.0))]
+        columns = ("c_deg", f"x_{unit}", "normal_deg")
+        head[0] = head[0].format(f"places of a grinding wheel {length} across")
+        head.append(f"x_{unit}: its distance; normal_deg: direction in which the metal faces where it grinds")
+    head.append(f"joined by straight lines the metal is within {_length(error, recipe)} of the exact contour, proved")
+    return Table(columns, np.column_stack(rows), tuple(head), error)
+
+
+def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
+    """How kin is to take tables of a recipe."""
+    request = next((request for request in recipe.export.files if request.as_ == "lift"), None)
+    if request is None or not design.contours:
+        return Grinding(recipe.wheel)
+    wheel = _Wheel.of(recipe, request, recipe.field_of(request))
+    return Grinding(recipe.wheel, wheel.radius, _zero(_path(recipe, design, wheel)))
+
+
+def greatest_bend(path: Curve) -> float:
+    """A bound of |d2X/dC2|, mm/rad^2, over the whole path: proved; raises CurveError where none is found."""
+    stretches = np.concatenate([run.stretches for run in path.runs])
+    low, high = divided(stretches[:, 0], stretches[:, 1], max(CELLS // len(stretches), 1))
+    proved, ends, width = path.shape.bounds(low, high), path.span(low, high), high - low
+    speed, turn = proved.speed_high, np.maximum(np.abs(proved.turn_low), np.abs(proved.turn_high))
+    g, h, x = (
+        np.stack([np.sum(one.point * one.tangent, axis=1) for one in ends]),
+        np.stack([np.sum(one.point * one.normal, axis=1) for one in ends]),
+        np.stack([np.hypot(one.point[:, 0], one.point[:, 1]) for one in ends]),
+    )
+    # x' <= sigma, |g'| <= sigma + |omega h|, h' = omega g: none strays from its nearer end by more than half the width
+    far = x.max(axis=0) + 0.5 * width * speed
+    sway = 0.5 * width * (speed + turn * far)
+    g_most = np.abs(g).max(axis=0) + sway
+    h_sway = 0.5 * width * turn * g_most
+    h_low, h_high = h.min(axis=0) - h_sway, h.max(axis=0) + h_sway
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x_sway = 0.5 * width * speed * np.minimum(g_most / (far - width * speed), 1.0)
+        x_low, x_high = x.min(axis=0) - x_sway, x.max(axis=0) + x_sway
+        bent = np.stack([a / b for a in (proved.turn_low, proved.turn_high) for b in (proved.speed_low, speed)])
+        ratios = np.stack([p**2 / q for p in (x_low, x_high) for q in (h_low, h_high)])
+        terms = (bent[:, None] * ratios[None]).reshape(-1, width.size)
+        # where the second term is below 0 the first one lessens it
+        up = x_high * g_most**2 / h_low**2 + np.maximum(1.0 - terms.min(axis=0), 0.0) * x_high**3 / h_low**2
+        down = np.maximum(terms.max(axis=0) - 1.0, 0.0) * x_high**3 / h_low**2
+        reached = np.where((proved.speed_low > 0.0) & (h_low > 0.0), np.maximum(up, down), np.inf)
+    if not np.isfinite(reached).all():
+        raise CurveError("turns on the spot in a hollow, or nearly so", float(low[~np.isfinite(reached)][0]))
+    return float(reached.max())
+
+
+def _path(recipe: Recipe, design: Design, wheel: _Wheel) -> Curve:
+    """The path of the wheel's or the roller's centre."""
+    ((_, contour),) = design.contours
+    try:
+        path = cutter_path(contour, wheel.radius)
+    except UndercutError as error:
+        raise _refused(recipe, wheel, "does not reach the contour", 2.0 * hollow_radius(1, contour)[0]) from error
+    if path.lost:
+        largest = 2.0 * min(cut.free_at for cut in path.lost)
+        raise _refused(recipe, wheel, "does not reach all of the contour's hollows", largest)
+    if path.corners:
+        raise recipe.error(wheel.field, "a trimmed contour has corners, which are not ground", None, "leave it out")
+    return path.curve
+
+
+class _Wheel(NamedTuple):
+    """A wheel, or a roller whose lift is tabled: its radius, mm, and the recipe's field of it."""
+
+    radius: float
+    field: str
+
+    @staticmethod
+    def of(recipe: Recipe, request: FileRequest, field: str) -> _Wheel:
+        """That of a request, `field` its path."""
+        lift = request.as_ == "lift"
+        radius, where = (request.roller, f"{field}.csv.roller") if lift else (recipe.wheel, "manufacture.wheel")
+        if radius is None:
+            raise recipe.error(where, "missing", None, "give its diameter")
+        return _Wheel(radius, where)
+
+
+def _refused(recipe: Recipe, wheel: _Wheel, why: str, largest: float) -> RecipeErrors:
+    """The error of a wheel; the remedy stays below the `largest`, mm across, whose centre stops in a hollow."""
+    remedy = "leave the table out"
+    if math.isfinite(largest):
+        why += f"; the largest that reaches is {downward(largest / recipe.mm)} {recipe.units} across"
+        remedy = f"give {downward(BELOW * largest / recipe.mm)} {recipe.units} or less"
+    return recipe.error(wheel.field, why, _length(2.0 * wheel.radius, recipe), remedy)
+
+
+def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequence[float], field: str) -> int:
+    """Rows of a turn, which a request gives by its step or a tolerance, less what digits take of it, calls for."""
+    room, tolerance = tolerances
+    widest = COARSEST if bend == 0.0 else math.degrees(math.sqrt(8.0 * max(SHARE * room, 0.0) / bend))
+    ticks = int(min(widest, COARSEST) * TICKS)
+    if ticks < FINEST * TICKS:
+        least = upward(_left(FINEST, bend) / SHARE / recipe.mm)
+        what = f"joined by straight lines a table of {360.0 / FINEST:.0f} rows does not keep it"
+        where = f"{field}.csv.tolerance" if request.tolerance is not None else "export.tolerance"
+        raise recipe.error(where, what, _length(tolerance, recipe), f"give at least {least} {recipe.units}")
+    step = next(tick for tick in range(ticks, 0, -1) if 360 * TICKS % tick == 0) / TICKS
+    if request.step is None:
+        return round(360.0 / step)
+    count = round(2.0 * math.pi / request.step)
+    left = _left(360.0 / count, bend)
+    if left > tolerance:
+        what = f"joined by straight lines rows so far apart leave {_length(left, recipe)}, beyond the tolerance"
+        remedy = f"give {step:g} or less, or a tolerance of {upward(left / recipe.mm)} {recipe.units}"
+        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+    return count
+
+
+def _left(step: float, bend: float) -> float:
+    """What straight joins over a step, degrees, leave at most, mm."""
+    return math.radians(step) ** 2 * bend / 8.0
+
+
+def _zero(path: Curve) -> float:
+    """Least distance of a path from the shaft, mm."""
+    return nearest(path).value
+
+
+def _closed(column: Array) -> Array:
+    """A column with its first value behind the last."""
+    return np.append(column, column[:1])
+
+
+def _length(value: float, recipe: Recipe) -> str:
+    return f"{value / recipe.mm:.6g} {recipe.units}"
