@@ -1,10 +1,12 @@
-"""Designs a second on one core, what the samples are worth: `python benchmarks/sweep.py [command] [speed] [accuracy]`.
+"""Designs a second on one core, and what the samples are worth: `python benchmarks/sweep.py [command] [speed] ...`.
 
 `--small` takes few designs, to see that it works.
 
 Speed is processor time, the least of several repeats, as a ratio too: to bare kinematics, the plain numpy expressions
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
-OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own.
+OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `screen` holds
+estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what it measured
+stands in `camgeo.sweep.screen.errors`. `accuracy` does so for four-bars.
 """
 
 from __future__ import annotations
@@ -25,9 +27,11 @@ import numpy as np
 from camgeo.cams.flat_faced import breadth_of
 from camgeo.recipe.figures import Limit
 from camgeo.recipe.loading import load_text
+from camgeo.sweep.screen.certify import error_of
 from camgeo.sweep.search.figures import Evaluator
 from camgeo.sweep.search.rebuilt import recipe_with
 from camgeo.synthesis.linkage import mechanism_of
+from kin.law.sources.laws import NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -186,8 +190,91 @@ def accuracy() -> None:
 
 COUNTS = (120, 180, 360, 720, 1440)
 
+MOTION = "[{rise: 20, over: 110, law: LAW}, {dwell: 50}, {to: 0, over: 120, law: LAW}, {dwell: 80}]"
+HALF = "[{rise: 8, over: 120, law: LAW}, {dwell: 60}]"
+DISC = f"kind: disc, base_radius: 40, motion: {MOTION}, follower: "
+SIZE, OFFSET, RISE = {"cam.base_radius": (30, 60)}, {"cam.follower.offset": (-12, 12)}, {"cam.motion[0].rise": (5, 25)}
+ROLLER = {"cam.follower.radius": (4, 14)}
+ARM = {"cam.follower.arm.pivot": (75, 95)}
+LENGTH = {"cam.follower.arm.length": (55, 75)}
+CAMS = {
+    "roller, stem": (DISC + "{kind: roller, radius: 9, offset: 5}", {**SIZE, **OFFSET, **ROLLER, **RISE}),
+    "knife edge, stem": (DISC + "{kind: knife-edge, offset: 5}", {**SIZE, **OFFSET, **RISE}),
+    "shoe, stem": (DISC + "{kind: shoe, radius: 20, offset: 5}", {**SIZE, **OFFSET, **ROLLER, **RISE}),
+    "flat face, stem": (
+        DISC.replace("40", "90") + "{kind: flat, tilt: 5, offset: 5}",
+        {"cam.base_radius": (70, 120), "cam.follower.tilt": (-20, 20), **OFFSET, "cam.motion[0].rise": (5, 12)},
+    ),
+    "roller, arm": (
+        DISC + "{kind: roller, radius: 9, arm: {length: 65, pivot: 80}}",
+        {**SIZE, **ARM, **LENGTH, **ROLLER, **RISE},
+    ),
+    "shoe, leading arm": (
+        DISC + "{kind: shoe, radius: 9, arm: {length: 65, pivot: 80, side: leading}}",
+        {**SIZE, **ARM, **LENGTH, **ROLLER, **RISE},
+    ),
+    "flat face, arm": (
+        DISC + "{kind: flat, arm: {pivot: 90, face: 5}}",
+        {**SIZE, **ARM, "cam.follower.arm.face": (-5, 10), "cam.motion[0].rise": (2, 5)},
+    ),
+    "roller, ring": (
+        DISC.replace("kind", "track: internal, kind", 1) + "{kind: roller, radius: 9, offset: 5}",
+        {"cam.base_radius": (50, 90), **OFFSET, **ROLLER, "cam.motion[0].rise": (5, 20)},
+    ),
+    "constant breadth": (
+        f"kind: constant-breadth, base_radius: 60, motion: {HALF}",
+        {"cam.base_radius": (50, 90), "cam.motion[0].rise": (3, 12)},
+    ),
+    "support": (
+        "kind: support, fourier: {mean: 30, cos: {2: 1, 3: 0.8, 5: 0.2}, sin: {3: 0.7}}, shaft: [3, 2]",
+        {f"cam.fourier.{name}": (-1, 1) for name in ("cos.2", "cos.3", "sin.3")}
+        | {"cam.fourier.cos.5": (-0.3, 0.3), "cam.shaft[0]": (-5, 15), "cam.shaft[1]": (-5, 5)},
+    ),
+}
+LAWS = ("cycloidal", "modified-sine") if SMALL else tuple(name for name in NAMES if name != "constant-velocity")
+
+
+def screen() -> None:
+    each = 2 if SMALL else 100
+    print("\ncams without a linkage at 360 angles, all figures: estimates and exact designs a second of processor time")
+    worst: dict[str, tuple[float, str]] = {}
+    count = 0
+    for name, (text, ranges) in CAMS.items():
+        laws = LAWS if "LAW" in text else ("",)
+        evaluators, spent, exact_spent, looked = [], 0.0, 0.0, 0
+        for number, law in enumerate(laws):
+            recipe = load_text(cam_text(text.replace("LAW", law), ranges), f"{number}.yaml")
+            evaluator = Evaluator.of(recipe, tuple(ranges), screened=True)
+            if isinstance(evaluator.screen, str):
+                raise SystemExit(f"{name}, {law}: {evaluator.screen}")
+            evaluators.append(evaluator)
+            rows = drawn(ranges, each * (number + 1) // len(laws))[each * number // len(laws) :]
+            many = drawn(ranges, 4 * DESIGNS // len(laws) + 1)
+            spent += least(lambda e=evaluator, v=many: e.found(v))[0] / len(many)
+            start = time.process_time()
+            exact = replace(evaluator, screened=False).found(rows)
+            exact_spent += time.process_time() - start
+            estimates = evaluator.found(rows)
+            looked += len(rows)
+            count += len(rows)
+            for figure, values in exact.figures.items():
+                for estimate, value, code in zip(estimates.figures[figure], values, exact.reason, strict=True):
+                    error = 0.0 if code else error_of(figure, float(estimate), float(value))
+                    worst[figure] = max(worst.get(figure, (0.0, "")), (error, f"{name}, {law}"))
+        print(f"{name:20} {len(laws) / spent:9.0f} a second, exact designs {looked / exact_spent:7.1f}")
+    print(f"greatest error of an estimate on {count} random designs, in degrees or as a share of the value")
+    for figure, (error, where) in worst.items():
+        print(f"    {figure:26} {error:9.1e}   {where}")
+
+
+def cam_text(cam: str, ranges: dict[str, tuple[float, float]]) -> str:
+    vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in ranges.items())
+    part = "part: {thickness: 8, outer: 400}\n" if "internal" in cam else ""
+    return f"cam: {{{cam}}}\n{part}sweep: {{vary: {{{vary}}}, method: random, count: 1, rank: size}}\n"
+
+
 if __name__ == "__main__":
-    parts = {"command": command, "speed": speed, "accuracy": accuracy}
+    parts = {"command": command, "speed": speed, "screen": screen, "accuracy": accuracy}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("part", nargs="*", help=f"of {', '.join(parts)} (default: all)")
     parser.add_argument("--small", action="store_true", help="a small size, to see that it works")

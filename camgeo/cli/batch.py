@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     AnyRecipe: TypeAlias = Recipe | CamshaftRecipe
 
-PAYS = 4.0  # processor seconds of remaining work from which more processes pay, as each of them imports all anew
+PAYS = 4.0  # processor seconds of remaining work from which more processes pay that import all anew
+FORKED = 1.0  # and those that are forked with all that is imported
+IMPORTS = 1.0  # processor seconds of the first recipe that its imports may take
 
 
 @dataclass(frozen=True)
@@ -47,35 +49,30 @@ class Result:
 
 
 def results(recipes: Sequence[AnyRecipe], task: Task, jobs: int | None) -> Iterator[Result]:
-    """Give the result of each recipe in their order; `jobs` processes at once.
+    """Give the result of each recipe in their order; it begins here.
 
-    Without `jobs` it begins here, and goes on with a process for each core where what is left pays for starting them.
+    It goes on with `jobs` processes, or with one for each core, where what is left pays for starting them.
     """
-    if jobs is not None:
-        yield from _at_once(recipes, task, workers.needed(jobs, len(recipes)), fork=True)
-        return
+    started = time.process_time()
     warm = 0.0  # processor time when the first recipe had imported what they need
     for done, recipe in enumerate(recipes):
-        each = (time.process_time() - warm) / (done - 1) if done > 1 else 0.0
+        spent = time.process_time()
+        each = (spent - warm) / (done - 1) if done > 1 else max(spent - started - IMPORTS, 0.0)
         left = recipes[done:]
-        count = workers.needed(workers.available(), len(left))
-        if count > 1 and each * len(left) > PAYS:
-            yield from _at_once(left, task, count, fork=False)  # libraries may have started threads by now
+        count = workers.needed(workers.available() if jobs is None else jobs, len(left))
+        fork = workers.alone()
+        if count > 1 and done and each * len(left) > (FORKED if fork else PAYS):
+            yield from _at_once(left, task, count, fork=fork)
             return
         yield result(recipe, task, Progress(recipe.name))
         warm = warm if done else time.process_time()
 
 
 def _at_once(recipes: Sequence[AnyRecipe], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
-    """Give the result of each recipe in their order, `count` at once; one at a time they are made in this process."""
-    if count == 1:
-        for recipe in recipes:
-            yield result(recipe, task, Progress(recipe.name))
-        return
+    """Give the result of each recipe in their order, `count` at once."""
     from concurrent.futures.process import BrokenProcessPool
 
     progress = Progress(f"{len(recipes)} recipes")
-    # forked, where nothing has started a thread yet: the recipes were loaded with most of what is needed
     with workers.pool(count, fork=fork) as pool:
         try:
             futures = [pool.submit(partial(result, task=task), recipe) for recipe in recipes]

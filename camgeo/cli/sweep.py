@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
     from camgeo.cli.recipes import load
     from camgeo.schema.errors import RecipeErrors
-    from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.ask import EXACT, Ask
 
     try:
         ask = Ask.of(load(arguments.recipe))
@@ -62,6 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
         _complain(ask, f"{outcome.work.damaged} damaged chunks were computed again")
     for left_out in report["skipped"]:
         _complain(ask, f"without {left_out['what']}: {left_out['why']}")
+    if report["screen"] and report["screen"].get("why") and ask.plan.count > EXACT:
+        _complain(ask, f"every design was worked out exactly, as none can be estimated: {report['screen']['why']}")
     if arguments.json:
         from camgeo.report.document import encoded
 
@@ -156,7 +158,7 @@ def _nearest(report: Entry) -> str:
     bounds = report["sweep"]["limits"][near["breaks"]]
     least = "at_least" in bounds and near["value"] < bounds["at_least"]
     asked = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
-    values = ", ".join(f"{path} {value:.6g}" for path, value in near["values"].items())
+    values = ", ".join(f"{path} {_as_told(value)}" for path, value in near["values"].items())
     figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
     return f"; nearest: {values}, with {figure} where {asked} is required"
 
@@ -173,6 +175,10 @@ def _stuck(report: Entry) -> str:
     return f"{counts['not_turning']:,} do not turn" + (f" ({why})" if why else "")
 
 
+def _as_told(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
 def _value(report: Entry, figure: str, value: float) -> str:
     return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
 
@@ -185,7 +191,7 @@ def _table(report: Entry) -> str:
     if counts["rows"] < counts["kept"]:
         lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
     for design in report["best"][:_SAID]:
-        values = ", ".join(f"{path} {value:.6g}" for path, value in design["values"].items())
+        values = ", ".join(f"{path} {_as_told(value)}" for path, value in design["values"].items())
         figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in _by_figure(design["figures"]))
         lines.append(f"  {design['file']}: {values}\n    {figures}")
     return "\n".join(lines)

@@ -10,6 +10,7 @@ import os
 import sys
 from contextlib import contextmanager
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from camgeo.common.system import uninterrupted
@@ -57,6 +58,11 @@ class Pool:
 def available() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
+def alone() -> bool:
+    """Whether this process may be forked: no thread runs beside this one, of a library neither."""
+    return FORKS and len(list(Path("/proc/self/task").iterdir())) == 1
 
 
 def needed(processes: int, items: int) -> int:

@@ -22,7 +22,7 @@ from camgeo.schema.fields import (
     present,
 )
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, is_empty, join, scalars
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -33,9 +33,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Axis:
-    """One number that a sweep varies, by its path in the recipe; all values as the recipe writes them.
+    """One number or word that a sweep varies, by its path in the recipe; all values as the recipe writes them.
 
-    `values` are those listed; where there are none the axis runs from `low` to `high`, over a grid in `steps` values.
+    `values` are those listed, or `words`; where there are none the axis runs from `low` to `high`, over a grid in
+    `steps` values.
     """
 
     path: str
@@ -43,6 +44,7 @@ class Axis:
     high: float = 0.0
     steps: int | None = None
     values: tuple[float, ...] = ()
+    words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,8 @@ def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Value
         return None
     axes = []
     for name, below in ((name, join(path, name)) for name in given):
-        axis = _axis(reader, given[name], below, _varied(reader, name))
+        listed = _words(reader, given[name], name, below)
+        axis = {"words": listed} if listed else _axis(reader, given[name], below, _varied(reader, name))
         if axis is not None:
             axes.append({"path": name, "at": below, **axis})
     return axes
@@ -114,6 +117,17 @@ def _varied(reader: Reader, path: str) -> Kind:
     path = present(reader.root, path, reader.kinds)
     field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
     return Kind.LENGTH if field is None else field.unit or field.kind
+
+
+def _words(reader: Reader, node: Node, path: str, place: str) -> tuple[str, ...]:
+    """Give the words of a list for a field that holds one; none where it is no such list, or no such field."""
+    if not isinstance(node, Sequence) or present(reader.root, path, reader.kinds) in reader.numbers:
+        return ()
+    if path not in dict(scalars(reader.source.root)):
+        return ()
+    words = [item.text for item in node.items if isinstance(item, Scalar) and not is_empty(item)]
+    reader.marks.update({join(place, i): item.mark for i, item in enumerate(node.items)})
+    return tuple(words) if len(words) == len(node.items) <= MOST_VALUES else ()
 
 
 def _axis(reader: Reader, node: Node, path: str, unit: Kind) -> Values | None:
@@ -132,7 +146,8 @@ def _axis(reader: Reader, node: Node, path: str, unit: Kind) -> Values | None:
 
 
 def _vary_schema(_: Field) -> Schema:
-    values = {"type": "array", "items": number_schema(unit=Kind.MOTION), "minItems": 1, "maxItems": MOST_VALUES}
+    items = {"anyOf": [number_schema(unit=Kind.MOTION), {"type": "string"}]}
+    values = {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_VALUES}
     axis = {"anyOf": [table_schema(_range_of(Kind.MOTION)), values]}
     return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
 
@@ -150,7 +165,7 @@ SWEEP = (
     Field(
         "vary",
         Kind.OWN,
-        "numbers of cam and linkage by their paths, each with its range or values",
+        "numbers and words of cam and linkage by their paths, each with its range or values",
         required=True,
         form=_VARY,
     ),
@@ -204,7 +219,9 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
             reader.fault_at(axis["at"], f"varies the same number as {varied[path]}", None, "leave one of the two out")
             continue
         varied[path] = axis["path"]
-        if path not in design:
+        if "words" in axis and path.startswith(_VARIED) and path not in shared:
+            _listed(axis, reader)
+        elif path not in design and not (path in shared and "words" in axis):
             _no_number(axis, design, reader)
         elif path in shared:
             remedy = "write the number out wherever it is meant"
@@ -212,6 +229,16 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
         else:
             _values(axis, reader)
     _method(sweep, axes, reader)
+
+
+def _listed(axis: Values, reader: Reader) -> None:
+    """Note words that stand twice, and those of the fields that say which other keys there are."""
+    path, words = axis["path"], axis["words"]
+    if path.endswith(("cam.kind", "linkage.kind")):
+        reader.fault_at(axis["at"], f"another {path[:-5]} has other keys", None, "give it a recipe of its own")
+    for i, word in enumerate(words):
+        if word in words[:i]:
+            reader.fault_at(f"{axis['at']}[{i}]", "listed twice", shown(word), "leave one of the two out")
 
 
 def _as_written(axis: Values, reader: Reader) -> str:
@@ -246,6 +273,8 @@ def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
     elif path in reader.marks:
         within = next((one for one in design if one.startswith((f"{path}.", f"{path}["))), None)
         remedy = f"give the path of a number in it, such as {within}" if within else f"give the path of a number{such}"
+        if path in dict(scalars(reader.source.root)) and path.startswith(_VARIED):
+            remedy = "list the words that it takes, such as [cycloidal, modified-sine]"
         reader.fault_at(at, "no number stands there", None, remedy)
     elif _is_absent(path, reader) and path.startswith(_VARIED):
         reader.fault_at(at, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
@@ -292,7 +321,7 @@ def _method(sweep: Values, axes: list[Values], reader: Reader) -> None:
     method = sweep.get("method", "grid")
     if "sweep.method" in reader.marks and "method" not in sweep:
         return
-    ranges = [axis for axis in axes if "values" not in axis]
+    ranges = [axis for axis in axes if not {"values", "words"} & axis.keys()]
     if method != "grid":
         if "sweep.count" not in reader.marks:
             reader.fault_at("sweep", f"{method} needs count", None, "give the number of designs, such as count: 1000")
@@ -308,7 +337,8 @@ def _method(sweep: Values, axes: list[Values], reader: Reader) -> None:
         if "steps" not in axis and f"{axis['at']}.steps" not in reader.marks:
             remedy = f"{reader.wanted(RANGE.field('steps'))}, or take the method random or sobol"
             reader.fault_at(axis["at"], "a grid needs steps", None, remedy)
-    designs = math.prod(len(axis["values"]) if "values" in axis else axis.get("steps", 1) for axis in axes)
+    listed = (axis.get("values") or axis.get("words") for axis in axes)
+    designs = math.prod(len(each) if each else axis.get("steps", 1) for each, axis in zip(listed, axes, strict=True))
     if designs > MOST_DESIGNS:
         remedy = f"at most {MOST_DESIGNS} are looked at; take fewer steps, or the method sobol with a count"
         reader.fault_at("sweep.vary", "too many designs", str(designs), remedy)
@@ -338,4 +368,6 @@ def build_sweep(sweep: Values) -> Sweep:
 def _range(axis: Values) -> Axis:
     if "values" in axis:
         return Axis(axis["path"], values=axis["values"])
+    if "words" in axis:
+        return Axis(axis["path"], words=axis["words"])
     return Axis(axis["path"], axis["from"], axis["to"], axis.get("steps"))

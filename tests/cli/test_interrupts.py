@@ -24,6 +24,8 @@ export: {tolerance: 0.00001, files: [dxf, stl, 3mf, svg]}
 # says when interrupts are heard: Python's own start, before, is not the command's
 UP = """
 from camgeo import __main__ as entry
+from camgeo.cli import batch
+batch.PAYS = batch.FORKED = -1.0  # processes from the second recipe on
 listen = entry._Interrupts.listen
 def up(self):
     listen(self)

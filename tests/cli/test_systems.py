@@ -141,7 +141,7 @@ def test_no_more_processes_than_there_is_work_for(
 
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("method", ["as it is", "spawn"])
-def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_more_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from concurrent.futures import ProcessPoolExecutor
 
     made = []
@@ -155,7 +155,9 @@ def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch
     if method == "spawn":  # as on Windows
         monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: ["spawn"])
         monkeypatch.setattr(workers, "FORKS", False)
-    paths = [tmp_path / "a.yaml", tmp_path / "b.yaml"]
+    monkeypatch.setattr(batch, "PAYS", -1.0)
+    monkeypatch.setattr(batch, "FORKED", -1.0)
+    paths = [tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "c.yaml"]  # the first is made here
     for path in paths:
         path.write_text(GOOD, encoding="utf-8")
     assert main(["export", *map(str, paths), "--jobs", "150", "--out", str(tmp_path / "out")]) == 0
@@ -164,9 +166,10 @@ def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch
 
 
 @pytest.mark.thin(2)
-@pytest.mark.parametrize(("pays", "started"), [(math.inf, []), (0.0, [2])])
+@pytest.mark.parametrize("jobs", [[], ["--jobs", "3"]])
+@pytest.mark.parametrize("pays", [math.inf, 0.0])
 def test_recipes_are_made_here_until_more_processes_pay(
-    pays: float, started: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    jobs: list[str], pays: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     counts = []
     begin = workers.pool
@@ -176,15 +179,16 @@ def test_recipes_are_made_here_until_more_processes_pay(
         assert not fork
         return begin(count, fork=fork)
 
+    monkeypatch.setattr(workers, "alone", lambda: False)
     monkeypatch.setattr(workers, "pool", counted)
     monkeypatch.setattr(workers, "available", lambda: 2)
     monkeypatch.setattr(batch, "PAYS", pays)
     paths = [tmp_path / f"{name}.yaml" for name in "abcde"]
     for path in paths:
         path.write_text(GOOD, encoding="utf-8")
-    assert main(["export", *map(str, paths), "--out", str(tmp_path / "out")]) == 0
+    assert main(["export", *map(str, paths), *jobs, "--out", str(tmp_path / "out")]) == 0
     assert [line.partition(":")[0] for line in capsys.readouterr().out.splitlines()] == list("abcde")
-    assert counts == started
+    assert counts == ([] if pays else [3 if jobs else 2])
 
 
 def double(number: int) -> int:

@@ -158,7 +158,7 @@ def test_where_a_pair_lies_on_the_plate_does_not_count(tmp_path):
     assert verdict.ok, failures([verdict])
 
 
-@pytest.mark.parametrize("gap", [GAP + 2e-3, GAP - 2e-3, 0.0])
+@pytest.mark.parametrize("gap", [GAP + 2e-3, *(pytest.param(gap, marks=pytest.mark.slow) for gap in (GAP - 2e-3, 0.0))])
 def test_another_gap(tmp_path, gap):
     (verdict,) = together(in_3mf(tmp_path / "pair.3mf", *bodies(gap)))
     ((_, surface, name),) = failures([verdict])
@@ -167,6 +167,7 @@ def test_another_gap(tmp_path, gap):
     assert detail.endswith("heights are counted from z = 12 mm, where disc 2 belongs")
 
 
+@pytest.mark.slow
 def test_a_body_turned_in_its_place(tmp_path):
     (verdict,) = together(in_3mf(tmp_path / "pair.3mf", *bodies(turned=0.1)))
     assert failures([verdict]) >= {("pair.3mf", "disc 2", "contour"), ("pair.3mf", "disc 2", "motion")}

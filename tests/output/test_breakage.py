@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import pytest
 from support.cases import few
 
+from camgeo.cli import batch
 from camgeo.cli.exit_status import SURROUNDINGS, WRONG
 from camgeo.cli.main import main
+from camgeo.common import workers
+from camgeo.output import pipeline
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -123,10 +126,13 @@ def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
 def test_a_killed_process_is_told_for_each_recipe(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    paths = [tmp_path / f"{name}.yaml" for name in ("one", "two")]
+    paths = [tmp_path / f"{name}.yaml" for name in ("here", "one", "two")]
     for path in paths:
         path.write_text("cam: {kind: support, p: '25'}\n", encoding="utf-8")
-    monkeypatch.setattr("camgeo.output.pipeline.check", lambda *_, **__: os._exit(9))
+    here, check = os.getpid(), pipeline.check
+    monkeypatch.setattr(pipeline, "check", lambda *a, **k: check(*a, **k) if os.getpid() == here else os._exit(9))
+    monkeypatch.setattr(batch, "FORKED", -1.0)
+    monkeypatch.setattr(workers, "alone", lambda: True)
     assert main(["check", *map(str, paths), "--jobs", "2"]) == SURROUNDINGS
     said = capsys.readouterr().err.splitlines()
     assert [line.split(": ")[:2] for line in said] == [["camgeo", "one"], ["camgeo", "two"]]

@@ -152,6 +152,7 @@ def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):
     assert failed >= {("contour", "disc 1", "right.dxf"), ("contour", "disc 2", "left.dxf")}
 
 
+@pytest.mark.slow
 def test_assertions_take_the_worst_of_both_discs(made):
     recipe, report = made
     (entry,) = [entry for entry in report["files"] if entry["path"] == "pair.3mf"]

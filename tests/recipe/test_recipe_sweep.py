@@ -162,7 +162,7 @@ FIRST_PATH = "cam.fourier.mean"
     ("axis", "message"),
     [
         ("cam.shaft: [1]", "no number stands there; give the path of a number in it, such as cam.shaft[0]"),
-        ("cam.kind: [1]", f"no number stands there; give the path of a number, such as {FIRST_PATH}"),
+        ("cam.kind: [1]", "another cam has other keys; give it a recipe of its own"),
         (
             "linkage.dyads[0].offset: [1]",
             "the recipe gives it no value; give it a value first, which the sweep replaces",
@@ -256,8 +256,8 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             [
                 (
                     "1:3: sweep.vary: missing; give a mapping from paths to ranges, such as "
-                    "{linkage.rocker: {from: 95, to: 110, steps: 16}}: numbers of cam and linkage by their paths, "
-                    "each with its range or values"
+                    "{linkage.rocker: {from: 95, to: 110, steps: 16}}: numbers and words of cam and linkage by their "
+                    "paths, each with its range or values"
                 )
             ],
         ),

@@ -74,6 +74,7 @@ def test_the_error_of_each_disc_and_the_backlash_of_both():
     assert series.values.max() > 0.8e3 * play["max"]  # at the page's steps the curve is nearly as high
 
 
+@pytest.mark.slow
 def test_a_contour_is_chosen_for_both_discs():
     content = shown(recipe_of("stem", "dxf, {svg: {as: polyline}}"))[1]
     for k in (1, 2):

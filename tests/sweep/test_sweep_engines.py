@@ -20,7 +20,7 @@ import pytest
 from support.cases import few
 from support.heavy import distributed
 from support.places import TESTS
-from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
+from support.sweepers import GRID, MEANS, Aside, ask, calls, hills, job, tree
 
 from camgeo.recipe.loading import read
 from camgeo.sweep.search import engines
@@ -41,9 +41,11 @@ RUN = """\
 import sys
 from pathlib import Path
 from support.sweepers import MEANS, ask
+from camgeo.sweep.search import engines
 from camgeo.sweep.search.run import How
 from camgeo.sweep.search.search import search
 if __name__ == "__main__":
+    engines._TRIED = engines._PAYS = 0.0  # processes after the first chunk
     search(ask(sys.argv[1]), Path(sys.argv[2]), How(int(sys.argv[3])), MEANS)
 """
 
@@ -68,9 +70,17 @@ def hasty(scene, values):
     return hills(scene, values)
 
 
+def failing(scene, values):
+    """A fault that the first chunk does not meet."""
+    if values[0, 0] > 12.0:
+        raise ArithmeticError("no figures beyond 12")
+    return hills(scene, values)
+
+
 # --- equality ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", few(["processes", "as many as are worthwhile", "dask"], 3))
 def test_every_engine_writes_the_same_files(
@@ -89,6 +99,7 @@ def test_every_engine_writes_the_same_files(
     assert tree(tmp_path / "out") == plain
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster: LocalCluster) -> None:
@@ -99,6 +110,7 @@ def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster:
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, cluster: LocalCluster) -> None:
@@ -123,29 +135,33 @@ def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, c
 def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.MonkeyPatch) -> None:
     started = []
 
-    def instead(job, numbers, workers):
-        started.append((list(numbers), workers))
-        return engines.serial(job, numbers)
+    def instead(function, items, count):
+        started.append((list(items), count))
+        return ((item, function(item)) for item in items)
 
-    monkeypatch.setattr(engines, "processes", instead)
+    monkeypatch.setattr(engines, "at_once", instead)
     monkeypatch.setattr(engines, "_TRIED", 0.02)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2})
-    assert [number for number, _ in engines.as_pays(job(), range(GRID.chunks))] == list(range(GRID.chunks))
+    for how in (How(), How(4), How(1)):
+        assert [number for number, _ in how.results(job(), range(GRID.chunks))] == list(range(GRID.chunks))
     assert started == []
     monkeypatch.setattr(engines, "_PAYS", 0.05)
     slow = job(scene="seconds=0.03;")
-    assert [number for number, _ in engines.as_pays(slow, range(GRID.chunks))] == list(range(GRID.chunks))
-    assert started == [(list(range(1, GRID.chunks)), 3)]
+    for how in (How(), How(4), How(1)):
+        assert [number for number, _ in how.results(slow, range(GRID.chunks))] == list(range(GRID.chunks))
+    assert started == [(list(range(1, GRID.chunks)), 3), (list(range(1, GRID.chunks)), 4)]
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalCluster, tmp_path: Path) -> None:
     how = {"serial": How(1), "processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
-    faulty = Job(GRID, Aside(), fail)
-    with pytest.raises(AssertionError, match="a chunk was computed that was there"):
+    faulty = Job(GRID, Aside(), failing)
+    with pytest.raises(ArithmeticError, match="no figures beyond 12"):
         compute(faulty, chunks_of(faulty, tmp_path), how)
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
@@ -282,6 +298,7 @@ def killed(scene, values):
     return hills(scene, values)
 
 
+@pytest.mark.usefixtures("pooled")
 @pytest.mark.slow
 def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
     deadly = Job(GRID, Aside(), killed)

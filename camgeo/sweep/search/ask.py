@@ -28,22 +28,26 @@ from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.sweep import FIGURES
+from camgeo.schema.errors import RecipeErrors, shown
 from camgeo.schema.fields import Kind, field_at
-from camgeo.sweep.search.figures import Evaluator, Scene, asked_of
+from camgeo.schema.yaml_source import join
+from camgeo.sweep.search.figures import Evaluator, Scene, asked_of, estimated
 from camgeo.sweep.search.gather import Ranking
 from camgeo.sweep.search.plan import Axis, Plan, steps
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from camgeo.recipe.sweep import Axis as Varied
     from camgeo.recipe.sweep import Sweep
+    from camgeo.sweep.search.figures import Found
     from camgeo.sweep.search.gather import Floats
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
 _DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN, MASS, ECCENTRICITY, INERTIA, UNBALANCE)
+EXACT = 100  # designs: of no more each is worked out, which takes seconds
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
@@ -58,12 +62,13 @@ class Unit:
 
 @dataclass(frozen=True)
 class Ask:
-    """A recipe that has a sweep, and the parts of that sweep."""
+    """A recipe that has a sweep, the parts of that sweep, and the recipe with each of the words that vary."""
 
     recipe: Recipe
     sweep: Sweep
     plan: Plan
     ranking: Ranking
+    variants: tuple[Recipe, ...] = ()
 
     @staticmethod
     def of(recipe: Recipe) -> Ask:
@@ -78,7 +83,8 @@ class Ask:
             for axis in axes:
                 count *= len(axis.values)
         plan = Plan(axes, sweep.method, count, sweep.seed)
-        return Ask(recipe, sweep, plan, Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits))
+        ranking = Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits)
+        return Ask(recipe, sweep, plan, ranking, _variants(recipe, sweep))
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
@@ -87,16 +93,53 @@ class Ask:
         Limits on the cheap ones so leave what is computed as it is. Designs with a linkage that are made one by one
         get all, which then cost next to nothing.
         """
-        paths = tuple(axis.path for axis in self.sweep.vary)
-        asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
-        if self.recipe.linkage is not None and Evaluator.of(self.recipe, paths).slow:
+        if self.screened:
+            return self._estimated
+        if self.recipe.linkage is not None and Evaluator.of(self.recipe, self.paths).slow:
             return self.all_figures
-        return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
+        return tuple(name for name in self.all_figures if name in self._asked or name not in _DEAR)
+
+    @property
+    def _asked(self) -> set[str]:
+        return {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
+
+    @property
+    def _estimated(self) -> tuple[str, ...]:
+        """The figures that can be estimated, and those that must be."""
+        known = estimated(self.recipe)
+        return tuple(name for name in self.all_figures if name in known or name in self._asked)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The fields that vary."""
+        return tuple(axis.path for axis in self.sweep.vary)
+
+    @property
+    def screened(self) -> bool:
+        """Whether figures of all designs are estimates, and those of the designs kept alone exact."""
+        return not self.unscreened
+
+    @cached_property
+    def unscreened(self) -> str:
+        """Why figures are not estimates but come from each design; empty where they are estimates."""
+        if self.plan.count <= EXACT:
+            return f"up to {EXACT} designs are all worked out"
+        screen = Evaluator.of(self.recipe, self.paths, figures=self._estimated, screened=True).screen
+        return screen if isinstance(screen, str) else ""
+
+    def exactly(self, values: Floats) -> Found:
+        """All figures of designs with the values (m, axes) of the sweep, and why one has none, from each design."""
+        scene = self.scene(self.all_figures)
+        return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures).found(values)
 
     @property
     def all_figures(self) -> tuple[str, ...]:
-        """The figures that the best designs are given."""
-        return asked_of(self.recipe)
+        """The figures that the best designs are given: those that they have with all words."""
+        return tuple(name for name in asked_of(self.recipe) if all(name in asked_of(other) for other in self.variants))
+
+    def told(self, values: Mapping[str, float]) -> dict[str, float | str]:
+        """Values by path as the recipe has them."""
+        return {axis.path: axis.told(values[axis.path]) for axis in self.plan.axes}
 
     def scene(self, figures: tuple[str, ...]) -> Scene:
         """What decides these figures of a design.
@@ -118,12 +161,11 @@ class Ask:
             path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
             sweep=plain,
         )
-        return Scene(recipe, figures)
+        return Scene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))
 
     def measured(self, values: Floats) -> dict[str, Floats]:
         """All figures (m,) of designs with the values (m, axes) of the sweep, in mm and degrees."""
-        scene = self.scene(self.all_figures)
-        return Evaluator.of(scene.recipe, scene.paths).found(values).figures
+        return self.exactly(values).figures
 
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""
@@ -155,7 +197,25 @@ class Ask:
         return length if kind in _LENGTHS else "deg" if kind is Kind.ANGLE else ""
 
 
+def _variants(recipe: Recipe, sweep: Sweep) -> tuple[Recipe, ...]:
+    """The recipe with each word; raises RecipeErrors, at the word, where there is no such recipe."""
+    found = []
+    for axis in sweep.vary:
+        for i, word in enumerate(axis.words):
+            place = join(join("sweep.vary", axis.path), i)
+            try:
+                found.append(recipe.replace(axis.path, word))
+            except RecipeErrors as errors:
+                first = errors.errors[0]
+                problem = f"with it {first.path}: {first.problem}"
+                raise recipe.error(place, problem, shown(word), first.remedy) from errors
+    return tuple(found)
+
+
 def _axis(varied: Varied) -> Axis:
+    if varied.words:
+        counts = tuple(map(float, range(len(varied.words))))
+        return Axis(varied.path, counts[0], counts[-1], counts, varied.words)
     if varied.values:
         return Axis(varied.path, min(varied.values), max(varied.values), varied.values)
     values = steps(varied.low, varied.high, varied.steps) if varied.steps else ()

@@ -37,21 +37,16 @@ class EngineError(KinError):
     """The chunks cannot be computed for want of something around the run; what has landed stays."""
 
 
-def serial(job: Job, numbers: Sequence[int]) -> Results:
-    """Compute one chunk after another, here."""
-    key = job.key
-    for number in numbers:
-        yield number, result(job, number, key)
-
-
-def processes(job: Job, numbers: Sequence[int], count: int) -> Results:
-    """Compute `count` chunks at once, each in a process of this machine; raises EngineError where one is killed."""
-    key = job.key
-    return at_once(partial(result, job, key=key), numbers, count)
+def here(job: Job, numbers: Sequence[int], count: int) -> Results:
+    """Compute chunks on this machine, in `count` processes where they pay."""
+    return spread(partial(result, job, key=job.key), numbers, count)
 
 
 def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Give each item, as it is done, with what a function of a module makes of it, `count` at once."""
+    """Give each item, as it is done, with what a function of a module makes of it, `count` at once.
+
+    Raises EngineError where a process is killed.
+    """
     from concurrent.futures.process import BrokenProcessPool
 
     try:
@@ -60,16 +55,18 @@ def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Gener
         raise EngineError(workers.KILLED.format("it")) from error
 
 
-def as_pays(job: Job, numbers: Sequence[int]) -> Results:
-    """Begin here, and go on with a process for each core where what is left takes longer than starting them."""
-    started, key = time.perf_counter(), job.key
-    cores = workers.available()
-    for done, number in enumerate(numbers):
+def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Generator[tuple[T, R], None, None]:
+    """Give each item with what a function makes of it: one after another here, and `count` at once where that pays.
+
+    It pays where what is left takes longer than starting processes, by the time of what is done.
+    """
+    started = time.perf_counter()
+    for done, item in enumerate(items):
         spent = time.perf_counter() - started
-        if cores > 1 and done and spent > _TRIED and spent / done * (len(numbers) - done) > _PAYS:
-            yield from processes(job, numbers[done:], cores)
+        if count > 1 and done and spent > _TRIED and spent / done * (len(items) - done) > _PAYS:
+            yield from at_once(function, items[done:], count)
             return
-        yield number, result(job, number, key)
+        yield item, function(item)
 
 
 def dask(job: Job, numbers: Sequence[int], address: str) -> Results:

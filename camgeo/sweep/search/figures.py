@@ -18,20 +18,23 @@ from numpy.typing import NDArray
 from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, NEEDS, RADIUS, SIZE, there
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.sweep import FIGURES
+from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search import rebuilt
-from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
+from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, IMPOSSIBLE, REVERSES, Cams
 from camgeo.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
 from camgeo.sweep.search.gather import REASON
 from camgeo.sweep.search.linkages import Lengths, angles, engine
 from camgeo.sweep.search.windows import Samples, longest
 from kin.linkage.loop import side_of
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.cams.family import Cam
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
+    from camgeo.sweep.screen.screen import Screen
     from kin.linkage.four_bar import Linkage
 
 Array: TypeAlias = NDArray[np.float64]
@@ -56,11 +59,14 @@ class Found(NamedTuple):
 class Scene:
     """What is computed of each design of a sweep: plain data that travels to any worker, and is part of the key.
 
-    A recipe with its sweep, without what has no bearing on a figure, and the names of the figures wanted.
+    A recipe with its sweep, without what has no bearing on a figure, and the names of the figures wanted; estimates
+    where it is `screened`. `others` are the cams that it is with other words, whose tables are part of the key.
     """
 
     recipe: Recipe
     figures: tuple[str, ...]
+    screened: bool = False
+    others: tuple[Cam, ...] = ()
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -78,6 +84,13 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
     if (wanted := NEEDS["wanted"]) in recipe.marks:
         given.add(wanted)
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
+
+
+def estimated(recipe: Recipe) -> tuple[str, ...]:
+    """Names of those of a cam without a linkage that can be estimated."""
+    from camgeo.sweep.screen.screen import FIGURES as KNOWN
+
+    return tuple(name for name in asked_of(recipe) if name in KNOWN)
 
 
 class _Motion(Protocol):
@@ -111,6 +124,7 @@ class Evaluator:
     wanted: tuple[str, ...]
     limits: tuple[Limit, ...]
     count: int
+    screened: bool = False
 
     @staticmethod
     def of(
@@ -119,18 +133,77 @@ class Evaluator:
         *,
         figures: Sequence[str] | None = None,
         samples: int | None = None,
+        screened: bool = False,
     ) -> Evaluator:
         """Prepare for designs in which the fields at `paths` differ.
 
         `figures`, if given, are those wanted besides those limited. `samples` is their number, raised to a multiple
-        of 4. Raises ValueError for a path at which no number stands.
+        of 4. Cams without a linkage are estimated where they are `screened` and can be. Raises ValueError for a path at
+        which no number stands.
         """
         sweep = recipe.sweep
         limits = sweep.limits if sweep else ()
-        wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
+        wanted = figures or (estimated(recipe) if screened and recipe.linkage is None else asked_of(recipe))
+        wanted = tuple(dict.fromkeys((*wanted, *(limit.figure for limit in limits))))
         count = samples or (sweep.angles if sweep else _SAMPLES)
-        recipe.text_with(dict.fromkeys(paths, 1.0))  # raises where no number stands
-        return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4)
+        worded = rebuilt.words_of(recipe)
+        recipe.text_with({path: 1.0 for path in paths if path not in worded})  # raises where no number stands
+        return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4, screened)
+
+    @cached_property
+    def worded(self) -> tuple[int, ...]:
+        """Columns of the words that vary."""
+        words = rebuilt.words_of(self.recipe)
+        return tuple(column for column, path in enumerate(self.paths) if path in words)
+
+    def _with_words(self, chosen: tuple[float, ...]) -> Evaluator | None:
+        """What computes the designs that have words in common, by their counts; None where there is no such recipe."""
+        if chosen not in self._by_words:
+            words = [self.paths[column] for column in self.worded]
+            left = tuple(path for path in self.paths if path not in words)
+            try:
+                made = rebuilt.recipe_with(self.recipe, words, chosen)
+            except RecipeErrors:
+                self._by_words[chosen] = None
+            else:
+                recipe = replace(self.recipe, cam=made.cam, linkage=made.linkage, text=made.text)
+                self._by_words[chosen] = replace(self, recipe=recipe, paths=left)
+        return self._by_words[chosen]
+
+    @cached_property
+    def _by_words(self) -> dict[tuple[float, ...], Evaluator | None]:
+        return {}
+
+    def _each_word(self, values: Array) -> Found:
+        """The figures of designs by the words that they have."""
+        m = len(values)
+        figures = {name: np.full(m, np.nan) for name in self.wanted}
+        reason = np.full(m, IMPOSSIBLE, dtype=np.uint8)
+        distinct, which = np.unique(values[:, self.worded], axis=0, return_inverse=True)
+        others = np.delete(values, self.worded, axis=1)
+        for i, chosen in enumerate(distinct):
+            rows, evaluator = np.flatnonzero(which.reshape(-1) == i), self._with_words(tuple(chosen.tolist()))
+            if evaluator is not None:
+                found = evaluator.found(others[rows])
+                reason[rows] = found.reason
+                for name, column in found.figures.items():
+                    figures[name][rows] = column
+        return Found(figures, reason)
+
+    @cached_property
+    def screen(self) -> Screen | str:
+        """What estimates figures of cams without a linkage, or why nothing does; of words, with those of the recipe."""
+        from camgeo.sweep.screen.screen import Screen
+
+        if self.worded:
+            return replace(self, paths=tuple(np.delete(self.paths, self.worded).tolist())).screen
+        return Screen.of(self.recipe, self.paths, self.wanted, self.count)
+
+    @property
+    def estimator(self) -> Screen | None:
+        """The screen, where figures are to be estimated and can be."""
+        screen = self.screen if self.screened else ""
+        return None if isinstance(screen, str) else screen
 
     @cached_property
     def cams(self) -> Cams:
@@ -141,7 +214,11 @@ class Evaluator:
     def slow(self) -> bool:
         """Whether designs are made one by one."""
         linkage = self.recipe.linkage
-        return linkage is None or bool(linkage.dyads) or bool(self.cams.others)
+        if linkage is None:
+            return self.estimator is None
+        if self.worded:
+            return replace(self, paths=tuple(np.delete(self.paths, self.worded).tolist())).slow
+        return bool(linkage.dyads) or bool(self.cams.others)
 
     @cached_property
     def scale(self) -> float:
@@ -157,10 +234,15 @@ class Evaluator:
         """
         m = len(values)
         values = np.asarray(values, dtype=float).reshape(m, len(self.paths))
+        if self.worded:
+            return self._each_word(values)
         figures = {name: np.full(m, np.nan) for name in self.wanted}
         reason = np.zeros(m, dtype=np.uint8)
         if self.recipe.linkage is None:
-            found, reason[:] = rebuilt.plain(self.recipe, self.paths, values, tuple(figures))
+            if self.estimator is None:
+                found, reason[:] = rebuilt.plain(self.recipe, self.paths, values, tuple(figures))
+            else:
+                found, reason[:] = self.estimator.found(values)
             figures.update(found)
             reason[(reason == FINE) & self._broken(figures)] = BROKEN
             return Found(figures, reason)
@@ -336,4 +418,4 @@ def _evaluator(scene: Scene) -> Evaluator:
     # glibc hands the memory of each block back to the system, and takes it again page by page for the next, at a tenth
     # of all time. It keeps what is smaller than the largest piece it was ever given back.
     np.empty(_HEAP)
-    return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures)
+    return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures, screened=scene.screened)

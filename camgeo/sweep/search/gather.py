@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -41,10 +41,10 @@ class Ranking:
     most: bool
     limits: tuple[Limit, ...] = ()
 
-    def held(self, limit: Limit, figures: Mapping[str, Floats]) -> NDArray[np.bool_]:
-        """Where a limit's figure is within its bounds, (m,); nan is not."""
-        least = -np.inf if limit.at_least is None else limit.at_least
-        most = np.inf if limit.at_most is None else limit.at_most
+    def held(self, limit: Limit, figures: Mapping[str, Floats], slack: float = 0.0) -> NDArray[np.bool_]:
+        """Where a limit's figure is within its bounds, or misses them by no more than a slack, (m,); nan is not."""
+        least = -np.inf if limit.at_least is None else limit.at_least - slack
+        most = np.inf if limit.at_most is None else limit.at_most + slack
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
     def miss(self, limit: Limit, figures: Mapping[str, Floats]) -> Floats:
@@ -89,6 +89,18 @@ class Nearest:
 
 
 @dataclass(frozen=True)
+class Certificate:
+    """What was worked out exactly: how many designs hold, why others fell, and how far the estimates were off.
+
+    `off` has for each figure the greatest error, in degrees or as a share of the value.
+    """
+
+    designs: int = 0
+    fell: dict[str, int] = field(default_factory=dict)
+    off: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Cells:
     """The best design in each cell over one or two axes, whatever the others are.
 
@@ -111,7 +123,8 @@ class Cells:
 class Gathered:
     """Outcome of a sweep: counts, cells, and the best designs, best first, at most MOST_ROWS.
 
-    index (n,); values (n, axes) in the recipe's units; figures (n,) each, in mm and degrees.
+    index (n,); values (n, axes) in the recipe's units; figures (n,) each, in mm and degrees. Where these are estimates
+    `certificate` says how many designs, in front, have exact ones all the same.
     """
 
     counts: Counts
@@ -120,6 +133,7 @@ class Gathered:
     figures: dict[str, Floats]
     cells: Cells
     nearest: Nearest | None = None
+    certificate: Certificate | None = None
 
     @property
     def rows(self) -> int:
@@ -127,8 +141,13 @@ class Gathered:
         return len(self.index)
 
 
-def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]]) -> Gathered:
-    """Draw together the figures of all chunks, given in order."""
+def gather(
+    plan: Plan,
+    ranking: Ranking,
+    chunks: Iterable[Mapping[str, Floats]],
+    slack: Callable[[Limit], float] | None = None,
+) -> Gathered:
+    """Draw together the figures of all chunks, given in order; rows may miss limits by as much as `slack` says."""
     cells = _Canvas(plan)
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)
     stuck = kept = first = waiting = 0
@@ -142,11 +161,12 @@ def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]])
         last = first + len(table)
         values = plan.values(first, last)
         turns = ~np.isnan(table).any(axis=1)
-        held = turns.copy()
+        held, listed = turns.copy(), turns.copy()
         for limit in ranking.limits:
             fine = ranking.held(limit, figures)
             failing[limit.figure] += int((turns & ~fine).sum())
             held &= fine
+            listed &= fine if slack is None else ranking.held(limit, figures, slack(limit))
         if not (kept or held.any()) and turns.any():
             misses = np.array([ranking.miss(limit, figures) for limit in ranking.limits])
             near = int(np.argmin(np.where(turns, misses.max(axis=0), np.inf)))
@@ -161,7 +181,7 @@ def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]])
         score = ranking.score(figures)
         cells.paint(values, score, np.where(held, KEPT, np.where(turns, OUTSIDE, STUCK)).astype(np.uint8))
         index = np.arange(first, last)
-        parts.append(_Rows(index[held], score[held], values[held], table[held]))
+        parts.append(_Rows(index[listed], score[listed], values[listed], table[listed]))
         waiting += len(parts[-1].index)
         if waiting > 2 * MOST_ROWS:
             parts = [_Rows.best(parts)]

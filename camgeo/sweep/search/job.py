@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.sweep.search.plan import Plan
 
-REVISION = 2  # raised with every change of what a figure comes to, as the version is with every release
+REVISION = 3  # raised with every change of what a figure comes to, as the version is with every release
 
 Compute = Callable[[Any, "NDArray[np.float64]"], Mapping[str, "NDArray[np.float64]"]]
 

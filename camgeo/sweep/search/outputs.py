@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
     from camgeo.checks.remedies import Entry
     from camgeo.sweep.search.ask import Ask, Unit
-    from camgeo.sweep.search.gather import Gathered, Nearest
+    from camgeo.sweep.search.gather import Certificate, Gathered, Nearest
+    from camgeo.sweep.search.plan import Axis
     from camgeo.sweep.search.recipes import Best
 
 REPORT = "sweep.json"
@@ -51,7 +52,11 @@ class Files:
 
 
 def outputs(
-    ask: Ask, found: Gathered, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
+    ask: Ask,
+    found: Gathered,
+    best: Sequence[Best],
+    run: Entry,
+    reasons: Sequence[str] = (),
 ) -> tuple[dict[str, bytes], Entry]:
     """All files of a sweep, `sweep.json` among them, and what that says. Only its `run` depends on how it was run.
 
@@ -59,8 +64,9 @@ def outputs(
     """
     files = Files()
     units = ask.units(found.figures)
-    table, polished = with_polished(found, best, ask.ranking)
-    heads = columns(ask.plan, table, units, polished if ask.sweep.refine else None)
+    table, marks = with_polished(found, best, ask.ranking)
+    told = {name: mark for name, mark in marks.items() if ask.sweep.refine or name != "polished"}
+    heads = columns(ask.plan, table, units, told)
     files.make(TABLES[:1], lambda: [as_csv(heads)])
     about = {"recipe": ask.recipe.name, "camgeo": __version__, "units": ask.recipe.units}
     files.make(TABLES[1:], lambda: [as_parquet(heads, about)])
@@ -71,6 +77,7 @@ def outputs(
         files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
     report = _report(ask, found, best, reasons)
     report["counts"]["rows"] = table.rows
+    report["screen"] = None if ask.recipe.linkage is not None else _screen(ask, found.certificate)
     for design in best:
         if design.why:
             files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
@@ -157,7 +164,7 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
         "units": ask.recipe.units,
         "ok": counts.kept > 0,
         "sweep": {
-            "vary": {axis.path: _axis(axis.low, axis.high, axis.values) for axis in ask.plan.axes},
+            "vary": {axis.path: _axis(axis) for axis in ask.plan.axes},
             "method": sweep.method,
             "count": ask.plan.count,
             "seed": None if sweep.method == "grid" else sweep.seed,
@@ -190,7 +197,7 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
                 "file": design.file,
                 "index": design.index,
                 "polished": design.polished,
-                "values": design.values,
+                "values": ask.told(design.values),
                 "figures": with_former({name: value / units[name].divisor for name, value in design.figures.items()}),
             }
             for design in best
@@ -198,16 +205,40 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
     }
 
 
+def _screen(ask: Ask, certificate: Certificate | None) -> Entry:
+    """Whether figures are estimates, and if so what was worked out exactly and what estimates may be off by."""
+    if certificate is None:
+        return {"used": False, "why": ask.unscreened}
+    from camgeo.sweep.screen.errors import DEGREES, DESIGNS, ERRORS
+
+    return {
+        "used": True,
+        "estimates": "figures of designs that are not certified, from samples of their motion",
+        "certified": certificate.designs,
+        "fell": certificate.fell,
+        "greatest_error": {
+            name: {
+                "unit": "deg" if name in DEGREES else "share of the value",
+                f"of {DESIGNS} random designs": ERRORS.get(name),
+                "of the designs worked out here": off,
+            }
+            for name, off in certificate.off.items()
+        },
+    }
+
+
 def _nearest(ask: Ask, near: Nearest, unit: Unit) -> Entry:
     """The design that comes nearest to the limits where none keeps them, its figure in the recipe's unit."""
     return {
         "index": near.index,
-        "values": {axis.path: float(value) for axis, value in zip(ask.plan.axes, near.values, strict=True)},
+        "values": {axis.path: axis.told(float(v)) for axis, v in zip(ask.plan.axes, near.values, strict=True)},
         "breaks": near.limit.figure,
         "value": near.value / unit.divisor,
         "unit": unit.name,
     }
 
 
-def _axis(low: float, high: float, values: tuple[float, ...]) -> Entry:
-    return {"from": low, "to": high, "values": len(values) or None}
+def _axis(axis: Axis) -> Entry:
+    if axis.words:
+        return {"words": list(axis.words), "values": len(axis.words)}
+    return {"from": axis.low, "to": axis.high, "values": len(axis.values) or None}

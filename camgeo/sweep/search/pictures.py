@@ -66,6 +66,9 @@ def draw_map(
             handles += axes.plot(x[:1], y[:1], "*", markersize=15, markerfacecolor="#D55E00", label="the best", **ring)
         axes.set_xlabel(names[0])
         axes.set_ylabel(names[1] if flat else label)
+        for axis, ticks in zip(cells.axes, (axes.set_xticks, axes.set_yticks), strict=False):
+            if axis.words:
+                ticks(list(axis.values), axis.words)
         _head(axes, title, notes)
         if handles:
             figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)

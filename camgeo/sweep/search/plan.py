@@ -32,12 +32,25 @@ _WORDS = 4  # random words that one step of Philox's counter gives
 
 @dataclass(frozen=True)
 class Axis:
-    """One field that is varied, in the recipe's units: it takes `values`, or where there are none any in low..high."""
+    """One field that is varied, in the recipe's units: it takes `values`, or where there are none any in low..high.
+
+    Of a field that takes `words` the values count them from 0.
+    """
 
     path: str
     low: float
     high: float
     values: tuple[float, ...] = ()
+    words: tuple[str, ...] = ()
+
+    @property
+    def range(self) -> float:
+        """What distances between values are shares of; words lie apart."""
+        return 1.0 if self.words else abs(self.high - self.low)
+
+    def told(self, value: float) -> float | str:
+        """A value as the recipe has it."""
+        return self.words[int(value)] if self.words else value
 
     def spread(self, share: Floats) -> Floats:
         """Values for shares in [0, 1): equally likely ones of a list, else even between the ends."""

@@ -17,7 +17,7 @@ from camgeo.sweep.search.linkages import angles
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from camgeo.recipe.recipe import Recipe
     from kin.law.support_function import Lift
@@ -48,10 +48,23 @@ class Rows:
         return Rows(*(column[rows] for column in vars(self).values()))
 
 
+def words_of(recipe: Recipe) -> dict[str, tuple[str, ...]]:
+    """The words that a recipe's sweep varies, by their paths."""
+    return {axis.path: axis.words for axis in recipe.sweep.vary if axis.words} if recipe.sweep else {}
+
+
+def text_with(recipe: Recipe, values: Mapping[str, float]) -> str:
+    """The text of a recipe with values put in by their paths, of words by their count. Raises as `recipe_with`."""
+    words = words_of(recipe)
+    chosen = {path: words[path][int(value)] for path, value in values.items() if path in words}
+    worded = replace(recipe, text=recipe.changed(chosen)) if chosen else recipe
+    return worded.text_with({path: value for path, value in values.items() if path not in words})
+
+
 def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | Array) -> Recipe:
     """Give the recipe with values put in at paths. RecipeErrors where it is none; ValueError for a wrong path."""
     given = {path: float(value) for path, value in zip(paths, values, strict=True)}
-    return load_text(recipe.text_with(given), recipe.path)
+    return load_text(text_with(recipe, given), recipe.path)
 
 
 def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:

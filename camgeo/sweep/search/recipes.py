@@ -14,7 +14,7 @@ from camgeo.schema.edit import without
 from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, Source, scalars
 from camgeo.sweep.search.pictures import Curve
-from camgeo.sweep.search.rebuilt import mechanism_in
+from camgeo.sweep.search.rebuilt import mechanism_in, text_with
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def recipe_text(ask: Ask, best: Best) -> str:
 
     Raises RecipeErrors where the sweep cannot be cut out of the text.
     """
-    text = ask.recipe.text_with(best.values)
+    text = text_with(ask.recipe, best.values)
     for section in ("sweep", "name", "about"):
         text = without(text, section)
     for path in ask.recipe.tables:

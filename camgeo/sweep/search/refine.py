@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.common.rounding import downward
-from camgeo.sweep.search.figures import DWELLS, Evaluator, asked_of
+from camgeo.sweep.screen.certify import slack
+from camgeo.sweep.search.figures import DWELLS, Evaluator
 from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
 from kin.numeric.errors import KinError
 from kin.numeric.records import dataclass, replace
@@ -103,9 +104,10 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
         goal, found = _settled(ask, goal)
         designs = np.stack([start, found, _rounded(goal, found)])
     # all figures, in the end; the search itself looks at those that rank or limit
-    figures = replace(goal.evaluator, recipe=_unlimited(ask), wanted=asked_of(ask.recipe)).found(designs).figures
-    whole = goal.loss_of(figures)
-    loss = np.where(whole < _FAR, goal.loss(designs), whole)
+    whole = replace(goal.evaluator, recipe=_unlimited(ask), wanted=ask.all_figures, screened=False)
+    figures = whole.found(designs).figures
+    lost = replace(goal, limits=ask.sweep.limits).loss_of(figures)
+    loss = lost if goal.evaluator.estimator else np.where(lost < _FAR, goal.loss(designs), lost)
     best = 0
     if len(designs) > 1 and loss[1] < min(loss[0] - _IDLE * abs(loss[0]), _FAR):
         # written with no more digits than it is worth, unless that costs a part of what was gained
@@ -176,12 +178,20 @@ def _unlimited(ask: Ask) -> Recipe:
 
 def _goal(ask: Ask, paths: Sequence[str], start: Array) -> _Goal:
     sweep = ask.sweep
-    free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values], dtype=np.intp)
+    free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values and not axis.words], dtype=np.intp)
     low = np.array([axis.low for axis in sweep.vary])[free]
     high = np.array([axis.high for axis in sweep.vary])[free]
     wanted = (sweep.rank, *(limit.figure for limit in sweep.limits))
-    evaluator = Evaluator.of(_unlimited(ask), paths, figures=wanted, samples=max(sweep.angles, _ANGLES))
-    return _Goal(evaluator, sweep.rank, ask.ranking.most, sweep.limits, start, free, low, high - low)
+    evaluator = Evaluator.of(_unlimited(ask), paths, figures=wanted, samples=max(sweep.angles, _ANGLES), screened=True)
+    limits = sweep.limits if evaluator.estimator is None else tuple(map(_surely, sweep.limits))
+    return _Goal(evaluator, sweep.rank, ask.ranking.most, limits, start, free, low, high - low)
+
+
+def _surely(limit: Limit) -> Limit:
+    """The limit that an estimate must keep for the exact figure to keep the one asked for."""
+    by = slack(limit)
+    least, most = limit.at_least, limit.at_most
+    return replace(limit, at_least=None if least is None else least + by, at_most=None if most is None else most - by)
 
 
 def _sought(goal: _Goal) -> Array:

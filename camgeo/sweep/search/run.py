@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from camgeo.recipe.figures import Limit
     from camgeo.sweep.search.gather import Gathered, Ranking
 
 # hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
@@ -35,7 +36,7 @@ _SHORT = 16  # digits of the key that name the folder
 
 @dataclass(frozen=True)
 class How:
-    """Who computes: the scheduler at an address, else so many processes, else as many as are worthwhile."""
+    """Who computes: the scheduler at an address, else so many processes at most, else as many as there are cores."""
 
     jobs: int | None = None
     scheduler: str | None = None
@@ -44,18 +45,14 @@ class How:
         """Chunks as they land."""
         if self.scheduler is not None:
             return engines.dask(job, numbers, self.scheduler)
-        if self.jobs is None:
-            return engines.as_pays(job, numbers)
-        if self.jobs == 1:
-            return engines.serial(job, numbers)
-        return engines.processes(job, numbers, self.jobs)
+        return engines.here(job, numbers, self.processes)
 
     def __str__(self) -> str:
         if self.scheduler is not None:
             return f"dask at {self.scheduler}"
         if self.jobs is None:
             return "as many processes as pay"
-        return "1 process" if self.jobs == 1 else f"{self.jobs} processes"
+        return "1 process" if self.jobs == 1 else f"up to {self.jobs} processes"
 
     @property
     def processes(self) -> int:
@@ -99,9 +96,9 @@ def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, listener
     return Work(done, job.plan.count - wanted, damaged, time.perf_counter() - started)
 
 
-def gathered(job: Job, chunks: Chunks, ranking: Ranking) -> Gathered:
+def gathered(job: Job, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None) -> Gathered:
     """What the chunks come to. One that was spoilt or taken away meanwhile is computed again."""
-    return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)))
+    return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 
 
 def _figures(job: Job, chunks: Chunks, number: int) -> Mapping[str, NDArray[np.float64]]:

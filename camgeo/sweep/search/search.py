@@ -12,7 +12,8 @@ import numpy as np
 
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, Run
-from camgeo.sweep.search.engines import at_once
+from camgeo.sweep.screen.certify import certified, slack
+from camgeo.sweep.search.engines import spread
 from camgeo.sweep.search.job import Job
 from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.sweep.search.recipes import Best, recipe_text
@@ -23,6 +24,8 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.gather import Floats, Gathered
@@ -77,7 +80,9 @@ def search(
     job = Job(ask.plan, ask.scene(ask.figures), means.compute)
     chunks = chunks_of(job, out / ask.recipe.name)
     work = compute(job, chunks, how, fresh=fresh, listener=listener)
-    found = gathered(job, chunks, ask.ranking)
+    found = gathered(job, chunks, ask.ranking, slack if ask.screened else None)
+    if ask.screened:
+        found = _certified(ask, found, how, listener)
     best = best_of(ask, found, means, how, listener)
     run = {
         "engine": str(how),
@@ -127,7 +132,8 @@ def best_of(ask: Ask, found: Gathered, means: Means, how: How, listener: Listene
 
     If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
     """
-    places = _apart(ask, found) if ask.sweep.refine else range(min(ask.sweep.keep, found.rows))
+    rows = found.rows if found.certificate is None else found.certificate.designs
+    places = _apart(ask, found, rows) if ask.sweep.refine else range(min(ask.sweep.keep, rows))
     plain = [
         Best(
             number,
@@ -165,16 +171,35 @@ def _order(ask: Ask, design: Best) -> tuple[float, int]:
     return (-figure if ask.ranking.most else figure), design.place
 
 
-def _apart(ask: Ask, found: Gathered) -> list[int]:
-    """Places in the table of the best designs from which polishing is likely to lead to different ones."""
-    ranges = np.array([abs(axis.high - axis.low) or 1.0 for axis in ask.plan.axes])
-    left = np.arange(found.rows)
+def _apart(ask: Ask, found: Gathered, rows: int) -> list[int]:
+    """Places in the table of the best designs, of so many, from which polishing is likely to lead to different ones."""
+    left = np.arange(rows)
     places: list[int] = []
     while len(left) and len(places) < ask.sweep.keep:
         places.append(int(left[0]))
-        distance = np.abs((found.values[left] - found.values[left[0]]) / ranges).max(axis=1)
-        left = left[distance > _NEAR]
+        left = left[_far(ask, found.values[left], found.values[left[0]])]
     return places
+
+
+def _far(ask: Ask, values: Floats, start: Floats) -> NDArray[np.bool_]:
+    """Which designs (n, axes) polishing leads elsewhere than a start (axes,)."""
+    ranges = np.array([axis.range or 1.0 for axis in ask.plan.axes])
+    far: NDArray[np.bool_] = np.abs((values - start) / ranges).max(axis=1) > _NEAR
+    return far
+
+
+def _certified(ask: Ask, found: Gathered, how: How, listener: Listener | None) -> Gathered:
+    """The table with the designs that hold exactly in front; starts of polishing lie apart."""
+    started = time.perf_counter()
+
+    def apart(values: Floats, design: Floats) -> NDArray[np.bool_]:
+        return _far(ask, values, design) if ask.sweep.refine else np.ones(len(values), dtype=np.bool_)
+
+    def tell(count: int) -> None:
+        if listener is not None:
+            listener("designs worked out", count, ask.sweep.keep, time.perf_counter() - started)
+
+    return certified(ask, found, partial(spread, count=how.processes), apart, tell)
 
 
 def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: Listener | None) -> list[Best]:
@@ -182,11 +207,8 @@ def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: L
     started = time.perf_counter()
     if listener is not None:
         listener("polished", 0, len(plain), 0.0)
-    workers = min(how.processes, len(plain))
-    work = partial(_polish, polish, ask)
-    results = at_once(work, plain, workers) if workers > 1 else ((design, work(design)) for design in plain)
     done: dict[int, Best] = {}
-    for design, result in results:
+    for design, result in spread(partial(_polish, polish, ask), plain, min(how.processes, len(plain))):
         done[design.place] = result
         if listener is not None:
             listener("polished", len(done), len(plain), time.perf_counter() - started)
@@ -207,10 +229,7 @@ def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of
 
 def _same(ask: Ask, one: Best, other: Best) -> bool:
     """Whether two designs lie so near to each other that they count as one."""
-    return all(
-        abs(one.values[axis.path] - other.values[axis.path]) <= _APART * abs(axis.high - axis.low)
-        for axis in ask.plan.axes
-    )
+    return all(abs(one.values[axis.path] - other.values[axis.path]) <= _APART * axis.range for axis in ask.plan.axes)
 
 
 def put(out: Path, name: str, files: dict[str, bytes], *, kept: bool) -> Path:

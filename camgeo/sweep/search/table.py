@@ -19,16 +19,18 @@ if TYPE_CHECKING:
 
     from camgeo.sweep.search.ask import Unit
     from camgeo.sweep.search.gather import Gathered, Ranking
-    from camgeo.sweep.search.plan import Plan
+    from camgeo.sweep.search.plan import Axis, Plan
     from camgeo.sweep.search.recipes import Best
 
-    Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64]]
+    Marks: TypeAlias = dict[str, NDArray[np.bool_]]
+    Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64] | NDArray[np.str_]]
 
 
-def with_polished(found: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, NDArray[np.bool_]]:
-    """The designs kept and the polished ones, best first, at most MOST_ROWS; and which of them are polished (n,).
+def with_polished(found: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, Marks]:
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and what is told of each of them.
 
-    A polished design has the index of the one that it comes from, whose own row stays.
+    `polished` (n,): such a design has the index of the one that it comes from, whose own row stays. `certified` (n,),
+    where figures are estimates: those of this one are exact; such designs stand in front.
     """
     new = [design for design in best if design.polished]
     index = np.append([design.index for design in new], found.index).astype(np.int64)
@@ -37,28 +39,33 @@ def with_polished(found: Gathered, best: Sequence[Best], ranking: Ranking) -> tu
         name: np.append([design.figures[name] for design in new], column) for name, column in found.figures.items()
     }
     polished = np.arange(len(index)) < len(new)
-    order = np.lexsort((index, ~polished, -ranking.score(figures)))[:MOST_ROWS]
+    exact = np.arange(len(index)) < len(new) + (len(index) if found.certificate is None else found.certificate.designs)
+    order = np.lexsort((index, ~polished, -ranking.score(figures), ~exact))[:MOST_ROWS]
     rows = {name: column[order] for name, column in figures.items()}
-    return replace(found, index=index[order], values=values[order], figures=rows), polished[order]
+    marks = {"polished": polished[order]} | ({} if found.certificate is None else {"certified": exact[order]})
+    return replace(found, index=index[order], values=values[order], figures=rows), marks
 
 
-def columns(
-    plan: Plan, found: Gathered, units: Mapping[str, Unit], polished: NDArray[np.bool_] | None = None
-) -> Columns:
+def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
     """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
 
-    Renamed figures stand under their former names too, behind all others; last, where there is one, `polished`, 0 or 1.
+    Renamed figures stand under their former names too, behind all others; last marks, 0 or 1.
     """
     figures = {name: values / units[name].divisor for name, values in found.figures.items()}
     former = {FORMER[name]: name for name in figures if name in FORMER}
     return {
         "place": np.arange(1, found.rows + 1),
         "index": found.index,
-        **{axis.path: found.values[:, i] for i, axis in enumerate(plan.axes)},
+        **{axis.path: _told(axis, found.values[:, i]) for i, axis in enumerate(plan.axes)},
         **{_head(name, units[name].name): values for name, values in figures.items()},
         **{_head(old, units[name].name): figures[name] for old, name in former.items()},
-        **({} if polished is None else {"polished": polished.astype(np.int64)}),
+        **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},
     }
+
+
+def _told(axis: Axis, values: NDArray[np.float64]) -> NDArray[np.float64] | NDArray[np.str_]:
+    """The values of an axis as the recipe has them."""
+    return np.array(axis.words)[values.astype(np.int64)] if axis.words else values
 
 
 def _head(figure: str, unit: str) -> str:
