@@ -245,7 +245,14 @@ def _seen_by(*kinds: str) -> OfFile:
 
 
 def _sprung(scene: Scene) -> bool:
-    return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is None
+    train = scene.recipe.dynamics
+    if train is None or train.backlash is not None:
+        return False
+    return train.stiffness is not None or not scene.follower.closure
+
+
+def _elastic(scene: Scene) -> bool:
+    return _sprung(scene) and scene.recipe.dynamics is not None and scene.recipe.dynamics.stiffness is not None
 
 
 def _loose(scene: Scene) -> bool:
@@ -419,7 +426,7 @@ FLOAT = Declared(
     "float",
     ("N", "N m"),
     _sprung,
-    lambda scene, file: _sprung(scene) and _run_with(scene, file),
+    lambda scene, file: _elastic(scene) and _run_with(scene, file),
     field="dynamics.preload",
     remedy=remedies.stronger_spring,
 )

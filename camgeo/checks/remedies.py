@@ -78,7 +78,8 @@ def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
     train, worst = recipe.dynamics, _worst(check, report)
     if train is None or train.preload is None or not worst < 0.0:
         return ""
-    return f"a dynamics.preload of {upward(train.preload - worst * (1.0 + train.rate / train.stiffness))}"
+    yields = 0.0 if train.stiffness is None else train.rate / train.stiffness
+    return f"a dynamics.preload of {upward(train.preload - worst * (1.0 + yields))}"
 
 
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:

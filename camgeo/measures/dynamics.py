@@ -76,16 +76,17 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     that asks for no dynamics.
     """
     from kin.dynamics.drive import DriveError
-    from kin.dynamics.train import DynamicsError
+    from kin.dynamics.train import DynamicsError, Train
     from kin.follower.motion_error import ContactError
 
     asked = recipe.dynamics
-    if asked is None:
-        raise ValueError("the recipe has no dynamics")
+    if asked is None or asked.stiffness is None:
+        raise ValueError("the recipe has no elastic train")
     sources: list[FileResult | None] = [None]
     if recipe.linkage is None:
         sources += [file for file in files if file.contour is not None]
-    scene = _scene(recipe, asked, design, len(sources))
+    elastic = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
+    scene = _scene(recipe, asked, elastic, design, len(sources))
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for file in sources:
@@ -113,11 +114,9 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     return Found(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int) -> _Scene:
-    from kin.dynamics.train import Train
+def _scene(recipe: Recipe, asked: Dynamics, train: Train, design: Design, runs: int) -> _Scene:
     from kin.law.contacts import METRE
 
-    train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
     if design.driven is None:
         follower = design.exact.gauge
         if asked.backlash is not None and len(follower.contacts) == 1:

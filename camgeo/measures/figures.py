@@ -19,7 +19,7 @@ from camgeo.checks.declared import (
     WALL,
 )
 from camgeo.measures.lobe import of_lobe
-from camgeo.measures.measured import Measured
+from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.recipe.figures import (
     AT_LIFT,
     AT_SPEED,
@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
-_ABRUPT = "the motion changes too abruptly to be resolved"
+_OF_FORCES = {"forces", "material", "reaction", "bearing"}
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
@@ -107,6 +107,10 @@ def of_design(
         found |= _of_linkage(design.driven, wanted)
     elif motion:
         found |= _of_motion(design, max(_ORDERS[name] for name in motion))
+    if any(FIGURES[name].needs in _OF_FORCES for name in wanted):
+        from camgeo.measures.force_figures import figures_of
+
+        found |= figures_of(recipe, design)
     for name in wanted:
         if name in _OF_CHECKS:
             same = [check for check in checks if check.name == name and check.file is None]
@@ -266,7 +270,7 @@ def _of_preload(rank: int) -> Callable[[Recipe, Design], Measured]:
         try:
             value, at_deg = preload_force(design, preload)[rank]
         except RoughError:
-            return Measured(None, unit, detail=_ABRUPT)
+            return Measured(None, unit, detail=ABRUPT)
         return Measured(value, unit, at_deg)
 
     return measured
@@ -326,7 +330,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
-        return {name: Measured(None, unit + FIGURES[name].per, detail=_ABRUPT) for name in names}
+        return {name: Measured(None, unit + FIGURES[name].per, detail=ABRUPT) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
         row = pieces(made, _ORDERS[name])

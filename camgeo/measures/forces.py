@@ -5,12 +5,13 @@ Lengths are mm and forces N here; of a follower that swings positions are rad an
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.angles import TURN
+from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from kin.dynamics.contact_forces import Elastic
     from kin.follower.contact_lines import ContactLine
     from kin.numeric.arrays import Array
+    from kin.numeric.monotone import Pieces
 
 SHARE = 1e-12  # of the greatest value, to which a force is followed over the turn
 PER_MM = 1e-3  # N/mm in N/m, and N m in N mm
@@ -59,9 +61,9 @@ class FollowerTurn:
             one.surface or f"{one.touch.word} {letter}".rstrip() for one, letter in zip(contacts, letters, strict=True)
         )
 
-    def rows(self, t: Array) -> Array:
-        """Position and two derivatives by the shaft angle at parameters t (n,): (3, n), mm or rad."""
-        return self.design.motion.by_parameter(t, 2)
+    def rows(self, phi: Array) -> Array:
+        """Position and two derivatives by the shaft angle at shaft angles phi (n,): (3, n), mm or rad."""
+        return self.design.motion.travel(phi, 2)
 
     def lines(self, rows: Array) -> tuple[ContactLine, ...]:
         """The line of each contact at positions of the follower."""
@@ -69,23 +71,28 @@ class FollowerTurn:
 
         return tuple(contact_line(contact, rows) for contact in self.design.follower.contacts)
 
+    @cached_property
+    def places(self) -> Array:
+        """Shaft angles, rising from 0 to a whole turn, between which the motion is smooth."""
+        from kin.numeric.monotone import between
+
+        shaft_deg = self.design.motion.shaft_deg
+        return between(0.0, TURN, sorted(math.radians(shaft_deg(float(at))) for at in self.design.exact.breaks))
+
+    def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
+        """Functions of the shaft angle, values(phi (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
+        from kin.numeric.monotone import cells, pieces
+
+        made = cells(values, self.places, share=SHARE)
+        return [pieces(made, row) for row in range(len(made.coefficients))]
+
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
-        """Least and greatest of functions of the parameter, values(t (n,)) -> (r, n), over the turn, none sampled past.
+        """Least and greatest of such functions over the turn, none sampled past."""
 
-        Raises RoughError where a function changes too abruptly.
-        """
-        from kin.numeric.monotone import between, cells, pieces
+        def placed(found: tuple[float, float]) -> Extreme:
+            return Extreme(found[0], degrees(found[1]))
 
-        made = cells(values, between(0.0, TURN, self.design.exact.breaks.tolist()), share=SHARE)
-        found = []
-        for row in range(len(made.coefficients)):
-            piece = pieces(made, row)
-            least, greatest = (
-                Extreme(value, self.design.motion.shaft_deg(at % TURN))
-                for value, at in (piece.least(), piece.greatest())
-            )
-            found.append((least, greatest))
-        return found
+        return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
 
 
 # --- preload by interference ------------------------------------------------------------------------------------------
@@ -110,12 +117,12 @@ def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
     return least, greatest
 
 
-def preload_section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
+def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
     """The report's section on the preload: its force, and the load along the travel at which a contact is lost."""
     preload = design.exact.preload
     if preload is None:
         return None
-    section: dict[str, Any] = {
+    section: dict[str, object] = {
         "interference": preload.interference / recipe.mm,
         "unit": "in" if recipe.units == "inch" else "mm",
     }

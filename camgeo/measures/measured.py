@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+ABRUPT = "the motion changes too abruptly to be resolved"
+
 
 class Measured(NamedTuple):
     """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place.

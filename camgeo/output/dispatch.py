@@ -90,6 +90,7 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("csv", "grinding"): 1,
     ("csv", "lift"): 1,
     ("csv", "inspection"): 2,
+    ("csv", "forces"): 2,
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 
@@ -108,6 +109,7 @@ DISCS: dict[tuple[str, str | None], int] = {
     ("gcode", None): 2,
     ("csv", "motion"): 2,
     ("csv", "contacts"): 2,
+    ("csv", "forces"): 2,
 }
 """How many discs on one shaft each form of a file is taught to hold, one where it does not stand here."""
 

@@ -222,17 +222,25 @@ def _findings(
         with clock.stage("figures of the linkage"):
             linkage = linkage_section(recipe, design.driven, files)
     train = None
-    if recipe.dynamics is not None:
+    if recipe.dynamics is not None and recipe.dynamics.stiffness is not None:
         from camgeo.measures.dynamics import dynamics_of
 
         with clock.stage("dynamics"):
             train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
+    forces = None
+    if recipe.dynamics is not None:
+        from camgeo.measures.force_figures import found_forces
+
+        with clock.stage("forces"):
+            forces = found_forces(recipe, design)
+        if forces is not None and train is None:
+            checks = [*checks, *forces.checks]
     preload = None
     if design.exact.preload is not None:
         from camgeo.measures.forces import preload_section
 
-        with clock.stage("forces"):
+        with clock.stage("preload"):
             preload = preload_section(recipe, design)
     if recipe.limits:
         from camgeo.measures.limits import limit_checks
@@ -257,6 +265,7 @@ def _findings(
         linkage=linkage,
         dynamics=None if train is None else train.section,
         preload=preload,
+        forces=None if forces is None else forces.section,
         remarks=remarks,
         joints=design.exact.joints,
         displacements=of_displacements(recipe),

@@ -81,14 +81,38 @@ def _inspection(job: Job, request: FileRequest) -> Columns:
     return inspection_table(job.recipe.told_for(request), job.design)
 
 
+def _forces(job: Job, _: FileRequest) -> Columns:
+    from camgeo.measures.force_figures import forces_table
+    from camgeo.measures.running_forces import running_of
+
+    running = running_of(job.recipe, job.design)
+    if running is None:
+        raise ValueError(f"{job.recipe.name}: there are no forces")
+    return forces_table(running, job.recipe.verify.angles)
+
+
 def _trace(job: Job, request: FileRequest) -> Columns:
     from camgeo.synthesis.traces import trace_table
 
     return trace_table(job.recipe.told_for(request), job.design)
 
 
-_TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection, "trace": _trace}
-_STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection", "trace": "trace"}
+_TABLES = {
+    "motion": _motion,
+    "contacts": _contacts,
+    "polar": _polar,
+    "inspection": _inspection,
+    "trace": _trace,
+    "forces": _forces,
+}
+_STAGES = {
+    "motion": "table",
+    "contacts": "contacts",
+    "polar": "polar",
+    "inspection": "inspection",
+    "trace": "trace",
+    "forces": "forces",
+}
 _GAPS = frozenset(
     {"contacts", "inspection", "trace"}
 )  # nothing is touched there, nothing is to be reported, nothing moves

@@ -38,7 +38,7 @@ class Dynamics:
     """
 
     mass: float
-    stiffness: float
+    stiffness: float | None
     rpm: float
     damping: float = 0.0
     preload: float | None = None
@@ -46,9 +46,24 @@ class Dynamics:
     backlash: float | None = None
     guide: StemGuide | None = None
     transient: bool = False
+    load: str = "0"
+    least_force: float | None = None
+    width: float | None = None
+    material: str | None = None
+    roller_material: str | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
+MATERIALS = {
+    "steel": (206_000.0, 0.3),
+    "nodular-iron": (170_000.0, 0.28),
+    "grey-iron": (110_000.0, 0.26),
+    "bronze": (110_000.0, 0.34),
+    "aluminium": (70_000.0, 0.33),
+    "pom": (2_800.0, 0.35),
+    "pa66": (2_000.0, 0.4),
+}
+"""Young's modulus, N/mm^2, and Poisson's ratio: round figures of handbooks, for the pressure of contacts alone."""
 
 
 DYNAMICS = Table(
@@ -72,8 +87,8 @@ DYNAMICS = Table(
         Field(
             "stiffness",
             Kind.NUMBER,
-            "stiffness of the contact or train, N/m; N m/rad where it turns",
-            required=True,
+            "stiffness of the contact or train, N/m; N m/rad where it turns; without it the train is rigid",
+            default="rigid",
             above=0,
             at_most=_MOST,
         ),
@@ -98,6 +113,29 @@ DYNAMICS = Table(
             at_least=0,
             at_most=_MOST,
         ),
+        Field(
+            "least_force",
+            Kind.NUMBER,
+            "least force along the travel for which the preload of the spring is found, N; N m where it turns",
+            above=0,
+            at_most=_MOST,
+        ),
+        Field(
+            "load",
+            Kind.FORMULA,
+            "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
+            default="0",
+            unit=Kind.NUMBER,
+        ),
+        length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
+        Field("material", Kind.CHOICE, "material of the cam", choices=tuple(MATERIALS)),
+        Field(
+            "roller_material",
+            Kind.CHOICE,
+            "that of what touches it",
+            default="that of the cam",
+            choices=tuple(MATERIALS),
+        ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
         Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),
         mapping(
@@ -108,12 +146,12 @@ DYNAMICS = Table(
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
     ),
-    alternatives=(("preload", ()), ("backlash", ())),
 )
 
 
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
+    _check_spring(train, reader)
     if "guide" in train and "stem" not in reader.offers:
         remedy = "leave it out, or give a cam of kind disc whose follower is round and has no arm"
         reader.fault_at("dynamics.guide", "the follower has no stem that a roller drives", None, remedy)
@@ -132,7 +170,33 @@ def check_train(train: Values, reader: Reader) -> None:
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
 
 
+def _check_spring(train: Values, reader: Reader) -> None:
+    """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
+    given = [name for name in ("preload", "backlash", "least_force") if f"dynamics.{name}" in reader.marks]
+    for name in given[1:]:
+        either = "preload or backlash" if "least_force" not in given else "preload, backlash or least_force"
+        remedy = f"give exactly one of {either}"
+        reader.fault_at(f"dynamics.{name}", f"cannot be combined with {given[0]}", None, remedy)
+    if "dynamics" not in reader.marks or not train:
+        return
+    if "dynamics.stiffness" in reader.marks:
+        if not given and "cam.preload" not in reader.marks:
+            reader.fault(
+                reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
+            )
+        for name in ("load", "least_force"):
+            if name in train:
+                remedy = "leave stiffness out, or this"
+                reader.fault_at(f"dynamics.{name}", "belongs to a train without stiffness", None, remedy)
+        return
+    wanted = "give a number above 0: stiffness of the contact or train, N/m; N m/rad where it turns"
+    needing = [name for name in ("backlash", "transient", "damping") if train.get(name)]
+    if "linkage" in reader.marks or needing:
+        what = f"missing, needed with {needing[0]}" if needing else "missing"
+        reader.fault(reader.marks["dynamics"], "dynamics.stiffness", what, None, wanted)
+
+
 def build_train(train: Values) -> Dynamics:
     """Make the train of values in which there is no fault."""
     guide = train.get("guide")
-    return Dynamics(**{**train, "guide": None if guide is None else StemGuide(**guide)})
+    return Dynamics(**{"stiffness": None, **train, "guide": None if guide is None else StemGuide(**guide)})

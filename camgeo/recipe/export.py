@@ -283,7 +283,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "which table it is",
                 default="motion",
-                choices=("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace"),
+                choices=("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "forces"),
             ),
             Field(
                 "step",
@@ -398,6 +398,11 @@ def check_files(values: Values, reader: Reader) -> None:
             reader.fault_at(f"{path}.csv.as", "needs linkage.trace", "'trace'", remedy)
         if request.kind == "gcode":
             check_milling(path, reader)
+        if (request.kind, request.as_) == ("csv", "forces"):
+            train = values.get("dynamics", {})
+            if not train or "linkage" in reader.marks or "stiffness" in train:
+                remedy = "give dynamics without stiffness and no linkage, or leave this out"
+                reader.fault_at(path, "a table of forces needs a train whose forces are found", None, remedy)
         if request.kind == "csv":
             _check_table(file, request, values, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:

@@ -44,7 +44,20 @@ class Limit:
 
 
 Own: TypeAlias = Literal[
-    "guided", "rolling", "arm", "stem", "stem-face", "guide", "speed", "density", "wanted", "stiff"
+    "guided",
+    "rolling",
+    "arm",
+    "stem",
+    "stem-face",
+    "guide",
+    "speed",
+    "density",
+    "wanted",
+    "stiff",
+    "forces",
+    "material",
+    "bearing",
+    "reaction",
 ]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
@@ -60,7 +73,7 @@ NEEDS: dict[Needs, str] = {
     "face": "a cam for a flat face that is pushed along its normal",
     "wall": "a part with openings or a hub",
     "all": "a file with `parts: all`",
-    "preload": "dynamics.preload",
+    "preload": "dynamics.preload and its stiffness",
     "backlash": "dynamics.backlash",
     "guided": "a cam of kind disc or constant-diameter",
     "rolling": "a roller that a cam of kind disc or constant-diameter turns",
@@ -71,6 +84,10 @@ NEEDS: dict[Needs, str] = {
     "wanted": "cam.delta.law",
     "speed": "a follower without a linkage, and dynamics.rpm",
     "stiff": "cam.preload.stiffness",
+    "forces": "dynamics without stiffness",
+    "material": "dynamics.material, and no stiffness",
+    "reaction": "dynamics.guide, and no stiffness",
+    "bearing": "a roller that a cam turns, and dynamics without stiffness",
     "density": "part.density, and in a sweep no linkage",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
@@ -122,6 +139,12 @@ BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
 FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
+
+
+FORCE_LEAST, FORCE_GREATEST, TORQUE = "contact-force-least", "contact-force-greatest", "shaft-torque"
+
+
+PRESSURE, GUIDE_FORCE, MEAN_FORCE = "contact-pressure", "guide-force", "mean-roller-force"
 
 
 PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
@@ -209,6 +232,12 @@ FIGURES: dict[str, Figure] = {
         "stiff",
     ),
     PRELOAD_GREATEST: Figure("its greatest force", Kind.NUMBER, "least", "stiff"),
+    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.NUMBER, "most", "forces"),
+    FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.NUMBER, "least", "forces"),
+    TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.NUMBER, "least", "forces"),
+    PRESSURE: Figure("greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material"),
+    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.NUMBER, "least", "reaction"),
+    MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.NUMBER, "least", "bearing"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -311,8 +340,18 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
     `ALL` is given where a file shows every body.
     """
     match needs:
-        case "linkage" | "backlash" | "preload" | "dwell":
-            return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
+        case "linkage" | "dwell":
+            return needs in given
+        case "backlash" | "preload":
+            return {f"dynamics.{needs}", "dynamics.stiffness"} <= given
+        case "forces":
+            return "dynamics" in given and given.isdisjoint({"linkage", "dynamics.stiffness"})
+        case "material":
+            return "dynamics.material" in given and there("forces", offers, given)
+        case "reaction":
+            return "dynamics.guide" in given and there("forces", offers, given)
+        case "bearing":
+            return "rolling" in offers and there("forces", offers, given)
         case "follower":
             return "linkage" not in given
         case "speed":

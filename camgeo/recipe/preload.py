@@ -26,13 +26,16 @@ def check_preload(values: Values, reader: Reader) -> None:
     if reader.kinds["linkage"]:
         remedy = "leave linkage out, or cam.preload"
         reader.fault_at(PATH, "the square frame of a linkage is not preloaded", None, remedy)
+    spring = next((name for name in ("preload", "least_force") if name in dynamics), None)
     if "backlash" in dynamics:
-        path = "dynamics.backlash"
         remedy = "leave cam.preload out, or dynamics"
-        reader.fault_at(path, "clearance beside an interference", None, remedy)
-    elif "preload" in dynamics:
+        reader.fault_at("dynamics.backlash", "clearance beside an interference", None, remedy)
+    elif spring is not None:
         remedy = "leave cam.preload out, or dynamics"
-        reader.fault_at("dynamics.preload", "a spring beside a second contact that is preloaded", None, remedy)
+        reader.fault_at(f"dynamics.{spring}", "a spring beside a second contact that is preloaded", None, remedy)
+    elif "stiffness" in dynamics:
+        remedy = "leave it out; cam.preload.stiffness has that of the contacts"
+        reader.fault_at("dynamics.stiffness", "an elastic train beside preloaded contacts", None, remedy)
     listed = values.get("export", {}).get("files", [])
     for file in listed:
         kind, path = file["kind"], file["path"]

@@ -50,7 +50,8 @@ class Findings:
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
-    preload: dict[str, Any] | None = None
+    preload: dict[str, object] | None = None
+    forces: dict[str, object] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     displacements: tuple[float, str] = (1.0, "mm")
@@ -86,6 +87,7 @@ def document(recipe: Order, found: Findings) -> dict[str, Any]:
         **linkage,
         **dynamics,
         **preload,
+        **({} if found.forces is None else {"forces": found.forces}),
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.contacts import Flat, Oscillating
+from kin.law.contacts import Flat, Oscillating, Roller
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Contact, Guide, Touch
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.numeric.arrays import Array
 
 
@@ -32,6 +32,8 @@ class ContactLine:
     lever   by how much the gap grows with the own position, (n,): mm per mm, or mm per rad about a pivot
     shaft   lever of the line about the shaft, mm (n,), above 0 where the cam drives the follower outwards
     bent    radius of curvature of what `centre` runs along on the cam, mm (n,), above 0 where that is convex
+    speed   with which `centre` runs along that, mm per rad of shaft (n,)
+    turn    of the guide's normal against the cam, rad per rad of shaft (n,): 1 on a line of travel
     """
 
     normal: Array
@@ -39,6 +41,8 @@ class ContactLine:
     lever: Array
     shaft: Array
     bent: Array
+    speed: Array
+    turn: Array
 
 
 def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine:
@@ -50,25 +54,35 @@ def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine
     return _of_centre(contact.guide, own)
 
 
+def roller_turns(line: ContactLine, touch: Touch, side: Side) -> Array | None:
+    """Turns of a roller about its pin per turn of the shaft (n,), the metal inside (1) or outside; None of others."""
+    if not isinstance(touch, Roller):
+        return None
+    turns: Array = side * line.speed / touch.radius - line.turn
+    return turns
+
+
 def _of_centre(guide: Guide, own: Array) -> ContactLine:
     u, speed, bend = own
     if isinstance(guide, Oscillating):
         length, side = guide.arm, float(guide.side)
         sin, cos = length * np.sin(u), length * np.cos(u)
         centre = np.array([guide.pivot - cos, -side * sin])
-        along, turn = np.array([sin, -side * cos]), np.array([cos, side * sin])  # d centre/du, and again
+        along, curve = np.array([sin, -side * cos]), np.array([cos, side * sin])  # d centre/du, and again
+        turn = 1.0 + side * speed
     else:
         centre = np.array([u, np.full_like(u, guide.offset)])
-        along, turn = np.array([np.ones_like(u), np.zeros_like(u)]), np.zeros((2, len(u)))
+        along, curve = np.array([np.ones_like(u), np.zeros_like(u)]), np.zeros((2, len(u)))
+        turn = np.ones_like(u)
     way = along * speed + _across(centre)
-    bending = along * bend + turn * speed**2 + _across(along * speed)
+    bending = along * bend + curve * speed**2 + _across(along * speed)
     size = np.hypot(*way)
     normal = -_across(way) / size
     curvature = (_cross(way, bending) + size**2) / size**3
     with np.errstate(divide="ignore"):
         bent = 1.0 / curvature
     lever = np.sum(normal * along, axis=0)
-    return ContactLine(normal.T, centre.T, lever, lever * speed, bent)
+    return ContactLine(normal.T, centre.T, lever, -_cross(centre, normal), bent, size, turn)
 
 
 def _of_face(guide: Guide, touch: Flat, own: Array) -> ContactLine:
@@ -82,12 +96,16 @@ def _of_face(guide: Guide, touch: Flat, own: Array) -> ContactLine:
         rate = a * (np.cos(u) * bend - np.sin(u) * speed**2) / turning - slope * side * bend / turning
         centre = p * normal + slope * _across(normal)
         lever = np.sum((centre - np.array([[a], [0.0]])) * -np.array([np.cos(u), side * np.sin(u)]), axis=0)
-        return ContactLine(normal.T, centre.T, lever, slope, p + rate / turning)
+        bent = p + rate / turning
+        return ContactLine(normal.T, centre.T, lever, -_cross(centre, normal), bent, np.abs(bent * turning), turning)
     cos, sin = math.cos(touch.tilt), math.sin(touch.tilt)
     normal = np.array([np.full_like(u, cos), np.full_like(u, sin)])
     p = cos * u + sin * guide.offset
     centre = p * normal + cos * speed * _across(normal)
-    return ContactLine(normal.T, centre.T, np.full_like(u, cos), cos * speed, p + cos * bend)
+    bent = p + cos * bend
+    return ContactLine(
+        normal.T, centre.T, np.full_like(u, cos), -_cross(centre, normal), bent, np.abs(bent), np.ones_like(u)
+    )
 
 
 def _across(vector: Array) -> Array:

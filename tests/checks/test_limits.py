@@ -80,6 +80,8 @@ ARM = (
 FACE = f"cam: {{kind: disc, base_radius: 36, follower: {{kind: flat, tilt: 8, offset: 5}}, {MOVE}}}\n" + VERIFY.replace(
     "dxf", "csv"
 )
+HELD = YOKE.replace("base_radius: 40", "base_radius: 40\n  preload: {interference: 0.02, stiffness: [1.0e7]}") + VERIFY
+RIGID = STEM.replace("stiffness: 2.0e5", "width: 10, material: steel")
 # of each figure a recipe that has it
 HAVE = {
     **dict.fromkeys(("pressure-angle", "velocity-ratio", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
@@ -90,6 +92,9 @@ HAVE = {
     **dict.fromkeys(("base-radius", "offset"), STEM),
     **dict.fromkeys(("peak-velocity-at-speed", "peak-acceleration-at-speed", "peak-jerk-at-speed"), STEM),
     **dict.fromkeys(("pivot-clearance", "pivot"), ARM),
+    **dict.fromkeys(("preload-force-least", "preload-force-greatest"), HELD),
+    **dict.fromkeys(("contact-force-least", "contact-force-greatest", "shaft-torque", "contact-pressure"), RIGID),
+    **dict.fromkeys(("guide-force", "mean-roller-force"), RIGID),
     "face-width": FACE,
     "law-error": WANTED,
     "least-backlash": YOKE + VERIFY + LOOSE,
@@ -285,6 +290,11 @@ def test_a_figure_that_a_recipe_has_not() -> None:
         "stem-face": FLAT,
         "guide": FLAT,
         "speed": FLAT,
+        "stiff": FLAT,
+        "forces": FLAT,
+        "material": FLAT,
+        "bearing": FLAT,
+        "reaction": FLAT,
     }
     for name, figure in FIGURES.items():
         if figure.needs:

@@ -68,8 +68,8 @@ REFUSED = {
         "wider than the groove",
     ),
     "train": (
-        "export:", "dynamics: {mass: 1.2, stiffness: 2.0e6, preload: 200, rpm: 300}\nexport:", "dynamics",
-        "forces on the two flanks of a groove are not found",
+        "export:", "dynamics: {mass: 1.2, stiffness: 2.0e6, preload: 200, rpm: 300}\nexport:", "dynamics.stiffness",
+        "a groove has no elastic train",
     ),
     "word": ("{groove: {clearance: 0.03, depth: 6}}", "groove", "cam.track", "not one of the choices"),
     "other": ("groove:", "grove:", "cam.track.grove", "unknown key"),

@@ -760,10 +760,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         (
             "[{csv: {as: arcs}}]",
             [
-                (
-                    "29: export.files[0].csv.as: not one of the choices, given 'arcs'; "
-                    "give motion, contacts, polar, inspection, grinding, lift or trace"
-                )
+                "29: export.files[0].csv.as: not one of the choices, given 'arcs'; did you mean forces?",
             ],
         ),
         (

@@ -142,7 +142,7 @@ def test_figures(kind, least, most):
     assert [one.value for one in values] == pytest.approx([least, most], rel=1e-9)
     assert {one.unit for one in values} == {"N" if kind in {"yoke", "roller-yoke"} else "N m"}
     assert tuple(one.value for one in values) == tuple(one.value for one in preload_force(design, design.exact.preload))
-    section = preload_section(recipe, design)
+    section = json.loads(json.dumps(preload_section(recipe, design)))
     assert section["interference"] == GIVEN[kind][0]
     if len(set(GIVEN[kind][1])) == 1:  # the cams are symmetric; levers that differ take some of twice the preload
         lost = [one["load"] for one in section["lost"]]
@@ -258,7 +258,7 @@ def test_a_limit_as_wide_as_the_interference_is_none(exported):
 
 def test_the_shipped_recipe():
     recipe = load(Path(__file__).parents[2] / "recipes" / "yoke-preload.yaml")
-    section = preload_section(recipe, designed(recipe))
+    section = json.loads(json.dumps(preload_section(recipe, designed(recipe))))
     assert section["force"]["min"] == pytest.approx(450.0)
     assert [one["load"] for one in section["lost"]] == pytest.approx([-900.0, 900.0])
 
@@ -298,6 +298,7 @@ TRAIN = "dynamics: {mass: 2, stiffness: 1.0e6, rpm: 100, "
         ),
         (YOKE, "interference: 0.02", TRAIN + "backlash: 0.1}", "dynamics.backlash", "leave cam.preload out"),
         (YOKE, "interference: 0.02", TRAIN + "preload: 10}", "dynamics.preload", "leave cam.preload out"),
+        (YOKE, "interference: 0.02", TRAIN.rstrip(", ") + "}", "dynamics.stiffness", "leave it out"),
         (YOKE + ", undercut: trim", "interference: 0.02", "", "cam.undercut", "leave it out"),
         (
             YOKE,
@@ -352,6 +353,6 @@ def test_inches():
         b" preload: {interference: 0.001, stiffness: [3.0e7, 4.5e7]}}\n",
         Path("x.yaml"),
     )
-    section = preload_section(recipe, designed(recipe))
+    section = json.loads(json.dumps(preload_section(recipe, designed(recipe))))
     assert (section["interference"], section["unit"]) == (pytest.approx(0.001), "in")
     assert section["force"]["min"] == pytest.approx(0.0254 / (1.0 / 3e4 + 1.0 / 4.5e4))

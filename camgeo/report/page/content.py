@@ -66,7 +66,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     groups = outline.together(files, len(design.discs))
     drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots += curves.preload(design)
+    plots += curves.preload(design) + curves.forces(recipe, design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     measured = [

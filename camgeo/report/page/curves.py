@@ -137,6 +137,25 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
+def forces(recipe: Recipe, design: Design) -> list[Plot]:
+    """Return the plots of forces at the contacts and of the shaft's torque; none but of a rigid train."""
+    from camgeo.measures.running_forces import running_of
+
+    running = None if recipe.dynamics is None else running_of(recipe, design)
+    if running is None:
+        return []
+    state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
+    normal = tuple(Series(name, row) for name, row in zip(running.turn.names, state.normal, strict=True))
+    plots = [
+        Plot("Contact force", "N", normal, dwells=True, note=note),
+        Plot("Torque of the shaft", "N m", (Series("torque", running.torque(state)),), dwells=True, note=note),
+    ]
+    if (pressure := running.pressure(state)) is not None:
+        series = tuple(Series(name, row) for name, row in zip(running.turn.names, pressure, strict=True))
+        plots.append(Plot("Contact pressure", "N/mm²", series, dwells=True, note=note))
+    return plots
+
+
 def preload(design: Design) -> list[Plot]:
     """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
     given = design.exact.preload

@@ -39,7 +39,7 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
-        "dynamics": tables.preload(report) + tables.dynamics(report),
+        "dynamics": tables.preload(report) + tables.forces(report) + tables.dynamics(report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
         "style": asset("drawing.css") + looks.rules() + asset("page.css"),

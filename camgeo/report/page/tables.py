@@ -182,13 +182,43 @@ def preload(report: dict[str, Any]) -> str:
             (f"load that lifts {one['contact']} off", one["load"], one["unit"], one["at_deg"])
             for one in section["lost"]
         ]
-        rows = [
-            f'<tr><th scope="row">{escape(name)}</th><td class="number">{number(value)}</td><td>{escape(unit)}</td>'
-            f"<td>{_place(at, 'shaft')}</td></tr>"
-            for name, value, unit, at in cells
-        ]
-        table = _table("Preload", ("figure", "value", "unit", "at"), rows)
+        table = _figures("Preload", cells)
     return f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{told}</p>{table}</section>'
+
+
+def forces(report: dict[str, Any]) -> str:
+    """Return the extremes of the forces of a rigid follower at its speed; nothing without them."""
+    section = report.get("forces")
+    if section is None:
+        return ""
+    rows: list[_Row] = []
+    ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
+    ranges += [("torque of the shaft", section["torque"])]
+    ranges += [(f"reaction at the {one['end']} end of the guide", one) for one in section.get("guide", ())]
+    for name, one in ranges:
+        for word, key in (("least", "min"), ("greatest", "max")):
+            rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
+    rows += [
+        (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
+        for one in section.get("pressure", ())
+    ]
+    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section["rollers"]]
+    rows += [
+        (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
+    ]
+    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
+    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
+    return f"{head}<p>{told}</p>{_figures('Forces', rows)}</section>"
+
+
+def _figures(title: str, found: Sequence[_Row]) -> str:
+    """Return a table of figures with their units and places."""
+    rows = [
+        f'<tr><th scope="row">{escape(name)}</th><td class="number">{number(value)}</td><td>{escape(unit)}</td>'
+        f"<td>{_place(at, 'shaft')}</td></tr>"
+        for name, value, unit, at in found
+    ]
+    return _table(title, ("figure", "value", "unit", "at"), rows)
 
 
 def dynamics(report: dict[str, Any]) -> str:

@@ -1,0 +1,179 @@
+"""Forces of a rigid follower at its speed: extremes over the turn, as the report's section, figures and a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.checks.declared import FLOAT
+from camgeo.measures.forces import Extreme
+from camgeo.measures.measured import ABRUPT, Measured
+from camgeo.measures.running_forces import running_of
+from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
+from kin.judge.check import Check
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.monotone import RoughError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.measures.running_forces import Running
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+FORCES = (FORCE_LEAST, FORCE_GREATEST, TORQUE, PRESSURE, GUIDE_FORCE, MEAN_FORCE)
+
+
+@dataclass(frozen=True, eq=False)
+class Extremes:
+    """Least and greatest of every force over the turn: of each contact, the torque, the guide's ends and pressures."""
+
+    contacts: tuple[tuple[Extreme, Extreme], ...]
+    torque: tuple[Extreme, Extreme]
+    along: tuple[Extreme, Extreme]
+    guide: tuple[tuple[Extreme, Extreme], ...]
+    pressure: tuple[tuple[Extreme, Extreme], ...]
+
+
+def extremes_of(running: Running) -> Extremes:
+    """Find them, none sampled past. Raises RoughError where the motion is too abrupt."""
+    count = len(running.turn.names)
+
+    def values(phi: Array) -> Array:
+        state = running.state(phi)
+        more = [one for one in (running.guide_forces(state), running.pressure(state)) if one is not None]
+        return np.concatenate([state.normal, running.torque(state)[None], state.force[None], *more])
+
+    found = running.turn.extremes(values)
+    rest = found[count + 2 :]
+    ends = 2 if running.train.guide is not None else 0
+    contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in found[:count])
+    if count == 1:  # a spring that does not hold it pulls
+        contacts = (found[0],)
+    return Extremes(contacts, found[count], found[count + 1], tuple(rest[:ends]), tuple(rest[ends:]))
+
+
+def float_check(running: Running, found: Extremes) -> Check | None:
+    """Whether the force along the travel holds a single contact on the cam; None of one that two contacts hold."""
+    if len(found.contacts) > 1:
+        return None
+    least, most = found.along
+    detail = f"greatest {most.value:.6g}; of a rigid follower"
+    held, unit = least.value >= 0.0, running.turn.unit
+    return Check(FLOAT.name, held, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
+
+
+def forces_section(running: Running, found: Extremes) -> dict[str, object]:
+    """The report's section."""
+    names, turn = running.turn.names, running.turn
+    section: dict[str, object] = {
+        "rpm": running.train.rpm,
+        "contacts": [{"contact": name, **_range(one, "N")} for name, one in zip(names, found.contacts, strict=True)],
+        "torque": _range(found.torque, "N m"),
+    }
+    if running.train.least_force is not None:
+        section |= {"preload": running.preload, "preload_unit": turn.unit}
+    if found.guide:
+        pair = zip(("near", "far"), found.guide, strict=True)
+        section["guide"] = [{"end": end, **_range(one, "N")} for end, one in pair]
+    if found.pressure:
+        section["pressure"] = [
+            {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}
+            for name, (_, most) in zip(names, found.pressure, strict=True)
+        ]
+    if len(names) > 1:
+        section["changes_at_deg"] = [degrees(at) for at in running.changes]
+    rollers = {"roller": 0} if running.shared_roller else {name: k for k, name in enumerate(names)}
+    means = [(name, running.mean_force(index)) for name, index in rollers.items()]
+    section["rollers"] = [
+        {"roller": name, "mean_force": mean[0], "unit": "N", "turns": mean[1]}
+        for name, mean in means
+        if mean is not None
+    ]
+    if lost := running.lost_rpm():
+        section["lost"] = [{"contact": name, "rpm": rpm, "at_deg": at} for name, rpm, at in lost]
+    return section
+
+
+class Forces(NamedTuple):
+    """The report's section, and the check of a rigid follower."""
+
+    section: dict[str, object]
+    checks: tuple[Check, ...]
+
+
+def found_forces(recipe: Recipe, design: Design) -> Forces | None:
+    """Find the forces of a rigid follower; None where there is none. Raises RecipeErrors for a motion too abrupt."""
+    running = running_of(recipe, design)
+    if running is None:
+        return None
+    try:
+        found = extremes_of(running)
+    except RoughError as error:
+        raise recipe.error("dynamics", f"{ABRUPT}: {error}") from error
+    check = float_check(running, found)
+    return Forces(forces_section(running, found), () if check is None else (check,))
+
+
+def forces_table(running: Running, count: int) -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm."""
+    state = running.state(np.linspace(0.0, TURN, count + 1))
+    names = [name.replace(" ", "_") for name in running.turn.names]
+    several = len(names) > 1
+    columns: dict[str, Array] = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
+    columns |= {f"{name}_N" if several else "contact_N": row for name, row in zip(names, state.normal, strict=True)}
+    columns["torque_Nm"] = running.torque(state)
+    if (guide := running.guide_forces(state)) is not None:
+        columns |= {"guide_a_N": guide[0], "guide_b_N": guide[1]}
+    groups = ("pressure_N_mm2", running.pressure(state)), ("roller_rpm", running.roller_speeds(state))
+    for column, rows in groups:
+        if rows is not None:
+            columns |= {f"{name}_{column}" if several else column: row for name, row in zip(names, rows, strict=True)}
+    return tuple(columns), np.column_stack(list(columns.values()))
+
+
+def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
+    """Every figure of forces that the recipe has, by its name."""
+    running = running_of(recipe, design)
+    if running is None:
+        return {}
+    try:
+        found = extremes_of(running)
+    except RoughError:
+        return dict.fromkeys(FORCES, Measured(None, "N", detail=ABRUPT))
+    names = running.turn.names
+
+    def worst(of: Sequence[tuple[Extreme, Extreme]], unit: str) -> Measured:
+        value, name = max((one[1], name) for name, one in zip(names, of, strict=True))
+        return Measured(value.value, unit, value.at_deg, surface=name if len(names) > 1 else "")
+
+    least, name = min((one[0], name) for name, one in zip(names, found.contacts, strict=True))
+    torque = max(found.torque, key=lambda one: abs(one.value))
+    figures = {
+        FORCE_LEAST: Measured(least.value, "N", least.at_deg, surface=name if len(names) > 1 else ""),
+        FORCE_GREATEST: worst(found.contacts, "N"),
+        TORQUE: Measured(abs(torque.value), "N m", torque.at_deg),
+    }
+    if found.pressure:
+        figures[PRESSURE] = worst(found.pressure, "N/mm^2")
+    if found.guide:
+        end = max((one for pair in found.guide for one in pair), key=lambda one: abs(one.value))
+        figures[GUIDE_FORCE] = Measured(abs(end.value), "N", end.at_deg)
+    means = [mean[0] for k in range(len(names)) if (mean := running.mean_force(k)) is not None]
+    if means:
+        figures[MEAN_FORCE] = Measured(max(means), "N")
+    return figures
+
+
+def _range(found: tuple[Extreme, Extreme], unit: str) -> dict[str, object]:
+    least, most = found
+    return {
+        "min": least.value,
+        "max": most.value,
+        "unit": unit,
+        "min_at_deg": least.at_deg,
+        "max_at_deg": most.at_deg,
+    }
