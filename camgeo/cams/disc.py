@@ -10,6 +10,7 @@ from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.guided import Holding
 from camgeo.cams.motion import check_whole_turn, motion_field
+from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
@@ -86,6 +87,7 @@ FOLLOWERS: dict[str, Table] = {
 }
 
 
+ON_DISC_2 = (0.0, 1.0)  # shares of a preload
 FOLLOWER = form_of_kinds("follower", FOLLOWERS, "follower of kind")
 
 TABLE = Table(
@@ -96,6 +98,7 @@ TABLE = Table(
         TRACK,
         CONJUGATE,
         motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
+        PRELOAD,
         UNDERCUT,
     ),
     alternatives=(("base_radius", ()), ("sizing", ())),
@@ -134,6 +137,11 @@ def check(cam: Values, reader: Reader) -> None:
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
     if "conjugate" in cam:
         check_conjugate(cam, reader)
+    if "preload" in cam and "cam.conjugate" not in reader.marks:
+        what, remedy = "one contact alone is not preloaded", "give conjugate, or leave preload out"
+        if isinstance(cam.get("track"), dict):
+            what, remedy = "a roller in a groove needs clearance", "for preload take conjugate discs, or leave it out"
+        reader.fault_at("cam.preload", what, None, remedy)
     if "sizing" in cam and not reader.errors:
         _size(cam, reader)
 
@@ -193,6 +201,7 @@ def _values(cam: Values) -> Values:
         "side": -1 if cam.get("track") == "internal" else 1,
         "holding": _holding(cam, touch),
         "beyond": follower.get("beyond", 0.0),
+        "preload": build_preload(cam, ON_DISC_2),
     }
 
 

@@ -10,11 +10,13 @@ from camgeo.cams.conjugate import opposite_face
 from camgeo.cams.family import Advice, Circle, ExactCam, Follower, Surface, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
 from camgeo.cams.guided import SMALLER_STROKE, ExactGuided, ExactLed, GuidedCam, Holding, RoundAdvice, smaller
+from camgeo.cams.preload import preloaded
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Shoe, Translating
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Preload
     from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
@@ -40,6 +42,7 @@ class DiscCam(GuidedCam):
     side: Side = 1
     beyond: float = 0.0
     holding: Holding = Holding()
+    preload: Preload | None = None
 
     @property
     def arrangement(self) -> Arrangement:
@@ -48,7 +51,11 @@ class DiscCam(GuidedCam):
         return Arrangement(type(self.guide), type(self.touch), discs, discs)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """By the displacement over a whole turn, 0 where it is lowest."""
+        """By the displacement over a whole turn, 0 where it is lowest, with the preload."""
+        return preloaded(self.nominal(), self.preload)
+
+    def nominal(self) -> ExactCam:
+        """Without the preload."""
         from camgeo.curve.moving_frame import Displacement
 
         law = Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))

@@ -253,17 +253,18 @@ class Advice(ABC):
 class Preload:
     """What both contacts together overlap the metal by, mm, and the stiffness of each along its normal, N/m.
 
-    `stiffness` is None where no force is asked for.
+    `stiffness` is None where no force is asked for; `shares` of the interference stand on the metal of each contact.
     """
 
     interference: float
     stiffness: tuple[float, float] | None = None
+    shares: tuple[float, float] = (0.5, 0.5)
 
     @property
     def overlaps(self) -> tuple[float, float]:
         """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
-        half = 0.5 * self.interference
-        return half, half
+        first, second = self.shares
+        return first * self.interference, second * self.interference
 
 
 class Linear(ABC):

@@ -1,7 +1,8 @@
 """Preload by interference: metal grown towards every contact of a follower that is held from both sides.
 
 Both contacts together overlap the metal by the interference along their normals, so on one contour it grows by half of
-that all round. The motion is the one asked for: the overlap is taken up by what gives way at either contact.
+that all round, and of two discs the second by all of it (THEORY_FORCES.md, section 1). The motion is the one asked for:
+the overlap is taken up by what gives way at either contact.
 """
 
 from __future__ import annotations
@@ -30,10 +31,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Preloaded(ExactCam):
-    """An exact cam whose metal, `grown_metal`, overlaps the contacts that `nominal` has; the motion is that one's."""
+    """An exact cam whose metal overlaps the contacts that `nominal` has; the motion is that one's.
+
+    `grown_metal` is the cam that each of its surfaces is taken from.
+    """
 
     nominal: ExactCam
-    grown_metal: ExactCam
+    grown_metal: tuple[ExactCam, ...]
     held_by: Preload
 
     @property
@@ -64,7 +68,8 @@ class Preloaded(ExactCam):
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
         """Those of the grown metal; what the follower does on them is nominal."""
-        pairs = zip(self.grown_metal.surfaces, self.nominal.surfaces, strict=True)
+        metal = (exact.surfaces[rank] for rank, exact in enumerate(self.grown_metal))
+        pairs = zip(metal, self.nominal.surfaces, strict=True)
         return tuple(
             replace(grown, pressure=bare.pressure, place=bare.place, series=bare.series) for grown, bare in pairs
         )
@@ -102,7 +107,7 @@ class Preloaded(ExactCam):
     @property
     def free(self) -> bool:
         """As the grown metal is."""
-        return self.grown_metal.free
+        return all(exact.free for exact in self.grown_metal)
 
     @property
     def plate(self) -> Lift | None:
@@ -133,7 +138,7 @@ class Preloaded(ExactCam):
 
 
 def preloaded(nominal: ExactCam, preload: Preload | None) -> ExactCam:
-    """An exact cam with its metal grown by half of an interference, itself without one.
+    """An exact cam with its metal grown by what each contact has of an interference, itself without one.
 
     Raises IntentError for a follower that is not held from both sides, and one of which nothing would be left.
     """
@@ -147,12 +152,15 @@ def preloaded(nominal: ExactCam, preload: Preload | None) -> ExactCam:
             "sides: leave it out, or give a cam of constant breadth",
             "preload",
         )
+    contacts = zip(nominal.follower.contacts, preload.overlaps, strict=True)
+    overlaps = {contact.surface: overlap for contact, overlap in contacts}
     try:
-        metal = nominal.grown(0.5 * preload.interference, 1.0)
+        metal = tuple(nominal.grown(overlaps[surface.name], 1.0) for surface in nominal.surfaces)
     except GrownError as error:
         name, radius = error.args
+        share = "it" if 1.0 in preload.shares else "half of it"
         raise IntentError(
-            f"half of it is no less than {name}, {radius:.6g} mm; give less", "preload.interference"
+            f"{share} is no less than {name}, {radius:.6g} mm; give less", "preload.interference"
         ) from error
     return Preloaded(nominal, metal, preload)
 
@@ -176,10 +184,10 @@ PRELOAD = mapping(
 )
 
 
-def build_preload(cam: Values) -> Preload | None:
-    """Make the preload of a cam's values in which there is no fault, None where they have none."""
+def build_preload(cam: Values, shares: tuple[float, float] = (0.5, 0.5)) -> Preload | None:
+    """Make the preload of a cam's values in which there is no fault, None where they have none; `shares` of it."""
     given = cam.get("preload")
     if given is None:
         return None
     first, *second = given.get("stiffness") or (None,)
-    return Preload(given["interference"], None if first is None else (first, *(second or [first])))
+    return Preload(given["interference"], None if first is None else (first, *(second or [first])), shares)

@@ -178,8 +178,7 @@ def sized(cam: SizedDiscCam) -> SizedDiscCam:
     """The cam with the least size that keeps its limits; raises IntentError where there is none."""
     from kin.law.programme import IntentError
 
-    exact = cam.exact()
-    match cam.guide, exact:
+    match cam.guide, cam.nominal():
         case Translating(), ExactGuided(law=law):
             found = _stem(cam, law)
         case Oscillating(length=float(length), side=side), ExactGuided(law=law):

@@ -14,7 +14,7 @@ import numpy as np
 from kin.follower.base import Closure
 from kin.follower.motion_error import ContactError, Play
 from kin.judge.check import Check, failed
-from kin.judge.contour_checks import fine, play_checks
+from kin.judge.contour_checks import beside_interference, fine, play_checks
 from kin.judge.verdict import ClosureVerdict
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -84,6 +84,8 @@ def _judged(
     judged_as = Closure(limit, closure.name, lever=2.0)
     slack = max(one.slack for one in finer)
     checks = play_checks(between, judged_as, gauges[0], limits, slack, detail=judged_as.detail(play))
+    if play.least < between.least:  # the follower has less room than its gauges: a preload
+        checks = [beside_interference(check, between, play) for check in checks]
     if limits.play is None and any(surface.trimmed for surface, _ in pair):
         checks = []
     return ClosureVerdict(closure.pushes, closure.stops, between, play), checks

@@ -136,12 +136,12 @@ def _motion_checks(
     held = play_checks(play, closure, follower, limits, slack, detail=closure.detail(play))
     if own is play:
         return [*checks, *held]
-    preload = f"interference from {-own.most:.6g} to {-own.least:.6g} {own.unit}"
-    return [*checks, *(_beside_interference(check, play.least - own.least, preload) for check in held)]
+    return [*checks, *(beside_interference(check, play, own) for check in held)]
 
 
-def _beside_interference(check: Check, interference: float, detail: str) -> Check:
+def beside_interference(check: Check, play: Play, own: Play) -> Check:
     """A check on what a gauge has left, said of its follower: a limit that lets all of an interference go is none."""
+    interference, detail = play.least - own.least, f"interference from {-own.most:.6g} to {-own.least:.6g} {own.unit}"
     if check.limit is None or check.limit < interference:
         return replace(check, detail=detail)
     permitted = (
