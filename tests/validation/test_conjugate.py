@@ -117,8 +117,22 @@ def numbers(keys):
 @pytest.mark.parametrize("name", PAIRS)
 def test_each_contact_touches_its_disc_all_round(name):
     """The nearest point of each contour is a radius from the roller's centre, or lies on the face and none beyond."""
+    assert_touching(name, design_of(*PAIRS[name]), (0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "name", ["crank", *(pytest.param(name, marks=pytest.mark.slow) for name in PAIRS if name != "crank")]
+)
+def test_a_preload_stands_on_disc_2_alone(name):
+    """Its metal is nearer by all of the interference all round, that of disc 1 by nothing."""
+    follower, conjugate, *more = PAIRS[name]
+    design = design_of(follower, f"{conjugate}}}\n  preload: {{interference: 0.3", *more)
+    assert_touching(name, design, (0.0, 0.3))
+
+
+def assert_touching(name, design, overlaps):
     follower, conjugate = map(numbers, PAIRS[name][:2])
-    surfaces = design_of(*PAIRS[name]).exact.surfaces
+    surfaces = design.exact.surfaces
     radii = follower.get("radius", 0.0), conjugate.get("radius", follower.get("radius", 0.0))
     all_round = [sampled(surface, T) for surface in surfaces]
     for theta in np.radians(np.arange(0.0, 360.0, 17.3)):
@@ -128,7 +142,7 @@ def test_each_contact_touches_its_disc_all_round(name):
                 off = least(surfaces[k], all_round[k], lambda z, d=distance, a=towards: d - (z * np.exp(-1j * a)).real)
             else:
                 off = least(surfaces[k], all_round[k], lambda z, c=place: np.abs(z - c)) - radii[k]
-            assert abs(off) < 1e-9, (math.degrees(theta), NAMES[k])
+            assert abs(off + overlaps[k]) < 1e-9, (math.degrees(theta), NAMES[k])
 
 
 T = np.linspace(0.0, TURN, 2000, endpoint=False)
