@@ -1,5 +1,6 @@
 """Conjugate discs preloaded by interference, all of it on disc 2: case f01, and sets of files with a fault."""
 
+import csv
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -209,6 +210,18 @@ def test_a_pair_is_sized_as_without():
     sizes = [recipe_of(preload=preload, size=size).cam.sizes for preload in ("", "interference: 0.02")]
     assert sizes[0] == sizes[1]
     assert recipe_of(preload="interference: 0.02", size=size).cam.exact().preload is not None
+
+
+def test_a_sweep_ranks_by_the_force(tmp_path):
+    """Which is in proportion to the interference."""
+    sweep = "sweep: {vary: {cam.preload.interference: {from: 0.01, to: 0.03, steps: 3}}, rank: preload-force-least}\n"
+    path = tmp_path / "pair.yaml"
+    path.write_text(text(more=sweep))
+    assert main(["sweep", str(path), "--out", str(tmp_path)]) == 0
+    (table,) = (tmp_path / "pair").glob("*.csv")
+    rows = list(csv.DictReader(line for line in table.read_text().splitlines() if not line.startswith("#")))
+    forces = [float(row["preload-force-least"]) for row in rows]
+    assert forces == pytest.approx([1.5 * 426.508379977, 426.508379977, 0.5 * 426.508379977], rel=1e-11)
 
 
 def test_a_drawing_made_larger_keeps_the_interference():

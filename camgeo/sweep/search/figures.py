@@ -81,8 +81,7 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
         given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
     if recipe.part.density is not None and recipe.linkage is None:
         given.add("part.density")
-    if (wanted := NEEDS["wanted"]) in recipe.marks:
-        given.add(wanted)
+    given |= {NEEDS["wanted"], NEEDS["stiff"]}.intersection(recipe.marks)
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 
 
