@@ -22,7 +22,7 @@ from camgeo.cli import batch
 from camgeo.cli.main import main
 from camgeo.common import system, workers
 from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.output.output_folder import Run
+from camgeo.output.output_folder import RunFolder
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -119,7 +119,7 @@ def test_a_lock_that_a_killed_run_left(tmp_path: Path) -> None:
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
         assert holder.stdout.readline() == "held\n"
-        with pytest.raises(BusyError), Run(tmp_path, NAME):
+        with pytest.raises(BusyError), RunFolder(tmp_path, NAME):
             pass
         holder.kill()
     assert (tmp_path / f".{NAME}.lock").exists()
