@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
 from camgeo.api.loading import order_of
-from camgeo.api.log import LOG, staged, tell_checks
+from camgeo.api.log import heard, staged, tell_checks
 from camgeo.api.report import Report
 from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
 from camgeo.common.terminal import escaped
@@ -126,11 +126,11 @@ def verify(
 def _told(report: Report) -> Report:
     """Tell the log of a report."""
     name = report.recipe.name
-    for file in report.files:
-        if report.path is not None:
-            LOG.info("%s: wrote %s", name, file.path)
-    tell_checks(name, report.checks)
-    LOG.info("%s: %s", name, "ok" if report.ok else "FAILED")
+    if log := heard():
+        for file in report.files if report.path is not None else ():
+            log.info("%s: wrote %s", name, file.path)
+        tell_checks(name, report.checks)
+        log.info("%s: %s", name, "ok" if report.ok else "FAILED")
     return report
 
 

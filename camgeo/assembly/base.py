@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from camgeo.assembly.shaft import CLIP_COLOUR
 from camgeo.assembly.shapes import bar, bars, box, moved, pin, retainer
 from camgeo.assembly.sizes import BodyError
 from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
@@ -27,7 +27,7 @@ BLOCK = 1.5  # length of a block or slide, in widths
 FRAME_COLOUR, ROCKER_COLOUR, BLOCK_COLOUR = "#4f8f5f", "#8a6fb0", "#b0566a"
 
 
-@dataclass
+@dataclass()
 class Carrier:
     """A moving body while it is put together: `origin` is that of the link's own axes in the body's.
 
@@ -66,7 +66,7 @@ class Mount(NamedTuple):
         site.hold(name, self.carrier.name, self.point, high, self.carrier.place)
 
 
-@dataclass
+@dataclass()
 class Site:
     """What is gathered while links are put one above another.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -66,8 +67,11 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Make the parser of a call in these words; commands that are not among them have no arguments yet."""
     from camgeo.version import __version__
 
+    # asking how wide the terminal is imports what unpacks archives: it is asked for help alone
+    help_form = partial(argparse.HelpFormatter, width=None if {"-h", "--help"} & {*words} else 78)
     parser = _Parser(
         prog="camgeo",
+        formatter_class=help_form,
         description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
         "the files.",
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
@@ -77,13 +81,13 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=text, description=text)
+        added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
         added.set_defaults(run=run)
         return added
 
     def wing(name: str, text: str) -> None:
         """Add a command that has a module of its own, which is imported where it is called."""
-        added = commands.add_parser(name, help=text, description=text)
+        added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
         if name in words:
             module = import_module(f"camgeo.cli.{name}")
             module.add_arguments(added)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 import threading
-from dataclasses import dataclass, field
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING
 
 from camgeo.report.page.asset import asset
 from camgeo.report.page.page import LOCAL, RELOAD
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +26,7 @@ BEAT = 2.0  # seconds between signs of life to a page, by which one that is gone
 EMPTY = "<!DOCTYPE html><meta charset=utf-8><title>camgeo</title><link rel=icon href=data:,><body>" + RELOAD
 
 
-@dataclass
+@dataclass()
 class Shown:
     """What the page shows: its text, the errors of the recipe as it is saved now, and how often either changed."""
 

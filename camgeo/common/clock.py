@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
-@dataclass
+@dataclass()
 class Clock:
     """Seconds of each stage in the order of their ends; `told` hears of each as it begins.
 

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from camgeo.common.system import uninterrupted
-from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -78,6 +77,8 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
+
+    from kin.read.home import prepare_home
 
     prepare_home()  # once, and not by each process
     # not fork in general: this process may have threads, of a linear algebra library or a compiler

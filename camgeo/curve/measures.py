@@ -20,6 +20,7 @@ from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
 from camgeo.curve.support import is_sharp
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array, Mask
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+NODES, WEIGHTS = gauss(12)
 FIRST = 8  # parts of a stretch, at first
 EXACT = 1e-13  # of the whole: where halving a part changes less than its share of this, the part is done
 HALVINGS = 30

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from camgeo.common.clock import Clock
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Outline
 
 
-@dataclass
+@dataclass()
 class Fits:
     """The fits of one contour; files that ask for the same one share it. `unsure`, mm: see `formula_rounding`."""
 

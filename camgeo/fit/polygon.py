@@ -7,7 +7,6 @@ stands, and at its inflections, which one edge crosses; in each part as few edge
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from camgeo.fit.edges import Edges, Sagittas, frames, look, placed, proved
 from camgeo.fit.inflection import REACH, crossings, inflections, reach
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame, Run
@@ -50,7 +50,7 @@ def least_vertices(curve: Curve, tolerance: float) -> float:
     return total / math.sqrt(tolerance)
 
 
-@dataclass
+@dataclass()
 class _Part:
     """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices (1 outside).
 

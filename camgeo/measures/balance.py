@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.measures import Moments, moments, moments_of_chain
-from camgeo.synthesis.part.as_intent import layers_of
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -71,6 +70,8 @@ def balances(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
 
 
 def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
+    from camgeo.synthesis.part.as_intent import layers_of
+
     volume, error = np.zeros(5), np.zeros(4)  # integrals of 1, x, y, r^2 and z
     for layer in layers_of(body):
         half, middle = 0.5 * (layer.high - layer.low), 0.5 * (layer.high + layer.low)

@@ -115,7 +115,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
 
 
 def _scene(recipe: Recipe, dynamics: Dynamics, train: Train, design: Design, runs: int) -> _Scene:
-    from kin.follower.guide import METRE
+    from kin.law.contacts import METRE
 
     if design.driven is None:
         follower = design.exact.gauge

@@ -10,7 +10,6 @@ from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensati
 from camgeo.recipe.track import is_ring
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
-from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -339,6 +338,8 @@ def _format(node: Node) -> tuple[Scalar | None, Node | None]:
 
 
 def _files_schema(tables: collections.abc.Mapping[str, Table], _: Field) -> Schema:
+    from camgeo.schema.json_schema import table_schema
+
     formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in tables.items()]
     items = {"anyOf": [{"enum": list(tables)}, *(table_schema(Table((item,))) for item in formats)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}

@@ -12,10 +12,10 @@ LENGTHS = {"mm": Fraction(1), "cm": Fraction(10), "in": Fraction(127, 5), "inch"
 ANGLES = {"deg": Fraction(1)}
 """The units that an angle may carry, in degrees."""
 
-_QUANTITY = re.compile(r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)")
-_WITHIN = re.compile(rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES))})\b")
+_QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)"
+_WITHIN = rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES))})\b"
 _MOST = 80  # characters; a number of them has fewer
-_RATIONAL = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)")
+_RATIONAL = r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
 _TAKEN = {"degrees": (ANGLES, "deg"), "mm": (LENGTHS, "mm"), "inch": (LENGTHS, "inch")}  # with the own one's name
 
 
@@ -26,7 +26,7 @@ def units_for(own: str) -> tuple[str, ...]:
 
 def holds_unit(text: str) -> bool:
     """Tell whether a known unit stands behind a number anywhere in a text."""
-    return _WITHIN.search(text) is not None
+    return re.search(_WITHIN, text) is not None
 
 
 def is_metric(text: str) -> bool:
@@ -39,7 +39,7 @@ def parted(text: str) -> tuple[str, str]:
 
     What no number stands before is no unit: `0x1F` and `true` stay whole.
     """
-    found = _QUANTITY.fullmatch(text) if len(text) <= _MOST else None
+    found = re.fullmatch(_QUANTITY, text) if len(text) <= _MOST else None
     if found is None:
         return text, ""
     number, unit = found.groups()
@@ -70,7 +70,7 @@ def read_quantity(text: str, own: str) -> float:
     ratio = known[unit] / known[same]
     if value == 0.0 or ratio == 1:
         return value
-    exact = Fraction(number) if _RATIONAL.fullmatch(number) else Fraction(value)
+    exact = Fraction(number) if re.fullmatch(_RATIONAL, number) else Fraction(value)
     try:
         return within_range(float(exact * ratio))
     except OverflowError:

@@ -7,32 +7,32 @@ import re
 
 MOST_LAMBDA = 200
 MOST_TEXT = 1000  # characters
-_UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")
-_FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")
-_RATIO = re.compile(r"([0-9]{1,9})(?:/([0-9]{1,9}))?")
-_ZEROS_BEFORE = re.compile(r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]")
-_ARITHMETIC = re.compile(r"[-+*/() ]*[-+*/()][-+*/() ]*")  # what is left of it without numbers and pi
-_LEADING_ZERO = re.compile(r"[+-]?0+[0-9]")
+_UNSIGNED = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER = rf"[+-]?{_UNSIGNED}"
+_FRACTION = r"([+-]?[0-9]{1,9})/([0-9]{1,9})"
+_RATIO = r"([0-9]{1,9})(?:/([0-9]{1,9}))?"
+_ZEROS_BEFORE = r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]"
+_ARITHMETIC = r"[-+*/() ]*[-+*/()][-+*/() ]*"  # what is left of it without numbers and pi
+_LEADING_ZERO = r"[+-]?0+[0-9]"
 _MOST_DIGITS = 60
 _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
 
 # Other ways to write a number, and what would do.
 _NOT_NUMBERS = (
-    (re.compile(r"[+-]?\.?(?:inf|infinity|nan)", re.IGNORECASE), "it must be finite"),
-    (re.compile(r"[+-]?[0-9]+(?::[0-9.]+)+"), "sexagesimal numbers are not read; write it as one decimal number"),
-    (re.compile(r"[+-]?0[xob][0-9a-f_]+", re.IGNORECASE), "write it in decimal"),
-    (re.compile(r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?"), "write it without underscores"),
-    (re.compile(r"[+-]?[0-9]*,[0-9]+"), "a decimal takes a point, not a comma"),
-    (re.compile(r"[+-]?[0-9]+ [0-9]+/[0-9]+"), "a mixed number takes a plus, such as 1+1/2"),
-    (re.compile(r".*[0-9.)] ?(?:mm|cm|in|inch|deg)\b.+"), "a unit stands once, behind the whole number"),
-    (re.compile(r"[0-9]{4}-[0-9]{1,2}-[0-9]{1,2}.*", re.DOTALL), "this is a date"),
-    (re.compile(r"true|false|yes|no|on|off|y|n", re.IGNORECASE), "this is a truth value"),
+    (r"(?i:[+-]?\.?(?:inf|infinity|nan))", "it must be finite"),
+    (r"[+-]?[0-9]+(?::[0-9.]+)+", "sexagesimal numbers are not read; write it as one decimal number"),
+    (r"(?i:[+-]?0[xob][0-9a-f_]+)", "write it in decimal"),
+    (r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?", "write it without underscores"),
+    (r"[+-]?[0-9]*,[0-9]+", "a decimal takes a point, not a comma"),
+    (r"[+-]?[0-9]+ [0-9]+/[0-9]+", "a mixed number takes a plus, such as 1+1/2"),
+    (r".*[0-9.)] ?(?:mm|cm|in|inch|deg)\b.+", "a unit stands once, behind the whole number"),
+    (r"(?s:[0-9]{4}-[0-9]{1,2}-[0-9]{1,2}.*)", "this is a date"),
+    (r"(?i:true|false|yes|no|on|off|y|n)", "this is a truth value"),
 )
 
 NAME_RULE = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,63}")
-_DEVICE = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.IGNORECASE)
+_NAME = r"[A-Za-z0-9_][A-Za-z0-9._-]{0,63}"
+_DEVICE = r"(?i:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?"
 RESERVED_SUFFIX = ".rejected"  # of the folder that a failing run leaves
 
 
@@ -57,18 +57,18 @@ def read_number(text: str) -> float:
     """Read a decimal number, a fraction such as 180/7 or plain arithmetic such as 15/25.4; raises Complaint."""
     if len(text) > _MOST_DIGITS:
         raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
-    if found := _FRACTION.fullmatch(text):
+    if found := re.fullmatch(_FRACTION, text):
         if int(found[2]) == 0:
             raise Complaint("divides by zero")
         return int(found[1]) / int(found[2])
-    if _NUMBER.fullmatch(text):
-        if _LEADING_ZERO.match(text):
+    if re.fullmatch(_NUMBER, text):
+        if re.match(_LEADING_ZERO, text):
             raise Complaint("a leading zero, which some read as octal", "leave the zero out")
         value = float(text)
     else:
-        hint = next((hint for pattern, hint in _NOT_NUMBERS if pattern.fullmatch(text)), None)
-        left = re.sub(r"\bpi\b", " ", _UNSIGNED.sub(" ", text))
-        if hint is not None or not (_ARITHMETIC.fullmatch(left) or text == "pi"):
+        hint = next((hint for pattern, hint in _NOT_NUMBERS if re.fullmatch(pattern, text)), None)
+        left = re.sub(r"\bpi\b", " ", re.sub(_UNSIGNED, " ", text))
+        if hint is not None or not (re.fullmatch(_ARITHMETIC, left) or text == "pi"):
             raise Complaint("not a number", hint or "")
         value = _worked_out(text)
     return within_range(value)
@@ -90,7 +90,7 @@ def _worked_out(text: str) -> float:
 
     if "**" in text or "//" in text:
         raise Complaint("not a number", "numbers are joined by + - * / and parentheses alone")
-    if _ZEROS_BEFORE.search(text):
+    if re.search(_ZEROS_BEFORE, text):
         raise Complaint("a leading zero, which some read as octal", "leave the zero out")
     try:
         return float(parse(text, ()).steps[-1].value)
@@ -109,7 +109,7 @@ def whole(value: float) -> int:
 
 def read_ratio(text: str) -> tuple[int, int]:
     """Read lambda/mu as (lambda, mu), above 1, in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
-    found = _RATIO.fullmatch(text)
+    found = re.fullmatch(_RATIO, text)
     if not found:
         raise Complaint("not a fraction of whole numbers")
     lam, mu = int(found[1]), int(found[2] or 1)
@@ -132,9 +132,9 @@ def _fraction(lam: int, mu: int) -> str:
 
 def read_name(text: str) -> str:
     """Check a name that becomes a folder, on any system; raises Complaint."""
-    if not _NAME.fullmatch(text) or text.endswith("."):
+    if not re.fullmatch(_NAME, text) or text.endswith("."):
         raise Complaint("not safe as the name of a folder", f"use {NAME_RULE}")
-    if _DEVICE.fullmatch(text):
+    if re.fullmatch(_DEVICE, text):
         raise Complaint("reserved for a device by Windows", f"use {NAME_RULE}")
     if text.lower().endswith(RESERVED_SUFFIX):
         raise Complaint(

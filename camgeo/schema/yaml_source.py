@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 import yaml
 
 from camgeo.schema.errors import RecipeError, RecipeErrors, shown
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     import collections.abc
@@ -27,19 +27,17 @@ MAX_ALIASES = 100
 MAX_NODES = 10_000  # aliases counted as often as they stand for something
 
 # What YAML does not permit, with its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
-_FORBIDDEN = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
-_DISPUTED = re.compile(
-    r"[\t?]|[|>][0-9+-]*#"
-)  # libyaml takes some that PyYAML's own reader refuses: the latter decides
-_LINE_END = re.compile(r"\r\n|\r|\n")
-_DIRECTIVE = re.compile(r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%")
-_BARE = re.compile(r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
-_PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]{1,40}")
+_FORBIDDEN = "[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]"
+_DISPUTED = r"[\t?]|[|>][0-9+-]*#"  # libyaml takes some that PyYAML's own reader refuses: the latter decides
+_LINE_END = r"\r\n|\r|\n"
+_DIRECTIVE = r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%"
+_BARE = r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?"
+_PLAIN_KEY = r"[A-Za-z0-9_-]{1,40}"
 
 Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Scalar:
     """A text; `plain` where it stands without quotes, `end` just behind it, `tag` where one was written."""
 
@@ -51,7 +49,7 @@ class Scalar:
     size: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sequence:
     """A list; `end` just behind it, or behind its last entry."""
 
@@ -62,7 +60,7 @@ class Sequence:
     size: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mapping:
     """A mapping as written, keys that stand twice included; `end` as of a list, `flow` where it stands in braces."""
 
@@ -94,7 +92,7 @@ class Source:
     @cached_property
     def starts(self) -> list[int]:
         """Indices in the text at which its lines begin."""
-        return [0, *(end.end() for end in _LINE_END.finditer(self.text))]
+        return [0, *(end.end() for end in re.finditer(_LINE_END, self.text))]
 
     def index(self, mark: Mark) -> int:
         """Index in the text of a line and a column."""
@@ -109,7 +107,7 @@ class Source:
         return last
 
 
-@dataclass(slots=True)
+@dataclass()
 class _Frame:
     """A list or mapping that is still being read; a mapping's keys and values alternate in `children`.
 
@@ -148,10 +146,10 @@ def read_source(data: bytes, file: str) -> Source:
     if len(data) > MAX_BYTES:
         raise _fault(file, (0, 0), f"the file is larger than {MAX_BYTES} bytes", remedy="a recipe needs a few hundred")
     text = _decode(data, file)
-    if _DIRECTIVE.match(text):
+    if re.match(_DIRECTIVE, text):
         place = _place(text, text.index("%"))
         raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
-    lines = tuple(_LINE_END.split(text))
+    lines = tuple(re.split(_LINE_END, text))
     return Source(file, text, lines, _parse(text, lines, file))
 
 
@@ -159,7 +157,7 @@ def join(path: str, key: str | int) -> str:
     """Make the path of an entry: `cam.motion[1]`; unusual keys are quoted and shortened."""
     if isinstance(key, int):
         return f"{path}[{key}]"
-    name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
+    name = key if re.fullmatch(_PLAIN_KEY, key) else shown(key)
     return f"{path}.{name}" if path else name
 
 
@@ -213,7 +211,7 @@ def entries(node: Mapping) -> dict[str, Node]:
 
 def written(node: Scalar) -> str:
     """Show a scalar in an error: a number bare, a text quoted."""
-    return node.text if _BARE.fullmatch(node.text) else shown(node.text)
+    return node.text if re.fullmatch(_BARE, node.text) else shown(node.text)
 
 
 def described(node: Node) -> str:
@@ -231,7 +229,8 @@ def _decode(data: bytes, file: str) -> str:
         place = _place(data[: error.start].decode("utf-8") + "?", None)
         raise _fault(file, place, "not UTF-8", f"byte 0x{data[error.start]:02x}", "save the file as UTF-8") from None
     text = text.removeprefix("\ufeff")
-    if found := _FORBIDDEN.search(text):
+    printable = text.replace("\n", "").isprintable()  # no such character is; the pattern takes long to compile
+    if not printable and (found := re.search(_FORBIDDEN, text)):
         value = f"U+{ord(found[0]):04X}"
         raise _fault(file, _place(text, found.start()), "a character that cannot stand in a recipe", value, "delete it")
     return text
@@ -240,7 +239,7 @@ def _decode(data: bytes, file: str) -> str:
 def _place(text: str, index: int | None) -> Mark:
     """Line and column of the character at `index`, or of the last one."""
     before = text[:-1] if index is None else text[:index]
-    lines = _LINE_END.split(before)
+    lines = re.split(_LINE_END, before)
     return len(lines), len(lines[-1].removeprefix("\ufeff")) + 1
 
 
@@ -257,7 +256,7 @@ def _behind(mark: Mark, lines: tuple[str, ...]) -> Mark:
 
 def _parse(text: str, lines: tuple[str, ...], file: str) -> Node:
     fast = getattr(yaml, "CSafeLoader", None)
-    if fast is not None and not _DISPUTED.search(text):
+    if fast is not None and not re.search(_DISPUTED, text):
         with suppress(yaml.YAMLError):  # PyYAML's own reader words the same fault better, and alike on every machine
             return _build(_events(text, fast), lines, file)
     try:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.numeric.bernstein import bernstein_product, restrict, rising_root, roots, values
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -222,7 +223,7 @@ class Beziers:
         if not self.count:
             return 0.0
         # x . y' of degree 2d-1 needs d nodes; a rational piece of at most a half turn is smooth enough for 24 more.
-        nodes, weights = np.polynomial.legendre.leggauss(self.degree + (24 if self.rational else 0))
+        nodes, weights = gauss(self.degree + (24 if self.rational else 0))
         total = 0.0
         rows = np.arange(self.count)
         for x, w in zip((nodes + 1.0) / 2.0, weights / 2.0, strict=True):
@@ -235,7 +236,7 @@ class Beziers:
     @cached_property
     def lengths(self) -> Array:
         """Arc length of each piece, mm (m,): Gauss's rule on finer and finer parts, until two agree to 1e-13 of it."""
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_NODES)
+        nodes, weights = gauss(GAUSS_NODES)
         row, begin, step = np.arange(self.count), np.zeros(self.count), 1.0
 
         def integrals(row: Indices, begin: Array, step: float) -> Array:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, unit
-from kin.contour.biarc import arcs_along
 from kin.contour.hull import convex_hull, is_convex_polygon
 from kin.contour.nearest import nearest
 from kin.contour.pieces import ARC, BEZIER, LINE, NormalRanges, Pieces, wrapped
@@ -309,6 +308,8 @@ class Contour(Pieces):
         arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
         owner = plain[part]
         if self.beziers.count:
+            from kin.contour.biarc import arcs_along
+
             bows, row = arcs_along(self.beziers, tolerance)
             piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
             bow = np.flatnonzero(self.kind == BEZIER)

@@ -7,13 +7,13 @@ the instant itself is found with plain floats, since a turn may hold thousands.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.numeric.chebyshev import together, value
 from kin.numeric.errors import KinError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -39,7 +39,7 @@ class SpentError(KinError):
     """More places would be looked at than may be."""
 
 
-@dataclass
+@dataclass()
 class Work:
     """Places looked at so far, and the most that may be; a search for one instant counts as CALL."""
 

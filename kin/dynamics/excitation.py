@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from kin.follower.drive import Shifted
-from kin.follower.guide import METRE
+from kin.law.contacts import METRE
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 import numpy as np
 
 from kin.follower.drive import Shifted
-from kin.follower.guide import METRE
-from kin.follower.laws import ByLaw, Swing
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
+from kin.law.contacts import METRE
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.drive import Excitation
     from kin.follower.envelope import Envelope
+    from kin.follower.laws import ByLaw, Swing
     from kin.follower.motion_error import Judged, Play
     from kin.follower.tracking import Law
     from kin.law.contacts import Contact, Guide, Touch, Unit
@@ -193,6 +193,8 @@ class OfLaw(Moved):
     @cached_property
     def course(self) -> ByLaw:
         """The law with bounds of how steep it is."""
+        from kin.follower.laws import ByLaw
+
         return ByLaw(self.law)
 
     @cached_property
@@ -221,6 +223,8 @@ class OfTransmission(Moved):
     @cached_property
     def motion(self) -> Swing:
         """The swing over the shaft angle."""
+        from kin.follower.laws import Swing
+
         return Swing(self.transmission, self.share)
 
     @property

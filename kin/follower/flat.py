@@ -13,11 +13,10 @@ import numpy as np
 
 from kin.follower.base import Closure, Follower, Rests
 from kin.follower.envelope import FlatEnvelope, LiftPitch
-from kin.follower.guide import METRE
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
-from kin.law.contacts import Flat
+from kin.law.contacts import METRE, Flat
 from kin.law.support_function import Lift
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, right, unit
-from kin.law.contacts import TRAILING, Oscillating
+from kin.law.contacts import METRE, TRAILING, Oscillating
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side, Unit
     from kin.numeric.arrays import Array
 
-METRE = 1e-3  # a millimetre in metres
 SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
 MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for contact are shorter
 

@@ -6,7 +6,6 @@ off by more than `FINE` of the tolerance; ends and middles of all pieces are amo
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
 from kin.judge.check import Check, at_most
 from kin.numeric.places import place_text
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,7 +56,7 @@ def round_hole(name: str, kind: str, centre: tuple[float, float], diameter: floa
     return Hole(name, kind, ((x + 0.5 * diameter, y), (x - 0.5 * diameter, y)), (1.0, 1.0))
 
 
-@dataclass
+@dataclass()
 class Tally:
     """What was found of one kind of opening or outline, over all sections of a part."""
 

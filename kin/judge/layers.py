@@ -12,6 +12,7 @@ import numpy as np
 
 from kin.contour.arcs import cross
 from kin.contour.contour import Contour
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -230,7 +231,7 @@ def _bored(cross: CrossHole, outline: Hole, hole: Hole) -> float:
     radius = 0.5 * cross.diameter
     corners = inner[0][:, 1] / radius
     knots = np.unique(np.concatenate([[-0.5 * np.pi, 0.5 * np.pi], np.arcsin(corners[np.abs(corners) < 1.0])]))
-    node, weight = np.polynomial.legendre.leggauss(GAUSS)
+    node, weight = gauss(GAUSS)
     low, width = knots[:-1, None], np.diff(knots)[:, None]
     angle = (low + 0.5 * width * (node + 1.0)).ravel()
     share = (0.5 * width * weight).ravel()

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.judge.check import ROUNDING, Check, at_most
-from kin.judge.layers import volume, wall_area
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,6 +45,8 @@ def volume_check(
 
 def layers_volume_check(measured: float, contours: Sequence[Contour], part: PartIntent, tolerance: float) -> Check:
     """Check the volume of a part in layers, mm^3, against closed forms: within the tolerance times the walls' area."""
+    from kin.judge.layers import volume, wall_area
+
     area, perimeter, source = exact_area(contours, part)
     expected = volume(part.layers, part.cross_holes, area, perimeter)
     limit = tolerance * wall_area(part.layers, part.cross_holes, perimeter)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Side: TypeAlias = Literal[-1, 1]
 Unit: TypeAlias = Literal["mm", "deg"]
+METRE = 1e-3  # a millimetre in metres
 TRAILING: Side = 1
 LEADING: Side = -1
 

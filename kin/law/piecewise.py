@@ -16,7 +16,7 @@ from kin.law.segment import Affine, Constant, Power, Round
 from kin.numeric.arrays import Array, Indices
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
 from kin.numeric.interval import Ball, hull
-from kin.numeric.jet import finite
+from kin.numeric.jet import finite, horner
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -80,10 +80,7 @@ class _Horner:
 
     def __call__(self, u: Series, /) -> Series:
         """Give each polynomial."""
-        total = u.constant(self.rows[-1])
-        for row in self.rows[-2::-1]:
-            total = total * u + row
-        return total
+        return horner(self.rows, u)
 
 
 def _moved(function: Stretch, ways: Array, t: Series) -> Series:

@@ -17,6 +17,7 @@ from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.errors import KinError
+from kin.numeric.jet import horner
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -80,11 +81,7 @@ class Polynomial:
 
     def __call__(self, u: Series, /) -> Series:
         """Give the displacement."""
-        x = u - self.centre if self.centre else u
-        total = u.constant(self.coefficients[-1])
-        for coefficient in self.coefficients[-2::-1]:
-            total = total * x + coefficient
-        return total
+        return horner(self.coefficients, u - self.centre if self.centre else u)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from kin.numeric import quadrature
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
@@ -184,7 +185,7 @@ def gauss(breaks: Array) -> tuple[Array, Array]:
     """Nodes and weights (m,) that integrate over one turn a function smooth between the breaks."""
     ends = grid(breaks, 64)
     ends = np.append(ends, ends[0] + TURN)
-    node, weight = np.polynomial.legendre.leggauss(16)
+    node, weight = quadrature.gauss(16)
     half = 0.5 * np.diff(ends)
     at = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * node
     return at.ravel(), (half[:, None] * weight).ravel()

@@ -24,6 +24,8 @@ from kin.numeric.taylor import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array
@@ -52,7 +54,12 @@ def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
 def finite(c: Array, operation: str) -> Jet:
     """Return the jet of these coefficients (order + 1, n), all of them finite, or DomainError."""
     with np.errstate(all="ignore"):
-        total = float(c.sum())  # no product of vectors: that would wake threads, which cost more than they bring
+        return _finite(c, operation)
+
+
+def _finite(c: Array, operation: str) -> Jet:
+    """Do so where numpy's warnings are off already, as turning them off takes as long as a sum."""
+    total: np.float64 = np.add.reduce(c, axis=None)  # no product of vectors: that would wake threads
     if not math.isfinite(total):  # or the sum alone overflows
         demand(np.isfinite(c).all(axis=0), operation)
     return Jet(c)
@@ -115,10 +122,10 @@ class Jet:
     def __add__(self, other: Jet | float | Array) -> Jet:
         with np.errstate(all="ignore"):
             if isinstance(other, Jet):
-                return finite(self.c + other.c, "overflow")
+                return _finite(self.c + other.c, "overflow")
             c = self.c.copy()
             c[0] += other
-            return finite(c, "overflow")
+            return _finite(c, "overflow")
 
     __radd__ = __add__
 
@@ -130,7 +137,7 @@ class Jet:
 
     def __mul__(self, other: Jet | float | Array) -> Jet:
         with np.errstate(all="ignore"):
-            return finite(product(self.c, other.c) if isinstance(other, Jet) else self.c * other, "overflow")
+            return _finite(product(self.c, other.c) if isinstance(other, Jet) else self.c * other, "overflow")
 
     __rmul__ = __mul__
 
@@ -139,7 +146,7 @@ class Jet:
         demand(divisor != 0, "division by zero")
         with np.errstate(all="ignore"):
             c = quotient(self.c, other.c) if isinstance(other, Jet) else self.c / other
-            return finite(c, "overflow")
+            return _finite(c, "overflow")
 
     def __rtruediv__(self, other: float | Array) -> Jet:
         return self.constant(other) / self
@@ -150,13 +157,13 @@ class Jet:
             demand(x > 0, "variable power of a number that is not positive")
             with np.errstate(all="ignore"):
                 product_of_log = product(exponent.c, compose(log_rows(x, np.log(x), self.order), self.c))
-                return finite(compose(exp_rows(np.exp(product_of_log[0]), self.order), product_of_log), "overflow")
+                return _finite(compose(exp_rows(np.exp(product_of_log[0]), self.order), product_of_log), "overflow")
         demand((x != 0) | np.greater_equal(exponent, 0), "division by zero")
         if not float(exponent).is_integer():
             demand(x >= 0, "fractional power of a negative number")
             demand((x > 0) | np.greater(exponent, self.order), "derivative of a fractional power at zero")
         with np.errstate(all="ignore"):
-            return finite(compose(power_rows(x, exponent, self.order), self.c), "overflow")
+            return _finite(compose(power_rows(x, exponent, self.order), self.c), "overflow")
 
     def __rpow__(self, base: float) -> Jet:
         return self.constant(base) ** self
@@ -284,3 +291,24 @@ def derivatives_by(f: Series, parameter: Series) -> list[Series]:
         rate = rate.lower()
         found.append(f)
     return found
+
+
+def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:
+    """Polynomials of these coefficients (k,) or (k, n), lowest first, at a jet or ball jet."""
+    if isinstance(x, BallJet):
+        ball = x.constant(coefficients[-1])
+        for row in coefficients[-2::-1]:
+            ball = ball * x + row
+        return ball
+    with np.errstate(all="ignore"):
+        straight = not x.c[2:].any()  # then a product has two terms in each row, and the same digits
+        total = np.zeros_like(x.c)
+        total[0] = coefficients[-1]
+        for row in coefficients[-2::-1]:
+            if straight:
+                before, total = total, total * x.c[0]
+                total[1:] += before[:-1] * x.c[1:2]
+            else:
+                total = product(total, x.c)
+            total[0] += row
+        return _finite(total, "overflow")

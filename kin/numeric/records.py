@@ -145,12 +145,12 @@ if not TYPE_CHECKING:
         """Make a class a dataclass as `dataclasses.dataclass` does, without slots or order."""
 
         def made(kind: type[T]) -> type[T]:
-            if not frozen:
-                return dataclasses.dataclass(eq=eq, kw_only=kw_only)(kind)
             shape = _SHAPES[kind] = _Shape(kind, kw_only=kw_only)
-            methods: dict[str, object] = {"__setattr__": _refuse, "__delattr__": _keep, "__repr__": _text}
+            methods: dict[str, object] = {"__repr__": _text}
+            if frozen:
+                methods |= {"__setattr__": _refuse, "__delattr__": _keep}
             if eq:
-                methods |= {"__eq__": _equal, "__hash__": _hash}
+                methods |= {"__eq__": _equal, "__hash__": _hash if frozen else None}
             methods |= {name: _Later(kind, name, shape.standardise) for name in _STANDARD}
             methods["__init__"] = _Later(kind, "__init__", shape.compile)
             for name, method in methods.items():

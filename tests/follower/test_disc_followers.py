@@ -18,9 +18,9 @@ from camgeo.curve.moving_frame import Translating as Stem
 from camgeo.curve.parallel import Parallel
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
-from kin.follower.guide import METRE, Arm, Line
+from kin.follower.guide import Arm, Line
 from kin.follower.motion_error import ContactError
-from kin.law.contacts import LEADING, TRAILING
+from kin.law.contacts import LEADING, METRE, TRAILING
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.support_function import lift_from_fourier

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.curvature import ROUNDING
+from kin.numeric.quadrature import gauss
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -81,7 +82,7 @@ def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
 
 def _quadrature(curve: Curve, low: Array, high: Array) -> tuple[Array, Array, Array]:
     """Integrals over panels (n,) by one rule each: of the velocity (n, 2), of absolute speed and turn (n,)."""
-    node, weight = np.polynomial.legendre.leggauss(NODES)
+    node, weight = gauss(NODES)
     half = 0.5 * (high - low)
     at = curve.sample((0.5 * (low + high)[:, None] + half[:, None] * node).ravel())
     share = half[:, None] * weight

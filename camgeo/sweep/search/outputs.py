@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from camgeo.sweep.search.pictures import draw_best, draw_map
 from camgeo.sweep.search.recipes import curve_of, loaded, recipe_text
 from camgeo.sweep.search.table import as_csv, as_parquet, columns, with_polished
 from camgeo.version import __version__
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -35,7 +35,7 @@ EXTRA = install("sweep")
 _DRAWN = 10  # best designs in the picture of curves
 
 
-@dataclass
+@dataclass()
 class Files:
     """Files made so far, and those left out with the reason."""
 

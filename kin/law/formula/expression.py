@@ -8,7 +8,6 @@ exponent is the double nearest to what is written.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -17,6 +16,7 @@ from kin.numeric import elementary
 from kin.numeric.elementary import BallJet, DomainError, Jet
 from kin.numeric.errors import KinError
 from kin.numeric.interval import Ball
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -79,7 +79,7 @@ class FormulaDomainError(FormulaError, DomainError):
         self.at = place
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Instruction:
     """One step: `op` applied to the results of earlier steps `args`; `column` is where the text says so.
 

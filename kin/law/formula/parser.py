@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 
 from kin.law.formula.expression import FUNCTIONS, OF_TWO, Builder, Expression, FormulaError
+from kin.numeric.records import dataclass
 
 MOST_CHARACTERS = 1000
 MOST_DEPTH = 50
@@ -84,7 +84,7 @@ _OTHER_NAMES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Token:
     kind: str  # number, name, sign, end
     text: str

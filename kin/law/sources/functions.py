@@ -7,6 +7,7 @@ from math import comb
 from typing import TYPE_CHECKING
 
 from kin.numeric.elementary import cos, sin
+from kin.numeric.jet import horner
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class TwoPoint:
     def __call__(self, u: Series, /) -> Series:
         """Give the displacement."""
         v, power = 1.0 - u, float(len(self.first))
-        return v**power * _horner(self.first, u) + u**power * _horner(self.last, v)
+        return v**power * horner(self.first, u) + u**power * horner(self.last, v)
 
 
 def _over_power(derivatives: Sequence[float]) -> tuple[float, ...]:
@@ -120,7 +121,7 @@ class Flank:
 
     def __call__(self, v: Series, /) -> Series:
         """Give the displacement, 1 at the nose."""
-        return v**5.0 * _horner(self.coefficients, 1.0 - v)
+        return v**5.0 * horner(self.coefficients, 1.0 - v)
 
 
 @dataclass(frozen=True)
@@ -143,10 +144,3 @@ class FromRest:
     def __call__(self, u: Series, /) -> Series:
         """Give the displacement."""
         return u**3.0 * (2.0 - u)
-
-
-def _horner(coefficients: Sequence[float], x: Series) -> Series:
-    total = x.constant(coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        total = total * x + coefficient
-    return total

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ from kin.law.sources.peaks import extremes
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, laid
 from kin.law.sources.sections import Sections, faded, sections_of
 from kin.law.sources.spline import Basis, Ends, Fitting, nearest
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,7 +112,7 @@ class Lowest(NamedTuple):
         return dwell._replace(level=0.0) if self.floor is not None and abs(dwell.level) <= reading else dwell
 
 
-@dataclass
+@dataclass()
 class EqualSpans:
     """Least squares with the fewest spans, or a given number; keeps their count and the worst row.
 
@@ -298,7 +298,7 @@ def _there(task: Task, angle: float, value: float) -> str:
     return task.tell(float(value), 7)
 
 
-@dataclass
+@dataclass()
 class Bounded:
     """Splines over sections, each row within its bounds; keeps the count of spans and the worst row."""
 

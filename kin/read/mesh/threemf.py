@@ -10,13 +10,13 @@ import re
 import zipfile
 import zlib
 from array import array
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 from xml.parsers import expat
 
 import numpy as np
 
+from kin.numeric.records import dataclass, field, replace
 from kin.read.bodies import Sought, missing
 from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
@@ -190,7 +190,7 @@ class _Links:
             self.targets.append(attributes.get("Target", ""))
 
 
-@dataclass
+@dataclass()
 class _Object:
     """An object as it stands in the file: mesh or components, in the file's unit."""
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.distinct import distinct
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
 from kin.read.bodies import MOST_BODIES, Sought, beside, missing
 from kin.read.drawing.drawing import CutEntities, drawing_of
@@ -40,7 +41,7 @@ __all__ = ["StepSolid", "read_step", "read_step_bodies"]
 
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
-AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
+AREA_NODES, AREA_WEIGHTS = gauss(3)  # exact where a section is a cubic in the height
 WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
 MOST_NAMED = 3  # edges in a message
 
@@ -251,7 +252,7 @@ class _Body:
 
     def _bored(self, tube: Tube, low: float, high: float) -> float:
         """Volume of a layer that a level hole runs through: its width is smooth in the angle about its axis."""
-        node, weight = np.polynomial.legendre.leggauss(GAUSS)
+        node, weight = gauss(GAUSS)
         first, last = np.arcsin(np.clip((np.array([low, high]) - tube.point[2]) / tube.radius, -1.0, 1.0))
         angle: Array = 0.5 * (first + last) + 0.5 * (last - first) * node
         areas = np.array([self._area(float(z)) for z in tube.point[2] + tube.radius * np.sin(angle)])
