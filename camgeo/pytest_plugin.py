@@ -228,7 +228,7 @@ class RecipeFile(pytest.File):
         checks = () if recipe is None else _foreseen(recipe, second_opinion=self.run.second_opinion)
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
-            yield CheckItem.from_parent(self, name=name, run=self.run, check=check, known=frozenset(checks))
+            yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
 
 
 def _foreseen(recipe: Recipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:

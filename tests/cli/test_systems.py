@@ -113,8 +113,8 @@ def test_an_open_lock_cannot_be_removed(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_lock_that_a_killed_run_left(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from pathlib import Path; from camgeo.output.output_folder import Run\n"
-        f"with Run(Path(sys.argv[1]), {NAME!r}): print('held', flush=True); time.sleep(60)"
+        "import sys, time; from pathlib import Path; from camgeo.output.output_folder import RunFolder\n"
+        f"with RunFolder(Path(sys.argv[1]), {NAME!r}): print('held', flush=True); time.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
