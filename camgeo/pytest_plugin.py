@@ -70,7 +70,7 @@ class Recipes:
         self.patterns = patterns
         self.out = out
         self.base = config.rootpath if config.inipath is None else config.inipath.parent
-        self.runs: dict[Path, Run] = {}
+        self.runs: dict[Path, RecipeRun] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionstart(self) -> None:
@@ -83,7 +83,7 @@ class Recipes:
             )
         for path in self._found():
             shown = _relative(path, self.config.invocation_params.dir)
-            self.runs[path.resolve()] = Run(path, shown, self.out, self.config.getini(SECOND))
+            self.runs[path.resolve()] = RecipeRun(path, shown, self.out, self.config.getini(SECOND))
         sources = type(self.config).ArgsSource
         whole = self.config.invocation_params.dir == self.config.rootpath
         if whole and self.config.args_source is not sources.ARGS:
@@ -133,7 +133,7 @@ class Recipes:
             raise pytest.UsageError("\n".join(faults))
         return list(found)
 
-    def _can_be_named(self, run: Run) -> bool:
+    def _can_be_named(self, run: RecipeRun) -> bool:
         """Whether a recipe may stand among pytest's arguments, which outrank --ignore and give [ and :: a meaning."""
         folder = self.config.invocation_params.dir
         ignored = {Path(folder, name) for name in self.config.getoption("ignore") or ()}
@@ -144,7 +144,7 @@ class Recipes:
 
 
 @dataclass
-class Run:
+class RecipeRun:
     """One recipe of a session, made and judged when its report is first asked for.
 
     `shown` is its path as messages show it, `fault` all that keeps it from being made, `certain` if it would do so in
@@ -209,7 +209,7 @@ class Run:
 class RecipeFile(pytest.File):
     """A recipe as a collection of checks."""
 
-    def __init__(self, *, run: Run, others: dict[Path, Run], **rest: Any) -> None:  # noqa: ANN401 - pytest's own
+    def __init__(self, *, run: RecipeRun, others: dict[Path, RecipeRun], **rest: Any) -> None:  # noqa: ANN401 - pytest's own
         super().__init__(**rest)
         self.run = run
         self.others = others
@@ -228,7 +228,7 @@ class RecipeFile(pytest.File):
         checks = () if recipe is None else _foreseen(recipe, second_opinion=self.run.second_opinion)
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
-            yield CheckItem.from_parent(self, name=name, run=self.run, check=check, known=frozenset(checks))
+            yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
 
 
 def _foreseen(recipe: Recipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:
@@ -248,15 +248,15 @@ class CheckItem(pytest.Item):
     def __init__(
         self,
         *,
-        run: Run,
+        run: RecipeRun,
         check: Foreseen | None,
-        known: frozenset[Foreseen],
+        foreseen: frozenset[Foreseen],
         **rest: Any,  # noqa: ANN401 - pytest's own
     ) -> None:
         super().__init__(**rest)
         self.run = run
         self.check = check
-        self.known = known
+        self.known = foreseen
         self.add_marker("camgeo")
 
     def runtest(self) -> None:
@@ -287,13 +287,13 @@ class CheckItem(pytest.Item):
         more = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
         self._hold(more, report)
 
-    def _one(self, wanted: Foreseen, report: Entry) -> None:
-        found = [check for check in report["checks"] if (check["name"], check.get("file")) == wanted]
+    def _one(self, foreseen: Foreseen, report: Entry) -> None:
+        found = [check for check in report["checks"] if (check["name"], check.get("file")) == foreseen]
         if found:
             self.user_properties += [(key, found[0][key]) for key in ("value", "limit", "unit", "at_deg")]
             self._hold(found, report)
             return
-        self._missing(wanted, report)
+        self._missing(foreseen, report)
 
     def _hold(self, checks: list[Entry], report: Entry) -> None:
         from camgeo.report.failure import failure
@@ -303,28 +303,28 @@ class CheckItem(pytest.Item):
         if failed:
             _fail("\n".join(failed))
 
-    def _missing(self, wanted: Foreseen, report: Entry) -> None:
+    def _missing(self, foreseen: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
         from camgeo.checks.declared import CHECKS, MOTION, SECOND_OPINIONS
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
 
         assert self.run.recipe is not None
-        cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, wanted.file)]
+        cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, foreseen.file)]
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
         if self.run.recipe.cam.undercut == "trim" and (
-            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].backlash)
+            foreseen.name == MOTION.name or (foreseen.name in CHECKS and CHECKS[foreseen.name].backlash)
         ):
             reason = (
                 "an undercut is trimmed: what motion is lost is reported, and judged against verify.motion_error alone"
             )
             pytest.skip(f"{self.run.shown}: {reason}")
-        why = next((entry["why"] for entry in report["skipped"] if entry["what"] == str(wanted)), None)
-        if why is not None and wanted.name in {row.name for row in SECOND_OPINIONS}:
+        why = next((entry["why"] for entry in report["skipped"] if entry["what"] == str(foreseen)), None)
+        if why is not None and foreseen.name in {row.name for row in SECOND_OPINIONS}:
             pytest.skip(f"{self.run.shown}: {why}")
-        _fail(f"{wanted} is not among the checks that were made")
+        _fail(f"{foreseen} is not among the checks that were made")
 
     def _not_judged(self, cause: str, told_by: str | None) -> None:
         """Skip where an item of this session is certain to fail for the same cause; else fail, as nothing else might.

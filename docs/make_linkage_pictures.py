@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kin.law.support_function import Lift
     from kin.linkage.dyad import RRR
     from kin.linkage.four_bar import FourBar
-    from kin.linkage.mechanism import Mechanism, Motion
+    from kin.linkage.mechanism import LinkageMotion, Mechanism
 
     Array = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ class Pose:
     def of(cls, scene: Scene, theta: float) -> Pose:
         """One pose; the face of lift S has the normal n(theta_3), that of S1 has -u(theta_3)."""
         mechanism = scene.driven
-        motion: Motion = mechanism.at(np.array([theta]), 0)
+        motion: LinkageMotion = mechanism.at(np.array([theta]), 0)
         s, s1 = scene.lift.derivatives(np.array([theta, theta + np.pi / 2]), 0)[0]
         three, width = float(motion.frame[0, 0]), mechanism.breadth
         return cls(

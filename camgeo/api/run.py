@@ -52,7 +52,7 @@ def export(
         raise CallError(*faults)
     told = staged(recipe, progress)
     if isinstance(recipe, Recipe):
-        outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
+        outcome = pipeline.export(recipe, folder, only=only, progress=told, second_opinion=second_opinion)
     else:
         from camgeo.api import camshaft
 
@@ -69,7 +69,7 @@ def check(
     is_a("second_opinion", second_opinion, bool, "a bool")
     told = staged(recipe, progress)
     if isinstance(recipe, Recipe):
-        outcome = pipeline.check(recipe, told=told, second_opinion=second_opinion)
+        outcome = pipeline.check(recipe, progress=told, second_opinion=second_opinion)
     else:
         from camgeo.api import camshaft
 

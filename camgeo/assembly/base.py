@@ -101,27 +101,27 @@ class Site:
         return (*moving, *self.members)
 
     def hold(
-        self, name: str, group: str, at: Point, high: float, place: Place | None = None, *, radius: float = 0.0
+        self, name: str, group: str, centre: Point, high: float, place: Place | None = None, *, radius: float = 0.0
     ) -> None:
         """Add the retainer on a pin of a group, of this radius or more, above a body that ends at `high`."""
-        plates = retainer(self.s, at, high, radius=radius)
+        plates = retainer(self.s, centre, high, radius=radius)
         self.members.append(Member(f"retainer-{name}", plates, group, place, CLIP_COLOUR))
 
-    def post(self, name: str, at: Point, low: float, high: float, *, radius: float = 0.0) -> None:
+    def post(self, name: str, centre: Point, low: float, high: float, *, radius: float = 0.0) -> None:
         """Stand a pivot on the base, with its retainer of this radius or more and its share of the base plate."""
-        self.ground += pin(self.s, at, self.s.plate, low, high)
-        self.pads.append(bar((0.0, 0.0), at, self.width))
-        self.hold(name, GROUND, at, high, radius=radius)
+        self.ground += pin(self.s, centre, self.s.plate, low, high)
+        self.pads.append(bar((0.0, 0.0), centre, self.width))
+        self.hold(name, GROUND, centre, high, radius=radius)
 
     def sampled(self, place: Place) -> Array:
         """Places (n, 3) of a body over a turn."""
         found: Array = place(TURN * np.arange(LOOKS) / LOOKS, 0)[:, 0].T
         return found
 
-    def rails(self, place: Place, at: Point, angle: float) -> None:
+    def rails(self, place: Place, point: Point, angle: float) -> None:
         """Lay a guide of two rails on the base, for a slide on a line through a point."""
         s = self.s
-        x, y = (self.sampled(place)[:, :2] - at).T
+        x, y = (self.sampled(place)[:, :2] - point).T
         along = x * np.cos(angle) + y * np.sin(angle)
         over = 0.5 * BLOCK * s.bar + s.space
         first, last = float(along.min()) - over, float(along.max()) + over
@@ -129,11 +129,11 @@ class Site:
         outer = inner + s.wall
         for side in (-1.0, 1.0):
             y0, y1 = sorted((side * inner, side * outer))
-            rail = moved(box(first, y0, last, y1), *at, angle)
+            rail = moved(box(first, y0, last, y1), *point, angle)
             self.ground.append(Plate(rail, (), s.plate, s.plate + s.gap + s.link))
-        self.ground.append(Plate(moved(box(first, -outer, last, outer), *at, angle), (), 0.0, s.plate))
+        self.ground.append(Plate(moved(box(first, -outer, last, outer), *point, angle), (), 0.0, s.plate))
         middle = 0.5 * (first + last)
-        towards = (at[0] + middle * float(np.cos(angle)), at[1] + middle * float(np.sin(angle)))
+        towards = (point[0] + middle * float(np.cos(angle)), point[1] + middle * float(np.sin(angle)))
         self.pads.append(bar((0.0, 0.0), towards, self.width))
 
     def slide(self, low: float, high: float) -> list[Plate]:

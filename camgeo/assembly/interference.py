@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.assembly.body import Plate
     from camgeo.fit.pieces import ArcSpline
     from kin.clearance.clearance import Clearance
-    from kin.clearance.pose import Motion
+    from kin.clearance.pose import PlaneMotion
 
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
 LOOKS = 24  # points of each line and arc of a hole from which its walls are looked at
@@ -97,7 +97,7 @@ def swept_room(bodies: Sequence[Mover]) -> tuple[float, float, float]:
 
 def movers(assembly: Assembly) -> list[Mover]:
     """Bodies with their motions; those that share a place share the motion."""
-    motions: dict[int, Motion] = {}
+    motions: dict[int, PlaneMotion] = {}
     found = []
     for member in assembly.members:
         key = id(member.place)
@@ -107,7 +107,7 @@ def movers(assembly: Assembly) -> list[Mover]:
     return found
 
 
-def _motion(place: Place | None) -> Motion:
+def _motion(place: Place | None) -> PlaneMotion:
     """What stands or turns steadily is that; any other motion is sampled with its rates, and cubic between."""
     if place is None:
         return Still()

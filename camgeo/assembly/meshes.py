@@ -88,10 +88,10 @@ def _columns(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
     return found
 
 
-def _same(one: Outline, other: Outline) -> bool:
-    if isinstance(one, Polygon) or isinstance(other, Polygon):
-        return one is other
-    return np.array_equal(one.points, other.points) and np.array_equal(one.bulges, other.bulges)
+def _same(outline: Outline, other: Outline) -> bool:
+    if isinstance(outline, Polygon) or isinstance(other, Polygon):
+        return outline is other
+    return np.array_equal(outline.points, other.points) and np.array_equal(outline.bulges, other.bulges)
 
 
 def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Array, float]:

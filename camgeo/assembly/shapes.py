@@ -76,14 +76,14 @@ def _from_segment(point: Point, a: Point, b: Point) -> float:
     return math.hypot(px - share * dx, py - share * dy)
 
 
-def pin(s: Sizes, at: Point, foot: float, low: float, high: float, *, crowned: bool = True) -> tuple[Plate, ...]:
+def pin(s: Sizes, place: Point, foot: float, low: float, high: float, *, crowned: bool = True) -> tuple[Plate, ...]:
     """Return a pin that stands on z = `foot` and holds a body between `low` and `high`.
 
     A `crowned` one reaches through the retainer above that, any other ends with the body.
 
     Below the body it is wider, so that the body rests on a shoulder.
     """
-    x, y = at
+    x, y = place
     shoulder = low - s.gap
     plates = [Plate(disc(0.5 * s.pin, x, y), (), max(foot, shoulder), high + s.gap + s.clip if crowned else high)]
     if shoulder - foot > 0.5 * s.gap:
@@ -93,13 +93,15 @@ def pin(s: Sizes, at: Point, foot: float, low: float, high: float, *, crowned: b
     return tuple(plates)
 
 
-def retainer(s: Sizes, at: Point, high: float, diameter: float | None = None, radius: float = 0.0) -> tuple[Plate, ...]:
+def retainer(
+    s: Sizes, place: Point, high: float, diameter: float | None = None, radius: float = 0.0
+) -> tuple[Plate, ...]:
     """Return the disc pressed on a pin, of its own `diameter` if it is no common one, above a body that ends at `high`.
 
     A disc wider than a bar by nothing holds the bar, and passes wherever the bar's end does; `radius` is the least that
     holds something wider.
     """
-    x, y = at
+    x, y = place
     across = s.pin if diameter is None else diameter
     radius = max(0.5 * s.bar, 0.5 * across + s.wall, radius)
     low = high + s.gap

@@ -80,7 +80,7 @@ class Sizes:
 
 
 def sizes_of(
-    asked: MechanismAsked, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
+    request: MechanismAsked, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
 ) -> Sizes:
     """Fill in what a recipe leaves open, for a cam of this reach from the shaft and this bore, and such rollers.
 
@@ -89,27 +89,27 @@ def sizes_of(
     Raises BodyError where sizes do not go together.
     """
     most = MOST_PIN if roller is None else roller  # its wall is then a quarter of its diameter
-    pin = asked.pin or _half(min(max(0.11 * reach, LEAST_PIN), most))
-    wall = asked.wall or _half(max(2.0, 0.7 * pin))
-    clip = asked.clip or _half(max(2.0, 0.4 * pin))
+    pin = request.pin or _half(min(max(0.11 * reach, LEAST_PIN), most))
+    wall = request.wall or _half(max(2.0, 0.7 * pin))
+    clip = request.clip or _half(max(2.0, 0.4 * pin))
     sizes = Sizes(
-        clearance=asked.clearance,
-        gap=asked.gap,
-        press=asked.press,
-        space=asked.space,
+        clearance=request.clearance,
+        gap=request.gap,
+        press=request.press,
+        space=request.space,
         pin=pin,
-        bar=asked.bar or pin + max(2.0 * wall, asked.clearance + 2.0 * THIN),
-        plate=asked.plate or _half(clip + 2.0 * asked.gap + max(3.0, 0.8 * pin)),
-        link=asked.link or max(pin, 4.0),
+        bar=request.bar or pin + max(2.0 * wall, request.clearance + 2.0 * THIN),
+        plate=request.plate or _half(clip + 2.0 * request.gap + max(3.0, 0.8 * pin)),
+        link=request.link or max(pin, 4.0),
         wall=wall,
         clip=clip,
-        knob=asked.knob or _half(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
+        knob=request.knob or _half(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
     )
     _go_together(sizes, bore)
     if roller is not None and roller - 0.5 * sizes.hole < THIN:
         most = 2.0 * (roller - THIN) - sizes.clearance
         remedy = "give a pin of at most {most}, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
-        blamed = field if asked.pin is None else "mechanism.pin"
+        blamed = field if request.pin is None else "mechanism.pin"
         message = "a pin of {pin} leaves no wall in rollers of radius {roller}"
         raise BodyError(blamed, message, remedy, pin=pin, roller=roller, most=most)
     return sizes

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
-    from camgeo.curve.extremes import Extreme, Figure
+    from camgeo.curve.extremes import Extreme, ShaftFigure
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
@@ -74,7 +74,7 @@ class Surface:
     side: Side = 1
     pressure: Callable[[Array], Array] = upright
     place: Callable[[Array], Array] | None = None
-    series: Mapping[str, Figure] = field(default_factory=dict)
+    series: Mapping[str, ShaftFigure] = field(default_factory=dict)
     name: str = ""
     disc: int = 0
     layer: str = "CUT"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Follower
     from camgeo.curve import moving_frame
     from camgeo.curve.curve import Side as Before
-    from camgeo.curve.extremes import Figure
+    from camgeo.curve.extremes import ShaftFigure
     from camgeo.curve.moving_frame import CentreShape, Displacement
     from camgeo.curve.rates import Series
     from kin.law.contacts import Contact, Guide, Side, Touch
@@ -334,7 +334,7 @@ class ExactGuided(ExactLed):
 
     def _surface(self, pitch: CentreShape, path: Curve, contact: Contact[Guide, Touch], flank: Flank) -> Surface:
         name, side, radius, layer, depth, disc = flank
-        series: dict[str, Figure] = {"slope": pitch.slope}
+        series: dict[str, ShaftFigure] = {"slope": pitch.slope}
         touch = self.follower.running(contact)
         if isinstance(touch, Roller):
             series["spin"] = Spin(pitch, touch.radius, float(side))

@@ -270,10 +270,10 @@ def _looked_at(motion: Displacement) -> Array:
     return np.concatenate([motion.derivatives(low, 3, 1), motion.derivatives(over[:, 1], 3, -1)], axis=1)
 
 
-def _first(kept: _Kept, directions: Array, sizes: Iterable[float]) -> float:
+def _first(limits: _Kept, directions: Array, sizes: Iterable[float]) -> float:
     """First prime circle that keeps the limits in some direction; IntentError where none does."""
     for size in sizes:
-        if kept(directions, size).any():
+        if limits(directions, size).any():
             return size
     raise IntentError(
         "no cam was found that keeps the pressure angles and the radius of curvature together; wider limits, a smaller "
@@ -282,16 +282,16 @@ def _first(kept: _Kept, directions: Array, sizes: Iterable[float]) -> float:
     )
 
 
-def _best_direction(kept: _Kept, directions: Array, high: float, low: float, start: float) -> tuple[float, float]:
+def _best_direction(limits: _Kept, directions: Array, high: float, low: float, start: float) -> tuple[float, float]:
     """Direction of the least prime circle, and that, up to one that keeps the limits in some direction."""
-    directions = directions[kept(directions, high)]
-    if kept(directions, low).any():
+    directions = directions[limits(directions, high)]
+    if limits(directions, low).any():
         low = start
     below, above = np.full((2, len(directions)), [[low], [high]])
-    above[kept(directions, below)] = low
+    above[limits(directions, below)] = low
     while ((above - below) > _PRECISE * high).any():
         between = 0.5 * (below + above)
-        good = kept(directions, between)
+        good = limits(directions, between)
         below, above = np.where(good, below, between), np.where(good, between, above)
     best = int(np.argmin(above))
     return float(directions[best]), float(above[best])

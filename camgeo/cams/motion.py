@@ -151,19 +151,19 @@ class TableAsked(MotionAsked):
 
 
 @lru_cache(maxsize=8)
-def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -> Motion:
+def _smoothed(table: TableAsked, total: float, field: str, around: int | None) -> Motion:
     from kin.law.programme import IntentError
     from kin.law.sources.smoothing import TableError
     from kin.law.sources.table import from_table
 
-    field, samples = f"{field}.table", asked.rows.samples()
+    field, samples = f"{field}.table", table.rows.samples()
     if around != 1 and len(samples.s):
-        first = f"{asked.file}, line {samples.lines[0]}: "
-        _demand_zero(float(samples.s[0]), asked.reading, asked.rows.unit, field, first)
+        first = f"{table.file}, line {samples.lines[0]}: "
+        _demand_zero(float(samples.s[0]), table.reading, table.rows.unit, field, first)
     try:
-        return from_table(samples, asked.reading, total, around=around, field=field).motion
+        return from_table(samples, table.reading, total, around=around, field=field).motion
     except TableError as error:
-        raise IntentError(f"{asked.file}, {error.message}", field, error.at_deg) from error
+        raise IntentError(f"{table.file}, {error.message}", field, error.at_deg) from error
 
 
 @dataclass(frozen=True)
@@ -410,17 +410,17 @@ def _points(_: Field) -> Schema:
     return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
 
 
-def check_filled(asked: MotionAsked, path: str, angle: float, wanted: str, reader: Reader, *, why: str) -> None:
+def check_filled(motion: MotionAsked, path: str, angle: float, remedy: str, reader: Reader, *, why: str) -> None:
     """Note segments that do not fill their angle (rad); `why` they must."""
-    if asked.covered is None or abs(asked.covered - angle) <= _ANGLE:
+    if motion.covered is None or abs(motion.covered - angle) <= _ANGLE:
         return
-    value = f"{math.degrees(asked.covered):.10g} degrees"
-    more = why if asked.covered > angle else "an angle may be a fraction such as 180/7"
-    reader.fault_at(path, "the segments do not fill their angle", value, f"let them cover {wanted}; {more}")
+    value = f"{math.degrees(motion.covered):.10g} degrees"
+    more = why if motion.covered > angle else "an angle may be a fraction such as 180/7"
+    reader.fault_at(path, "the segments do not fill their angle", value, f"let them cover {remedy}; {more}")
 
 
-def check_whole_turn(asked: MotionAsked, path: str, reader: Reader) -> None:
+def check_whole_turn(motion: MotionAsked, path: str, reader: Reader) -> None:
     """Note segments that do not fill a turn, or their part of one."""
-    repeat = asked.repeats
+    repeat = motion.repeats
     part = "the whole turn, 360 degrees" if repeat == 1 else f"360/{repeat} degrees"
-    check_filled(asked, path, 2.0 * math.pi / repeat, part, reader, why="the next turn begins there")
+    check_filled(motion, path, 2.0 * math.pi / repeat, part, reader, why="the next turn begins there")

@@ -11,7 +11,6 @@ from camgeo.camshaft.events import event, valves_of
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.synthesis.design import designed
-from kin.judge.check import Check
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.recipe.camshaft import CamshaftRecipe, Engine, Lobe
     from camgeo.synthesis.design import Design
+    from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
 TURN = 2.0 * math.pi
@@ -122,7 +122,6 @@ def _outside_shaft(recipe: CamshaftRecipe, lobe: PlacedLobe) -> list[Check]:
     """Check that a lobe's contour stays outside the shaft."""
     if lobe.contour is None:
         return []
-    least, radius = nearest(lobe.contour), 0.5 * recipe.bars[0].diameter
-    detail = f"the shaft has a radius of {radius / recipe.mm:.9g}; a larger base radius, or a thinner shaft"
-    ok = least.value > radius
-    return [Check("shaft", ok, least.value, radius, "mm", sense="at_least", detail="" if ok else detail)]
+    from kin.judge.camshaft import outside_shaft
+
+    return [outside_shaft(nearest(lobe.contour).value, recipe.bars[0].diameter)]

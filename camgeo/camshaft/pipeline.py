@@ -62,10 +62,10 @@ def export(
     recipe: CamshaftRecipe, out: Path, *, only: tuple[str, ...] = (), progress: Callable[[str], None] | None = None
 ) -> Outcome:
     """Write and judge a camshaft's files under `out`/<name>; raises as `camgeo.output.pipeline.export` does."""
-    from camgeo.output.output_folder import Run
+    from camgeo.output.output_folder import RunFolder
 
     requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
-    with Run(out, recipe.name) as run:
+    with RunFolder(out, recipe.name) as run:
         findings = _produced(recipe, requests, run.folder, Clock(progress))
         kept = run.kept() if only else ()
         report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)

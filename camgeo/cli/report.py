@@ -90,7 +90,7 @@ def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespac
     try:
         if isinstance(recipe, RecipeErrors):
             raise recipe
-        outcome, found = shown(recipe, told=progress)
+        outcome, found = shown(recipe, progress=progress)
         files = {PAGE: page(recipe, found, outcome.report).encode("utf-8")}
         files |= _pictures(recipe, found, arguments.picture, arguments.at)
         report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
@@ -137,12 +137,12 @@ def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) ->
 
     Pictures of an earlier call stay as they are, as files do that `export --only` leaves out.
     """
-    from camgeo.output.output_folder import Family, Run
+    from camgeo.output.output_folder import Family, RunFolder
     from camgeo.report.document import encoded
     from camgeo.report.listed import listed
 
     report: Entry = {"recipe": recipe.name, "ok": ok, "files": [listed(*item) for item in files.items()]}
-    with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
+    with RunFolder(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
         kept = run_.kept()

@@ -106,12 +106,12 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
     A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
     `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
     """
-    from camgeo.output.output_folder import Family, Run
+    from camgeo.output.output_folder import Family, RunFolder
     from camgeo.report.document import encoded
     from camgeo.report.listed import listed
 
     files: dict[str, bytes] = {}
-    with Run(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
+    with RunFolder(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
         try:
             from camgeo.sweep.study.picture import picture
 

@@ -363,10 +363,10 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     return [(float(begin[i]), float(end[i]), False) for i in kept if end[i] > begin[i]]
 
 
-def _joined(curve: Curve, found: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
+def _joined(curve: Curve, pieces: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
     """Join pieces that touch, also across the seam of a closed run."""
     merged: list[list[Any]] = []
-    for start, end, still in sorted(found):
+    for start, end, still in sorted(pieces):
         if merged and start <= merged[-1][1] and merged[-1][2] == still:
             merged[-1][1] = end
         else:

@@ -31,7 +31,7 @@ ROUNDING = 1e-14  # of the figure and its slope: to this a slope is known
 ORDER = 4  # of the variable: a figure may use up two derivatives and still tell two
 
 
-class Figure(Protocol):
+class ShaftFigure(Protocol):
     """A figure of the shaft angle, as a jet or ball jet; the side decides at breaks."""
 
     def __call__(self, tau: Series, side: Side = 1, /) -> Series:
@@ -53,19 +53,19 @@ class Extreme:
         return self.room if self.room > NOISE * max(abs(self.value), 1.0) else 0.0
 
 
-def least(figure: Figure, stretches: Array) -> Extreme:
+def least(figure: ShaftFigure, stretches: Array) -> Extreme:
     """Least value of a figure over stretches (m, 2), none of which spans a break."""
     return both(figure, stretches)[0]
 
 
-def both(figure: Figure, stretches: Array) -> tuple[Extreme, Extreme]:
+def both(figure: ShaftFigure, stretches: Array) -> tuple[Extreme, Extreme]:
     """Least and greatest value of a figure over stretches (m, 2), none of which spans a break."""
     seen = _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS))
     lowest = _greatest(lambda tau, side=1: -figure(tau, side), seen.negative())
     return Extreme(-lowest.value, lowest.at, lowest.room), _greatest(figure, seen)
 
 
-def surely_positive(figure: Figure, stretches: Array) -> bool:
+def surely_positive(figure: ShaftFigure, stretches: Array) -> bool:
     """Whether bounds over a few intervals already prove a figure above 0: cheaper than `least`, which says by how much.
 
     False leaves it open.
@@ -76,7 +76,7 @@ def surely_positive(figure: Figure, stretches: Array) -> bool:
     return bool((below[0] > 0.0).all())  # not where a bound is nan
 
 
-def greatest(figure: Figure, stretches: Array) -> Extreme:
+def greatest(figure: ShaftFigure, stretches: Array) -> Extreme:
     """Greatest value of a figure over stretches (m, 2), none of which spans a break; limits at breaks count."""
     return _greatest(figure, _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS)))
 
@@ -91,7 +91,7 @@ class _Seen(NamedTuple):
     above: Array
 
     @staticmethod
-    def of(figure: Figure, low: Array, high: Array) -> _Seen:
+    def of(figure: ShaftFigure, low: Array, high: Array) -> _Seen:
         """Look at the ends, and bound."""
         rows = figure(Jet.variable(np.concatenate([low, high]), ORDER), np.repeat([1, -1], low.size)).derivatives()
         return _Seen(low, high, rows, *figure(BallJet.variable(low, high, ORDER)).bounds())
@@ -101,24 +101,24 @@ class _Seen(NamedTuple):
         return _Seen(self.low, self.high, -self.rows, -self.above, -self.below)
 
 
-def _greatest(figure: Figure, seen: _Seen) -> Extreme:
-    best, at, size = -np.inf, float(seen.low[0]), 0.0
+def _greatest(figure: ShaftFigure, samples: _Seen) -> Extreme:
+    best, at, size = -np.inf, float(samples.low[0]), 0.0
     for _ in range(LEVELS):
-        low, high = seen.low, seen.high
-        size = max(size, float(np.abs(seen.rows[0]).max()))
-        tops, rows = _with_tops(figure, low, high, seen.rows)
+        low, high = samples.low, samples.high
+        size = max(size, float(np.abs(samples.rows[0]).max()))
+        tops, rows = _with_tops(figure, low, high, samples.rows)
         places, values = np.concatenate([low, high, tops]), rows[0].ravel()
         top = int(np.argmax(values))
         if values[top] > best:
             best, at = float(values[top]), float(places[top])
-        reach = _most(seen, rows)
+        reach = _most(samples, rows)
         open_ = ~(reach <= best + SHARPNESS * size)
         if not open_.any():
             return Extreme(best, at, SHARPNESS * size)
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        seen = _Seen.of(figure, *divided(low, high, PARTS))
+        samples = _Seen.of(figure, *divided(low, high, PARTS))
     return Extreme(best, at, float(reach.max()) - best)
 
 
@@ -129,7 +129,7 @@ def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
     return knots[:, :-1].ravel(), knots[:, 1:].ravel()
 
 
-def _with_tops(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
+def _with_tops(figure: ShaftFigure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
     """Tops (n,) that Newton's method finds inside the intervals; value and slope at low end, high end, top: (2, 3, n).
 
     Of an interval between whose ends the slope does not fall through 0 the low end stands for the top.
@@ -149,11 +149,11 @@ def _with_tops(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Ar
     return tops, values
 
 
-def _most(seen: _Seen, rows: Array) -> Array:
+def _most(samples: _Seen, rows: Array) -> Array:
     """Upper bound of the figure over each interval (n,), of value and slope at three places (2, 3, n)."""
-    below, above = seen.below, seen.above
+    below, above = samples.below, samples.above
     top = rows[0, :2].max(axis=0)
-    width = seen.high - seen.low
+    width = samples.high - samples.low
     dip = np.where((below[1] >= 0.0) | (above[1] <= 0.0), 0.0, np.maximum(-below[2], 0.0) * width**2 / 8.0)
     reach: Array = np.fmin(top + dip, above[0])
     slope = np.abs(rows[1]) + ROUNDING * np.abs(rows).max(axis=(0, 1))

@@ -106,9 +106,9 @@ class OfLaw(ABC, Generic[SourceT]):
         return steady[:, 0] / steady[:, 1]
 
 
-def stretches(of: Source | Shape) -> Array:
+def stretches(shape: Source | Shape) -> Array:
     """Ends (m, 2) of the stretches between breaks; the whole turn where there is none."""
-    breaks = of.breaks if len(of.breaks) else np.zeros(1)
+    breaks = shape.breaks if len(shape.breaks) else np.zeros(1)
     return np.column_stack([breaks, np.append(breaks[1:], breaks[0] + 2.0 * np.pi)])
 
 

@@ -32,7 +32,7 @@ VERSION = 7  # of the kernel
 Shape = Any
 
 
-class Loop(NamedTuple):
+class Wire(NamedTuple):
     """A closed wire, its edges in order, and the vertex at the start of each."""
 
     wire: Shape
@@ -141,7 +141,7 @@ def raised(shape: Shape, z: float) -> Shape:
     return BRepBuilderAPI_Transform(shape, up, True).Shape()
 
 
-def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
+def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
     """Walls on the outermost outline; its lowest and its highest loop."""
     if solid.chamfer is None:
         return stack.wall(outline, 0.0, solid.thickness)
@@ -164,7 +164,7 @@ class _Stack:
     def __init__(self) -> None:
         self.faces: list[Shape] = []
 
-    def loop(self, outline: Outline, z: float) -> Loop:
+    def loop(self, outline: Outline, z: float) -> Wire:
         """Closed wire of an outline at a height."""
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 
@@ -181,9 +181,9 @@ class _Stack:
                 raise RegionError(f"Open CASCADE makes no edge of piece {k}: {made.Error().name}")
             edges.append(made.Edge())
             maker.Add(edges[-1])
-        return Loop(maker.Wire(), edges, vertices)
+        return Wire(maker.Wire(), edges, vertices)
 
-    def wall(self, outline: Outline, low: float, high: float) -> tuple[Loop, Loop]:
+    def wall(self, outline: Outline, low: float, high: float) -> tuple[Wire, Wire]:
         """Faces that stand on an outline between two heights; the loops below and above."""
         from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
         from OCP.gp import gp_Vec
@@ -193,9 +193,9 @@ class _Stack:
         self.faces += _parts(prism.Shape(), "face")
         edges = [prism.LastShape(edge) for edge in foot.edges]
         vertices = [prism.LastShape(vertex) for vertex in foot.vertices]
-        return foot, Loop(_cast(prism.LastShape(), "wire"), edges, vertices)
+        return foot, Wire(_cast(prism.LastShape(), "wire"), edges, vertices)
 
-    def slope(self, inner: tuple[Loop, ArcSpline, float], outer: tuple[Loop, ArcSpline, float]) -> None:
+    def slope(self, inner: tuple[Wire, ArcSpline, float], outer: tuple[Wire, ArcSpline, float]) -> None:
         """Cones and planes at 45 degrees between an outline and its parallel inside, each with its loop and height."""
         from OCP.BRep import BRep_Builder
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire

@@ -178,13 +178,13 @@ def _ranges_of(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Ar
     return bottom, top, seen.distance.min(axis=1), seen.distance.max(axis=1)
 
 
-def _bends(seen: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
+def _bends(samples: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
     """Bounds of f'' over each step (n * nodes,), and where they are proved; `k` is the curvature of its piece."""
-    step = np.diff(seen.t).ravel()
-    fa, fb = _ends(seen.distance)
-    angle = np.maximum(*_ends(np.abs(seen.angle)))
-    speed_a, speed_b = _ends(seen.speed)
-    turn_a, turn_b = _ends(seen.turn)
+    step = np.diff(samples.t).ravel()
+    fa, fb = _ends(samples.distance)
+    angle = np.maximum(*_ends(np.abs(samples.angle)))
+    speed_a, speed_b = _ends(samples.speed)
+    turn_a, turn_b = _ends(samples.turn)
     square = step**2 / 8.0
     speed = np.maximum(np.abs(speed_a), np.abs(speed_b)) + square * bounds.speed_bend
     speed = np.minimum(speed, np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)))

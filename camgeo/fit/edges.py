@@ -43,7 +43,7 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Seen:
+class Sagittas:
     """Sagitta of each edge over its vertices, as seen (n,), and its derivatives by the edge's two nodes."""
 
     load: Array
@@ -85,19 +85,19 @@ def frames(curve: Curve, run: Run, nodes: Array) -> Frame:
     return at.joined(at.split(1)[0])
 
 
-def placed(at: Frame, run: Run, nodes: Array, away: Array) -> Placed:
+def placed(frame: Frame, run: Run, nodes: Array, away: Array) -> Placed:
     """Edges between vertices that stand `away` (n + 1,) outside the frames at the nodes of a run.
 
     A corner of an open run stays on the curve.
     """
     # where a slight bend the other way was not worth two crossings, a vertex on the far side would only add to it
-    away = np.where(away * at.turn < 0.0, 0.0, away)
+    away = np.where(away * frame.turn < 0.0, 0.0, away)
     away[-1] = away[0]
     if not run.closed:
         away[[0, -1]] = 0.0
-    normal, heading = at.normal, at.tangent
-    pace = at.speed + away * at.turn
-    vertices = at.point + away[:, None] * normal
+    normal, heading = frame.normal, frame.tangent
+    pace = frame.speed + away * frame.turn
+    vertices = frame.point + away[:, None] * normal
     chord = np.diff(vertices, axis=0)
     tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
     across = columns(tangent[:, 1], -tangent[:, 0])
@@ -118,7 +118,7 @@ def placed(at: Frame, run: Run, nodes: Array, away: Array) -> Placed:
     return Placed(nodes, vertices, away, tangent, behind, beyond, lean, low, high, edge)
 
 
-def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
+def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Sagittas:
     """How high the curve rises over each edge from vertices that stand off by `tolerance`: seen, not proved.
 
     Of an edge whose ends stand on different sides, which crosses an inflection, both sides count. Derivatives are those
@@ -160,7 +160,7 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     best = order[last]
     u = np.clip(share[best] / chord, 0.0, 1.0)
     side = sides[:-1]
-    return Seen(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1])
+    return Sagittas(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1])
 
 
 def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:

@@ -245,13 +245,13 @@ def _arcs(layout: _Layout, joints: _Joints, frame: Frame) -> _Arcs:
     return _Arcs(frame, chain, chord, np.sqrt(square), cross(chord, mean))
 
 
-def _peaks(layout: _Layout, arcs: _Arcs, at: Frame) -> _Peaks:
+def _peaks(layout: _Layout, arcs: _Arcs, frame: Frame) -> _Peaks:
     """Extremes of the curve's distance outside the arcs, from a frame near each (2n)."""
     chain = arcs.chain
-    point = at.point.reshape(-1, 2, 2)
+    point = frame.point.reshape(-1, 2, 2)
     f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], point)
-    angle = -np.sum(at.tangent.reshape(-1, 2, 2) * away, axis=2)
-    speed, turn = at.speed.reshape(-1, 2), at.turn.reshape(-1, 2)
+    angle = -np.sum(frame.tangent.reshape(-1, 2, 2) * away, axis=2)
+    speed, turn = frame.speed.reshape(-1, 2), frame.turn.reshape(-1, 2)
     # f' = -sigma angle, f'' = -sigma bend
     bend = turn - chain.curvature[:, None] * speed
     sharp = layout.sign * bend > 0.0

@@ -66,10 +66,10 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
     return roots, 1.0 if positive[0] else -1.0
 
 
-def reach(at: Frame, tolerance: float) -> Array:
+def reach(frame: Frame, tolerance: float) -> Array:
     """How far in parameter (n,) edges within a tolerance reach to each side of inflections: ``k' a^3 = 24 e``."""
     with np.errstate(divide="ignore"):
-        far: Array = np.cbrt(24.0 * tolerance / (np.abs(at.turn_slope) * at.speed))
+        far: Array = np.cbrt(24.0 * tolerance / (np.abs(frame.turn_slope) * frame.speed))
     return far
 
 
@@ -81,17 +81,17 @@ class Crossings:
     high: Array
 
 
-def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float) -> Crossings:
-    """Longest edges across the inflections `at` (n,) that keep within the tolerance, from a first guess `low`, `high`.
+def crossings(curve: Curve, nodes: Array, low: Array, high: Array, tolerance: float) -> Crossings:
+    """Longest edges across inflections, `nodes` (n,), that keep within the tolerance, from a first guess `low`, `high`.
 
     Newton's method for the two extremes between the ends to be as large as the ends' own distance; each extreme is
     followed as its edge moves. An edge that does not settle is returned as its first guess.
     """
-    count = at.size
+    count = nodes.size
     if not count:
         return Crossings(low, high)
     first_low, first_high = low, high
-    near, far = 0.5 * (at + low), 0.5 * (at + high)
+    near, far = 0.5 * (nodes + low), 0.5 * (nodes + high)
     settled = np.zeros(count, dtype=bool)
     enough = max(_SETTLED * tolerance, rounding(curve.size))
     for _ in range(_STEPS):
@@ -120,15 +120,15 @@ def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float
             determinant = a[0] * b[1] - a[1] * b[0]
             step_low = (miss[0] * b[1] - miss[1] * b[0]) / determinant
             step_high = (a[0] * miss[1] - a[1] * miss[0]) / determinant
-        settled = (np.abs(miss) <= enough).all(axis=0) & (np.abs(move[0]) < at - low)
+        settled = (np.abs(miss) <= enough).all(axis=0) & (np.abs(move[0]) < nodes - low)
         if settled.all():
             break
         usable = np.isfinite(step_low) & np.isfinite(step_high) & ~settled
-        limit_low, limit_high = _MOST_STEP * (at - low), _MOST_STEP * (high - at)
+        limit_low, limit_high = _MOST_STEP * (nodes - low), _MOST_STEP * (high - nodes)
         low = low + np.where(usable, np.clip(step_low, -limit_low, limit_low), 0.0)
         high = high + np.where(usable, np.clip(step_high, -limit_high, limit_high), 0.0)
         moved = np.where(np.isfinite(move), move, 0.0)
         # at the inflection itself there is no bend to follow an extreme by
-        near = np.clip(near + moved[0], low, at - _CLEAR * (at - low))
-        far = np.clip(far + moved[1], at + _CLEAR * (high - at), high)
+        near = np.clip(near + moved[0], low, nodes - _CLEAR * (nodes - low))
+        far = np.clip(far + moved[1], nodes + _CLEAR * (high - nodes), high)
     return Crossings(np.where(settled, low, first_low), np.where(settled, high, first_high))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.edges import Edges, Seen, frames, look, placed, proved
+from camgeo.fit.edges import Edges, Sagittas, frames, look, placed, proved
 from camgeo.fit.inflection import REACH, crossings, inflections, reach
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
@@ -89,11 +89,11 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
     return Polygon(np.concatenate(parts), Bound(outward, inward).widened(rounding(size)))
 
 
-def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
-    """Edges of one run, proved to lie within the tolerance; `asked` is what it was before rounding was taken off."""
+def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
+    """Edges of one run, proved to lie within the tolerance; `full` is what it was before rounding was taken off."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
-    check_count(needed, "straight edges", asked, 2.0, lost=asked - tolerance)
+    check_count(needed, "straight edges", full, 2.0, lost=full - tolerance)
     bends, sense = inflections(curve, densities, tolerance)
     best = math.inf
     for aim in AIMS:
@@ -105,7 +105,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
         best = min(best, max(edges.extremes))
         if best <= tolerance:
             return edges
-    raise ToleranceError(f"a polygon within {asked:.3g} mm was not reached; the best was {best:.3g} mm", best)
+    raise ToleranceError(f"a polygon within {full:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
 def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
@@ -213,7 +213,7 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
         busy = False
         for i, part in enumerate(parts):
             mine = owner == i
-            busy |= _improve(part, Seen(seen.load[mine], seen.by_low[mine], seen.by_high[mine]), allowed, noise)
+            busy |= _improve(part, Sagittas(seen.load[mine], seen.by_low[mine], seen.by_high[mine]), allowed, noise)
         for first, second in pairwise(parts):
             if first.crossed:
                 over = float(seen.load[(owner < 0) & (nodes[:-1] == first.nodes[-1])].max(initial=0.0)) / allowed
@@ -225,12 +225,12 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
     return parts, tolerance if crossed else min(height, tolerance)
 
 
-def _improve(part: _Part, seen: Seen, allowed: float, noise: float) -> bool:
+def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bool:
     """Give a part better nodes; False where it has the fewest edges and none is too high.
 
     Loads are seen with a rounding of `noise`, which no levelling takes off.
     """
-    load = seen.load
+    load = samples.load
     shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
     best = max(part.least, math.ceil(shares - 1e-9))
     fits = float(load.max()) <= allowed * EXACT
@@ -242,7 +242,7 @@ def _improve(part: _Part, seen: Seen, allowed: float, noise: float) -> bool:
     elif fits:
         return False
     elif best == part.count and part.tried < ROUNDS and float(load.max() - load.mean()) > noise:
-        part.nodes = levelled(part.nodes, load, seen.by_low, seen.by_high)
+        part.nodes = levelled(part.nodes, load, samples.by_low, samples.by_high)
         part.tried += 1
     else:
         part.least = max(part.count + 1, math.ceil(shares * (1.0 + 0.5 * noise / allowed) - 1e-9))

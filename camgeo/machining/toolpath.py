@@ -26,7 +26,7 @@ QUARTER = math.tan(math.pi / 8.0)  # bulge of a quarter turn
 
 
 @dataclass(frozen=True, eq=False)
-class Loop:
+class ClosedPath:
     """A closed path with its ways in and out: chains of points (n, 2), bulges (n - 1,) of what lies between them."""
 
     points: Array
@@ -41,7 +41,7 @@ class Pass:
     """One way round at one height z, mm, 0 at the top of the stock."""
 
     z: float
-    loop: Loop
+    loop: ClosedPath
 
 
 def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
@@ -80,7 +80,7 @@ def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcS
     return ArcSpline(points, np.full(4, QUARTER), EXACT)
 
 
-def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
+def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> ClosedPath:
     """A closed counter-clockwise path, run the way asked for, with quarter turns of radius `lead` to it and from it.
 
     Both touch the path in its first point, from without it (`side` 1) or from within (-1).
@@ -94,7 +94,7 @@ def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
     enter, leave = start + lead * (away - forward), start + lead * (away + forward)
     turn = forward[0] * away[1] - forward[1] * away[0]  # 1 where the way in turns left
     bend = math.copysign(QUARTER, turn)
-    return Loop(
+    return ClosedPath(
         np.concatenate([enter[None], points, start[None], leave[None]]),
         np.concatenate([[bend], bulges, [bend]]),
         1,
@@ -102,10 +102,10 @@ def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
     )
 
 
-def plunged(path: ArcSpline, *, clockwise: bool) -> Loop:
+def plunged(path: ArcSpline, *, clockwise: bool) -> ClosedPath:
     """A closed counter-clockwise path, run the way asked for, in whose first point the cutter comes down."""
     points, bulges = _run(path, clockwise=clockwise)
-    return Loop(np.concatenate([points, points[:1]]), bulges, 0, len(points))
+    return ClosedPath(np.concatenate([points, points[:1]]), bulges, 0, len(points))
 
 
 def _run(path: ArcSpline, *, clockwise: bool) -> tuple[Array, Array]:
@@ -133,9 +133,11 @@ def depths(thickness: float, depth_of_cut: float) -> list[float]:
     return [-thickness * (k + 1) / count for k in range(count)]
 
 
-def passes(rough: Sequence[Loop], fine: Sequence[Loop], asked: Manufacture, depth: float) -> list[Pass]:
+def passes(
+    rough: Sequence[ClosedPath], fine: Sequence[ClosedPath], manufacture: Manufacture, depth: float
+) -> list[Pass]:
     """Passes down to a depth: round all paths at each height, or round rough ones and last, with an allowance, fine."""
-    levels = depths(depth, asked.depth_of_cut or depth)
-    if not rough or asked.allowance is None:
+    levels = depths(depth, manufacture.depth_of_cut or depth)
+    if not rough or manufacture.allowance is None:
         return [Pass(z, loop) for z in levels for loop in (*rough, *fine)]
     return [*(Pass(z, loop) for z in levels for loop in rough), *(Pass(levels[-1], loop) for loop in fine)]

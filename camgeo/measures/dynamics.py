@@ -48,7 +48,7 @@ class _Purse:
         self._places, self._searches = max(0, self._places - places), self._searches - 1
 
 
-class Found(NamedTuple):
+class DynamicsResult(NamedTuple):
     """The report's section, and the checks."""
 
     section: dict[str, Any]
@@ -68,7 +68,7 @@ class _Scene(NamedTuple):
     name: str
 
 
-def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Found:
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> DynamicsResult:
     """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid that was read.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
@@ -111,15 +111,15 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
         "force_unit": "N" if scene.name != "deg" else "N m",
         "runs": entries,
     }
-    return Found(section, tuple(checks))
+    return DynamicsResult(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, train: Train, design: Design, runs: int) -> _Scene:
+def _scene(recipe: Recipe, dynamics: Dynamics, train: Train, design: Design, runs: int) -> _Scene:
     from kin.law.contacts import METRE
 
     if design.driven is None:
         follower = design.exact.gauge
-        if asked.backlash is not None and len(follower.contacts) == 1:
+        if dynamics.backlash is not None and len(follower.contacts) == 1:
             why = f"a single {design.follower.name} has no backlash"
             raise recipe.error("dynamics.backlash", why, None, "give preload")
         swings, found = follower.unit == "deg", follower.rests
@@ -130,7 +130,7 @@ def _scene(recipe: Recipe, asked: Dynamics, train: Train, design: Design, runs: 
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, asked, train, _Purse(runs), _Purse(runs), found, unit, name)
+    return _Scene(recipe, dynamics, train, _Purse(runs), _Purse(runs), found, unit, name)
 
 
 def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
@@ -222,10 +222,10 @@ def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Dr
     return entry, Check(LEAST_BACKLASH.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
 
 
-def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
-    force = found.force
+def _steady(scene: _Scene, steady: Steady) -> dict[str, Any]:
+    force = steady.force
     return {
-        "holds": found.holds,
+        "holds": steady.holds,
         "peak_force": force.greatest,
         "peak_at_deg": degrees(force.greatest_at),
         "least_force": force.least,
@@ -236,7 +236,7 @@ def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
                 "dwell_to_deg": round(degrees(rest.end), _DIGITS) or 360.0,
                 "amplitude": scene.unit * rest.amplitude,
             }
-            for rest in found.residual
+            for rest in steady.residual
         ],
     }
 

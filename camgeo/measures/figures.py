@@ -78,14 +78,14 @@ _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEA
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
 
 
-def _least(found: Iterable[Measured]) -> Measured:
+def _least(figures: Iterable[Measured]) -> Measured:
     """The least of what was measured of each surface, `NO_CONTOUR` of none; one without a value is the least."""
-    return min(found, key=lambda one: -math.inf if one.value is None else one.value, default=NO_CONTOUR)
+    return min(figures, key=lambda one: -math.inf if one.value is None else one.value, default=NO_CONTOUR)
 
 
-def _greatest(found: Iterable[Measured]) -> Measured:
+def _greatest(figures: Iterable[Measured]) -> Measured:
     """The greatest, in the same way."""
-    return max(found, key=lambda one: math.inf if one.value is None else one.value, default=NO_CONTOUR)
+    return max(figures, key=lambda one: math.inf if one.value is None else one.value, default=NO_CONTOUR)
 
 
 def of_design(
@@ -144,9 +144,9 @@ def _of_check(check: Check) -> Measured:
 def _radius(_: Recipe, design: Design) -> Measured:
     """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
 
-    def metal(made: SurfaceDesign) -> Measured:
-        value = None if made.bent.value is None else made.bent.value - made.surface.radius
-        return Measured(value, "mm", made.bent.at_deg, made.bent.detail, made.surface.name)
+    def metal(surface: SurfaceDesign) -> Measured:
+        value = None if surface.bent.value is None else surface.bent.value - surface.surface.radius
+        return Measured(value, "mm", surface.bent.at_deg, surface.bent.detail, surface.surface.name)
 
     return _least(map(metal, design.surfaces))
 
@@ -343,12 +343,12 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     return found
 
 
-def _in_time(made: Measured, name: str, rpm: float) -> Measured:
+def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
     """A derivative by the shaft angle as one by time, the shaft turning evenly."""
     order = _ORDERS[_IN_TIME[name]]
-    unit = made.unit.partition("/")[0] + FIGURES[name].per
-    value = None if made.value is None else made.value * (rpm * TURN / 60.0) ** order
-    return Measured(value, unit, made.at_deg, made.detail)
+    unit = figure.unit.partition("/")[0] + FIGURES[name].per
+    value = None if figure.value is None else figure.value * (rpm * TURN / 60.0) ** order
+    return Measured(value, unit, figure.at_deg, figure.detail)
 
 
 def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:

@@ -42,10 +42,10 @@ class FileResult(OfSurfaces):
 
     @staticmethod
     def of(
-        path: Path, request: FileRequest, tolerance: float, verdict: Verdict, made: tuple[int, Bound] | None = None
+        path: Path, request: FileRequest, tolerance: float, verdict: Verdict, fit: tuple[int, Bound] | None = None
     ) -> FileResult:
-        """Give what is known of a file by its verdict, and if it was `made` here number of pieces and proved bound."""
-        pieces, bound = (verdict.pieces, None) if made is None else made
+        """Give what is known of a file by its verdict, and if it was `fit` here number of pieces and proved bound."""
+        pieces, bound = (verdict.pieces, None) if fit is None else fit
         read = verdict.surfaces, verdict.closures, verdict.bodies
         return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)
 

@@ -354,8 +354,8 @@ def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
     )
 
 
-def _share(recipe: Recipe, name: RemarkName, asked: tuple[str, float], length: float) -> Remark | None:
-    (what, value), rule = asked, SHARE * length
+def _share(recipe: Recipe, name: RemarkName, limit: tuple[str, float], length: float) -> Remark | None:
+    (what, value), rule = limit, SHARE * length
     if value <= rule:
         return None
     told = f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"

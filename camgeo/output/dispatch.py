@@ -91,6 +91,7 @@ SURFACES: dict[tuple[str, str | None], int] = {
     ("csv", "lift"): 1,
     ("csv", "inspection"): 2,
     ("csv", "forces"): 2,
+    ("csv", "trace"): 1,
 }
 """How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
 

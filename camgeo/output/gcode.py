@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.machining.milling import RoundHole
-    from camgeo.machining.toolpath import Loop, Pass
+    from camgeo.machining.toolpath import ClosedPath, Pass
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Manufacture
@@ -68,13 +68,13 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     return Made(made.files, (*checks, *made.checks))
 
 
-def _told_apart(job: Job, asked: Manufacture) -> list[float]:
+def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:
     """Lengths by which places of the program lie apart, mm."""
     pocket, thickness = pocket_of(job.design), job.recipe.part.thickness or 0.0
-    step = -max(depths(depth, asked.depth_of_cut or math.inf)[0] for depth in (pocket or thickness, thickness))
+    step = -max(depths(depth, manufacture.depth_of_cut or math.inf)[0] for depth in (pocket or thickness, thickness))
     found, _ = milled_holes(job.recipe, job.design)
-    lead = min([asked.lead, *(0.5 * (hole.radius - asked.radius) for hole in found)])
-    return [length for length in (step, asked.safe_height, asked.allowance, lead) if length]
+    lead = min([manufacture.lead, *(0.5 * (hole.radius - manufacture.radius) for hole in found)])
+    return [length for length in (step, manufacture.safe_height, manufacture.allowance, lead) if length]
 
 
 def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
@@ -104,14 +104,14 @@ def _contour(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass]
     return passes(loops[:-1], loops[-1:], asked, thickness), [fine]
 
 
-def _round(job: Job, asked: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> Loop:
+def _round(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
     """A path along a surface with ways in and out, which have `room`, mm; where they would vanish it has none."""
-    begun = begun_at(path, asked.start)
+    begun = begun_at(path, manufacture.start)
     drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-    clockwise = (asked.direction == "climb") == (side > 0)
+    clockwise = (manufacture.direction == "climb") == (side > 0)
     if LEAD * room < LEAST_LEAD:
         return plunged(drawn, clockwise=clockwise)
-    lead = asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn))
+    lead = manufacture.lead if side > 0 else min(manufacture.lead, 0.5 * bend_at_begin(drawn))
     return led(drawn, min(lead, LEAD * room), side=side, clockwise=clockwise)
 
 
@@ -147,23 +147,23 @@ def _pocket(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass],
     return passes(first, last, asked, depth), fine
 
 
-def _holes(job: Job, asked: Manufacture) -> list[tuple[str, list[Pass]]]:
+def _holes(job: Job, manufacture: Manufacture) -> list[tuple[str, list[Pass]]]:
     """Passes of the holes that are milled, by name."""
     found, _ = milled_holes(job.recipe, job.design)
-    return [(hole.name, _hole(job, asked, hole)) for hole in found]
+    return [(hole.name, _hole(job, manufacture, hole)) for hole in found]
 
 
-def _hole(job: Job, asked: Manufacture, hole: RoundHole) -> list[Pass]:
+def _hole(job: Job, manufacture: Manufacture, hole: RoundHole) -> list[Pass]:
     sign = -1.0 if job.recipe.rotation == "ccw" else 1.0
-    (x, y), reach = hole.centre, hole.radius - asked.radius
+    (x, y), reach = hole.centre, hole.radius - manufacture.radius
 
-    def loop(radius: float) -> Loop:
-        path = circle((x, sign * y), radius, sign * asked.start)
-        return led(path, min(asked.lead, 0.5 * radius), side=-1, clockwise=asked.direction != "climb")
+    def loop(radius: float) -> ClosedPath:
+        path = circle((x, sign * y), radius, sign * manufacture.start)
+        return led(path, min(manufacture.lead, 0.5 * radius), side=-1, clockwise=manufacture.direction != "climb")
 
-    left = reach - (asked.allowance or 0.0)
-    rough = [] if asked.allowance is None or left <= 0.5 * asked.allowance else [loop(left)]
-    return passes(rough, [loop(reach)], asked, job.recipe.part.thickness or 0.0)
+    left = reach - (manufacture.allowance or 0.0)
+    rough = [] if manufacture.allowance is None or left <= 0.5 * manufacture.allowance else [loop(left)]
+    return passes(rough, [loop(reach)], manufacture, job.recipe.part.thickness or 0.0)
 
 
 def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str, list[Pass]]], count: int) -> None:

@@ -82,7 +82,7 @@ class _Swap:
         return _Swap(entry["target"], tuple(entry["come"]), tuple(entry["go"]), tuple(entry["before"]))
 
 
-class Run:
+class RunFolder:
     """One run's place in the output folder, as a context: files are written to `folder`, then committed or rejected.
 
     Left without either, or by an exception, nothing has changed. Raises SurroundingsError where another run of this

@@ -46,7 +46,7 @@ def export(
     out: Path,
     *,
     only: tuple[str, ...] = (),
-    told: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] | None = None,
     second_opinion: bool = False,
 ) -> Outcome:
     """Write and judge a recipe's files under `out`/<name>; see the module. `second_opinion` asks other libraries too.
@@ -54,11 +54,11 @@ def export(
     Raises RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk does
     not do what it should. A failed check raises nothing: the set goes to `out`/<name>.rejected.
     """
-    from camgeo.output.output_folder import Run
+    from camgeo.output.output_folder import RunFolder
 
-    clock = Clock(told)
+    clock = Clock(progress)
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
-    with Run(out, recipe.name) as run:
+    with RunFolder(out, recipe.name) as run:
         _, found = _produced(recipe, requests, run.folder, clock, second_opinion=second_opinion)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
@@ -68,23 +68,23 @@ def export(
     return Outcome(report, found.ok, folder)
 
 
-def check(recipe: Recipe, *, told: Callable[[str], None] | None = None, second_opinion: bool = False) -> Outcome:
+def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False) -> Outcome:
     """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
     import tempfile
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         files = recipe.export.files
-        _, found = _produced(recipe, files, Path(folder), Clock(told), second_opinion=second_opinion)
+        _, found = _produced(recipe, files, Path(folder), Clock(progress), second_opinion=second_opinion)
         return Outcome(document(recipe, found), found.ok, None)
 
 
-def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
+def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
     """Make and judge everything as `check` does; also what a page shows of it. Raises as `export` does."""
     import tempfile
     from pathlib import Path
 
-    clock = Clock(told)
+    clock = Clock(progress)
     requests = tuple(request for request in recipe.export.files if request.kind != "html")
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         design, found = _produced(recipe, requests, Path(folder), clock)
@@ -188,21 +188,21 @@ def _produced(
     return design, found
 
 
-def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult, clock: Clock) -> Findings:
+def _with_page(recipe: Recipe, design: Design, findings: Findings, file: FileResult, clock: Clock) -> Findings:
     """Write the page on everything that was found; it is there also where no cam is made."""
     from camgeo.report.page.page import page
 
-    gathered = _content(recipe, design, found, clock)
+    gathered = _content(recipe, design, findings, clock)
     with clock.stage("write html"):
-        file.path.write_bytes(page(recipe, gathered, document(recipe, found)).encode("utf-8"))
-    return replace(found, files=(*found.files, file), stages=tuple(clock.stages))
+        file.path.write_bytes(page(recipe, gathered, document(recipe, findings)).encode("utf-8"))
+    return replace(findings, files=(*findings.files, file), stages=tuple(clock.stages))
 
 
-def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
+def _content(recipe: Recipe, design: Design, findings: Findings, clock: Clock) -> Content:
     from camgeo.report.page.content import content
 
     with clock.stage("page"):
-        return content(recipe, design, [file for file in found.files if file.shows_cam])
+        return content(recipe, design, [file for file in findings.files if file.shows_cam])
 
 
 def _findings(

@@ -334,40 +334,40 @@ def own_bounds(name: str) -> Table:
 ALL = "parts: all"
 
 
-def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]) -> bool:
+def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]) -> bool:
     """Say whether a recipe has what a figure needs, by what its cam offers and the paths of the fields given.
 
     `ALL` is given where a file shows every body.
     """
     match needs:
         case "linkage" | "dwell":
-            return needs in given
+            return needs in paths
         case "backlash" | "preload":
-            return {f"dynamics.{needs}", "dynamics.stiffness"} <= given
+            return {f"dynamics.{needs}", "dynamics.stiffness"} <= paths
         case "forces":
-            return "dynamics" in given and given.isdisjoint({"linkage", "dynamics.stiffness"})
+            return "dynamics" in paths and paths.isdisjoint({"linkage", "dynamics.stiffness"})
         case "material":
-            return "dynamics.material" in given and there("forces", offers, given)
+            return "dynamics.material" in paths and there("forces", offers, paths)
         case "reaction":
-            return "dynamics.guide" in given and there("forces", offers, given)
+            return "dynamics.guide" in paths and there("forces", offers, paths)
         case "bearing":
-            return "rolling" in offers and there("forces", offers, given)
+            return "rolling" in offers and there("forces", offers, paths)
         case "follower":
-            return "linkage" not in given
+            return "linkage" not in paths
         case "speed":
-            return "linkage" not in given and "dynamics.rpm" in given
+            return "linkage" not in paths and "dynamics.rpm" in paths
         case "guide" | "wanted" | "stiff":
-            return NEEDS[needs] in given
+            return NEEDS[needs] in paths
         case "density":
-            return "part.density" in given
+            return "part.density" in paths
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
         case "stem":
             return not offers.isdisjoint({"stem", "stem-face"})
         case "wall":
-            return any(f"part.{name}" in given for name in _OPENINGS)
+            return any(f"part.{name}" in paths for name in _OPENINGS)
         case "all":
-            return ALL in given
+            return ALL in paths
     return True
 
 

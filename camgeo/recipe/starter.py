@@ -36,8 +36,8 @@ class _Starter:
     unfit: tuple[str, ...] = ()
 
 
-def _roller(title: str, ratio: str, route: str, given: str | Given) -> _Starter:
-    return _Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: given})
+def _roller(title: str, ratio: str, route: str, values: str | Given) -> _Starter:
+    return _Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: values})
 
 
 _DWELLS = (
@@ -283,12 +283,12 @@ def _kinded(about: str, tables: Mapping[str, Table], kind: str) -> Table:
     return replace(tables[kind], fields=(first, *tables[kind].fields))
 
 
-def _lines(table: Table, given: Given, indent: str) -> Iterator[str]:
+def _lines(table: Table, values: Given, indent: str) -> Iterator[str]:
     """Write the fields of a table: those given, the others as comments, rival alternatives in one line."""
-    rivals = tuple(name for name, _ in table.alternatives if name not in given)
-    chosen = tuple(name for name, _ in table.alternatives if name in given)
+    rivals = tuple(name for name, _ in table.alternatives if name not in values)
+    chosen = tuple(name for name, _ in table.alternatives if name in values)
     for item in table.fields:
-        about, value = item.about + _note(item), given.get(item.name)
+        about, value = item.about + _note(item), values.get(item.name)
         if isinstance(value, str):
             yield _line(f"{indent}{item.name}", value, about)
         elif value is not None and item.table is not None:

@@ -64,32 +64,33 @@ class Findings:
         return all(check.ok for check in self.checks)
 
 
-def document(recipe: Order, found: Findings) -> dict[str, Any]:
+def document(recipe: Order, findings: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
-    linkage = {} if found.linkage is None else {"linkage": found.linkage}
-    dynamics = {} if found.dynamics is None else {"dynamics": found.dynamics}
-    preload = {} if found.preload is None else {"preload": found.preload}
+    linkage = {} if findings.linkage is None else {"linkage": findings.linkage}
+    dynamics = {} if findings.dynamics is None else {"dynamics": findings.dynamics}
+    preload = {} if findings.preload is None else {"preload": findings.preload}
     return {
         "recipe": recipe.name,
         "about": recipe.about,
         "camgeo": __version__,
         "units": recipe.units,
         "rotation": recipe.rotation,
-        "follower": found.follower,
-        "ok": found.ok,
+        "follower": findings.follower,
+        "ok": findings.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
-        "contour": _contours(recipe, found.contours),
-        **({"balance": [_balance(recipe, one) for one in found.balances]} if found.balances else {}),
-        "checks": [_check(recipe, check) for check in found.checks],
-        "remarks": [_remark(recipe, remark) for remark in found.remarks],
-        "joints": [entry for joint in found.joints for entry in _jumps(found, joint)],
-        "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
+        "contour": _contours(recipe, findings.contours),
+        **({"balance": [_balance(recipe, one) for one in findings.balances]} if findings.balances else {}),
+        "checks": [_check(recipe, check) for check in findings.checks],
+        "remarks": [_remark(recipe, remark) for remark in findings.remarks],
+        "joints": [entry for joint in findings.joints for entry in _jumps(findings, joint)],
+        "files": [_file(recipe, file) for file in findings.files]
+        + [{"path": name, "stale": True} for name in findings.kept],
         **linkage,
         **dynamics,
         **preload,
-        **({} if found.forces is None else {"forces": found.forces}),
-        "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
-        "skipped": [{"what": what, "why": why} for what, why in found.skipped],
+        **({} if findings.forces is None else {"forces": findings.forces}),
+        "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in findings.stages],
+        "skipped": [{"what": what, "why": why} for what, why in findings.skipped],
     }
 
 

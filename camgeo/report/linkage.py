@@ -72,34 +72,34 @@ def _place(place: Place, scale: float) -> dict[str, float]:
     }
 
 
-def _figures(found: Figures, scale: float, unit: str) -> dict[str, Any]:
+def _figures(figures: Figures, scale: float, unit: str) -> dict[str, Any]:
     turn = math.degrees(1.0)
-    least, greatest = _place(found.least, scale), _place(found.greatest, scale)
+    least, greatest = _place(figures.least, scale), _place(figures.greatest, scale)
     return {
         "output": {"unit": unit, "min": least["value"], "max": greatest["value"], "min_at": least, "max_at": greatest},
-        "swing": found.swing * scale,
-        "frame": {"unit": "deg", "min": found.frame_least.value * turn, "max": found.frame_greatest.value * turn},
+        "swing": figures.swing * scale,
+        "frame": {"unit": "deg", "min": figures.frame_least.value * turn, "max": figures.frame_greatest.value * turn},
         "transmission_angle": {
-            "min": found.transmission_least.value * turn,
-            "max": found.transmission_greatest.value * turn,
-            "min_at_deg": math.degrees(found.transmission_least.shaft),
+            "min": figures.transmission_least.value * turn,
+            "max": figures.transmission_greatest.value * turn,
+            "min_at_deg": math.degrees(figures.transmission_least.shaft),
         },
         "force_angle": {
-            "min": found.force_least.value * turn,
-            "min_at_deg": math.degrees(found.force_least.shaft),
+            "min": figures.force_least.value * turn,
+            "min_at_deg": math.degrees(figures.force_least.shaft),
         },
         "dead_centres": [
             {"shaft_deg": math.degrees(place.shaft), "relative_deg": math.degrees(place.relative)}
-            for place in found.dead_centres
+            for place in figures.dead_centres
         ],
         "peaks": {
             "shaft": {
-                "velocity": _place(found.velocity, scale),
-                "acceleration": _place(found.acceleration, scale),
+                "velocity": _place(figures.velocity, scale),
+                "acceleration": _place(figures.acceleration, scale),
             },
             "relative": {
-                "velocity": _place(found.velocity_relative, scale),
-                "acceleration": _place(found.acceleration_relative, scale),
+                "velocity": _place(figures.velocity_relative, scale),
+                "acceleration": _place(figures.acceleration_relative, scale),
             },
         },
     }

@@ -137,20 +137,20 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
     return least_hollow(contour) if side > 0 else least_radius(contour)
 
 
-def _greatest(of: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
+def _greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
     """Greatest values of k continuous functions of period 2 pi, looked at at t (n,) and closely about the best; where.
 
-    `of` gives the values (k, n). Of places that are equal but for rounding the first.
+    `function` gives the values (k, n). Of places that are equal but for rounding the first.
     """
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     best, ranges = [], []
-    for seen in of(t):
+    for seen in function(t):
         worst = int(np.argmax(seen >= (1.0 - SAME) * seen.max()))
         best.append((float(seen[worst]), float(t[worst])))
         ranges.append((float(around[worst]), float(around[worst + 2])))
     for _ in range(ZOOMS):
         near = [np.linspace(low, high, ZOOM + 1) for low, high in ranges]
-        rows = of(np.concatenate(near)).reshape(len(near), len(near), -1)
+        rows = function(np.concatenate(near)).reshape(len(near), len(near), -1)
         for i, (low, high) in enumerate(ranges):
             worst = int(np.argmax(rows[i, i]))
             at = float(near[i][worst])

@@ -84,9 +84,9 @@ def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
     where = f"{loop} binds {_spans(found.binds)} of the relative angle" if found.binds else f"{loop} is the nearest"
     back = f"the shaft would turn back {_spans(found.reverses)} of the relative angle" if found.reverses else ""
 
-    def above_zero(name: str, value: float | None, unit: str, at: float, detail: str) -> Check:
+    def above_zero(name: str, value: float | None, unit: str, angle: float, detail: str) -> Check:
         held = value is not None and value > 0.0
-        place = degrees(float(mechanism.at(at, 0).shaft[0, 0])) if found.turns else None
+        place = degrees(float(mechanism.at(angle, 0).shaft[0, 0])) if found.turns else None
         more = "" if held or not turning else f"; {turning}" if detail else turning
         return Check(name, held, value, 0.0, unit, place, "at_least", detail=detail + more)
 
@@ -129,14 +129,14 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
     return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
 
 
-def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
+def _dwell_check(dwell: DwellAsked, longest: Dwell) -> list[Check]:
     """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
-    if asked.at_least is None:
+    if dwell.at_least is None:
         return []
-    length, wanted = math.degrees(longest.length), math.degrees(asked.at_least)
+    length, wanted = math.degrees(longest.length), math.degrees(dwell.at_least)
     start = degrees(longest.start)
-    detail = f"from {start:.6g} over {length:.6g} deg of the {asked.over} angle"
-    at = start if asked.over == "shaft" else None
+    detail = f"from {start:.6g} over {length:.6g} deg of the {dwell.over} angle"
+    at = start if dwell.over == "shaft" else None
     return [Check(DWELL.name, length >= wanted, length, wanted, "deg", at, "at_least", detail=detail)]
 
 

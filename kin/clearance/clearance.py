@@ -32,8 +32,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kin.clearance.distance import Seen
-    from kin.clearance.pose import Motion
+    from kin.clearance.distance import GapSamples
+    from kin.clearance.pose import PlaneMotion
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Mask
 
@@ -74,7 +74,7 @@ class Mover:
 
     name: str
     slabs: tuple[Slab, ...]
-    motion: Motion
+    motion: PlaneMotion
 
     @property
     def reach(self) -> float:
@@ -271,7 +271,7 @@ class _Search:
         size = (np.abs(seen.value) + seen.doubt)[open_]
         return [left._replace(pairs=meeting.near(size, left.half))]
 
-    def _take(self, phi: Array, samples: Seen) -> None:
+    def _take(self, phi: Array, samples: GapSamples) -> None:
         k = int(np.argmin(samples.value))
         if samples.value[k] < self.least:
             self.least, self.at = float(samples.value[k]), float(phi[k])

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kin.contour.region import Gaps, Region
     from kin.numeric.arrays import Array, Indices, Mask
 
-__all__ = ["DEPTH_SHARE", "Encounter", "Pairs", "Relative", "Seen", "distances", "fastest", "rates", "see"]
+__all__ = ["DEPTH_SHARE", "Encounter", "GapSamples", "Pairs", "Relative", "distances", "fastest", "rates", "see"]
 
 ROUNDS = 40  # halvings of a piece searched for its deepest point: its bound is then a 2^41st of it below its middle
 DEPTH_SHARE = 0.02  # precision of a depth, as a part of it
@@ -197,7 +197,7 @@ def _placed(points: Array, motion: Relative) -> Array:
     return np.stack([c * x - s * y, s * x + c * y], axis=2) + motion.place[:, None]
 
 
-class Seen(NamedTuple):
+class GapSamples(NamedTuple):
     """What is known at the middle of each interval (m,): D, no farther off than `doubt`, and where (m, 2), home's axes.
 
     `gap` (k,) is the distance of each pair given, or below it.
@@ -209,7 +209,7 @@ class Seen(NamedTuple):
     gap: Array
 
 
-def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = False) -> Seen:
+def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = False) -> GapSamples:
     """Find D at the middle of each interval from the pairs that may be the nearest there; every interval has one.
 
     Depths are found to `precision`, or 2 %; `whole`: among all features, not only those paired.
@@ -236,7 +236,7 @@ def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = Fal
     if len(overlap):
         value[overlap], place[overlap] = _depths(meeting, None if whole else pairs, overlap, precision)
         doubt[overlap] = np.maximum(precision, DEPTH_SHARE * np.abs(value[overlap]))
-    return Seen(value, doubt, place, gap)
+    return GapSamples(value, doubt, place, gap)
 
 
 def _by_discs(meeting: Encounter, pairs: Pairs) -> tuple[Array, Array]:

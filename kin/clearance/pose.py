@@ -20,7 +20,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Course", "Motion", "Sampled", "Still", "Turning", "alike"]
+__all__ = ["Course", "PlaneMotion", "Sampled", "Still", "Turning", "alike"]
 
 FEWEST = 8  # samples of a turn, below which an interpolation says nothing
 CLOSED = 1e-6  # mm and rad, by which the last sample may miss the first, whole turns apart
@@ -34,7 +34,7 @@ class Course(NamedTuple):
     spread: Array
 
 
-class Motion(Protocol):
+class PlaneMotion(Protocol):
     """A body's motion over one turn of the shaft."""
 
     def over(self, phi: Array, half: Array) -> Course:
@@ -174,7 +174,7 @@ class Sampled:
         return Course(pose, rate, half[:, None] * self._bend(u - half / width, u + half / width))
 
 
-def alike(first: Motion, other: Motion) -> bool:
+def alike(first: PlaneMotion, other: PlaneMotion) -> bool:
     """Whether two bodies move as one, or both stand still."""
     if first is other or (isinstance(first, Still) and isinstance(other, Still)):
         return True

@@ -155,27 +155,27 @@ class Contour(Pieces):
                 self._raise(found, ranges.piece[tried], order[at], reduced, u)
         return found
 
-    def _raise(self, found: Support, tried: Indices, at: Indices, theta: Array, u: Array) -> None:
-        """Let pieces `tried` compete at the angles number `at`; write into `found` where they reach farther."""
-        q, point, piece = found
+    def _raise(self, support: Support, tried: Indices, numbers: Indices, theta: Array, u: Array) -> None:
+        """Let pieces `tried` compete at the angles number `numbers`; write into `support` where they reach farther."""
+        q, point, piece = support
         is_arc = self.kind[tried] == ARC
-        arc, a = tried[is_arc], at[is_arc]
+        arc, a = tried[is_arc], numbers[is_arc]
         half = (theta[a] - self.angle[arc]) / 2.0
         # From the start of the arc, not from its centre: nothing is lost where the centre is far away.
         value, share = np.empty(tried.size), np.zeros(tried.size)
         value[is_arc] = dot(self.start[arc], u[a]) + 2.0 * self.radius[arc] * np.sin(half) ** 2
         if not is_arc.all():
-            bow, b = self.curve[tried[~is_arc]], at[~is_arc]
+            bow, b = self.curve[tried[~is_arc]], numbers[~is_arc]
             share[~is_arc] = self.beziers.farthest(bow, theta[b])
             value[~is_arc] = dot(self.beziers.point(bow, share[~is_arc]), u[b])
-        ahead = np.flatnonzero(value > q[at])
-        np.maximum.at(q, at[ahead], value[ahead])
-        won = ahead[value[ahead] == q[at[ahead]]]
-        piece[at[won]] = tried[won]
+        ahead = np.flatnonzero(value > q[numbers])
+        np.maximum.at(q, numbers[ahead], value[ahead])
+        won = ahead[value[ahead] == q[numbers[ahead]]]
+        piece[numbers[won]] = tried[won]
         arc, bow = won[is_arc[won]], won[~is_arc[won]]
-        point[at[arc]] = self.arc_points(tried[arc], theta[at[arc]] - self.angle[tried[arc]])
+        point[numbers[arc]] = self.arc_points(tried[arc], theta[numbers[arc]] - self.angle[tried[arc]])
         if bow.size:
-            point[at[bow]] = self.beziers.point(self.curve[tried[bow]], share[bow])
+            point[numbers[bow]] = self.beziers.point(self.curve[tried[bow]], share[bow])
 
     @cached_property
     def normals(self) -> Array:

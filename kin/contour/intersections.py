@@ -100,10 +100,10 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
     return None
 
 
-def distinct(found: list[tuple[Array, Indices]]) -> Crossings:
+def distinct(crossings: list[tuple[Array, Indices]]) -> Crossings:
     """Return the crossings without those found again at the end of one link and the start of the next."""
-    point = np.concatenate([np.zeros((0, 2)), *(p for p, _ in found)])
-    piece = np.concatenate([np.zeros((0, 2), dtype=np.intp), *(n for _, n in found)])
+    point = np.concatenate([np.zeros((0, 2)), *(p for p, _ in crossings)])
+    piece = np.concatenate([np.zeros((0, 2), dtype=np.intp), *(n for _, n in crossings)])
     order = np.lexsort((point[:, 1], point[:, 0], piece[:, 1], piece[:, 0]))
     point, piece = point[order], piece[order]
     new = np.ones(len(point), dtype=bool)

@@ -92,16 +92,16 @@ def chain_of(points: Array, bulges: Array) -> Arcs:
     return Contour.from_bulges(points, bulges).as_arcs()[0]
 
 
-def _meeting(one: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
+def _meeting(first: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
     """Where two pieces (1,), run on beyond their ends, meet near the end of one and the start of the other.
 
     The point (2,) and the arc lengths on both, by Newton's method; None where it finds none.
     """
-    s, t = one.length.copy(), np.zeros(1)
-    size = float(np.abs(one.start).max() + one.length[0] + other.length[0])
+    s, t = first.length.copy(), np.zeros(1)
+    size = float(np.abs(first.start).max() + first.length[0] + other.length[0])
     for _ in range(STEPS):
-        gap = other.points(t) - one.points(s)
-        along, across = one.tangents(s), other.tangents(t)
+        gap = other.points(t) - first.points(s)
+        along, across = first.tangents(s), other.tangents(t)
         sine = cross(along, across)
         if not abs(float(sine[0])) > 0.0:
             return None
@@ -110,7 +110,7 @@ def _meeting(one: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
         if not (abs(float(s[0])) < 4.0 * size and abs(float(t[0])) < 4.0 * size):
             return None
         if max(abs(float(step[0])), abs(float(shift[0]))) <= SETTLED * size / min(1.0, abs(float(sine[0]))):
-            return one.points(s)[0], float(s[0]), float(t[0])
+            return first.points(s)[0], float(s[0]), float(t[0])
     return None
 
 

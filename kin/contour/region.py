@@ -269,13 +269,13 @@ def _along_normal(inner: Arcs, outer: Arcs) -> tuple[Array, Array]:
     return nearest_on(outer, foot)[1], foot
 
 
-def _chosen(condition: NDArray[np.bool_], one: Arcs, other: Arcs) -> Arcs:
+def _chosen(condition: NDArray[np.bool_], pieces: Arcs, other: Arcs) -> Arcs:
     wide = condition[:, None]
     return Arcs(
-        np.where(wide, one.start, other.start),
-        np.where(wide, one.tangent, other.tangent),
-        np.where(condition, one.curvature, other.curvature),
-        np.where(condition, one.length, other.length),
+        np.where(wide, pieces.start, other.start),
+        np.where(wide, pieces.tangent, other.tangent),
+        np.where(condition, pieces.curvature, other.curvature),
+        np.where(condition, pieces.length, other.length),
     )
 
 

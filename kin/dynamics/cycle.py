@@ -38,7 +38,7 @@ class Turn(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class ContactSamples:
     """Samples of a state of contact in time order: stretch (n,), time in it (n,), level (n,); `knots` of all."""
 
     stretch: Indices
@@ -46,11 +46,11 @@ class Seen:
     level: Array
     knots: Array
 
-    def until(self, stretch: int, time: float) -> Seen:
+    def until(self, stretch: int, time: float) -> ContactSamples:
         """Those that are not later than a time."""
         later = (self.stretch > stretch) | ((self.stretch == stretch) & (self.time > time))
         count = int(np.argmax(later)) if later.any() else len(later)
-        return Seen(self.stretch[:count], self.time[:count], self.level[:count], self.knots)
+        return ContactSamples(self.stretch[:count], self.time[:count], self.level[:count], self.knots)
 
     def phi(self, i: int) -> float:
         """Shaft angle of a sample."""
@@ -70,17 +70,21 @@ class Log:
         self._bore: set[int] = set()
 
     def see(
-        self, contact: int, seen: Seen, span_of: Callable[[int], Span], hit: tuple[int, float] | None = None
+        self,
+        contact: int,
+        samples: ContactSamples,
+        span_of: Callable[[int], Span],
+        hit: tuple[int, float] | None = None,
     ) -> None:
         """Note the extremes of a contact's force, up to its end in (stretch, time)."""
-        end = float(seen.phi(-1) if hit is None else seen.knots[hit[0]] + hit[1])
+        end = float(samples.phi(-1) if hit is None else samples.knots[hit[0]] + hit[1])
         self.reached = end
         self._bore.add(contact)
         if hit is not None:
-            seen = seen.until(*hit)
-        self._extremes(1.0, seen, span_of, end)
+            samples = samples.until(*hit)
+        self._extremes(1.0, samples, span_of, end)
         if self._least > 0.0:
-            self._extremes(-1.0, seen, span_of, end)
+            self._extremes(-1.0, samples, span_of, end)
 
     def fly(self, begin: float, end: float) -> None:
         """Note a time without contact, as shaft angles."""
@@ -88,11 +92,11 @@ class Log:
         self._free += end - begin
         self.force(0.0, begin)
 
-    def _extremes(self, sign: float, seen: Seen, span_of: Callable[[int], Span], end: float) -> None:
-        level = sign * seen.level
+    def _extremes(self, sign: float, samples: ContactSamples, span_of: Callable[[int], Span], end: float) -> None:
+        level = sign * samples.level
         best = int(np.argmax(level))
-        self.force(float(seen.level[best]), seen.phi(best))
-        joined = seen.stretch[1:] == seen.stretch[:-1]
+        self.force(float(samples.level[best]), samples.phi(best))
+        joined = samples.stretch[1:] == samples.stretch[:-1]
         step = np.diff(level)
         before = np.append(0.0, np.where(joined, step, 0.0))  # how much a sample is above the one before
         after = np.append(np.where(joined, -step, 0.0), 0.0)
@@ -102,10 +106,10 @@ class Log:
         near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * room > known) & (room > 0.0))
         near = near[np.argsort(-level[near], kind="stable")[:_MOST_NEAR]]
         for i in near.tolist():
-            stretch, time = int(seen.stretch[i]), float(seen.time[i])
-            knot = float(seen.knots[stretch])
-            low = float(seen.time[i - 1]) if i and joined[i - 1] else time
-            high = max(time, end - knot) if i == len(joined) else float(seen.time[i + 1]) if joined[i] else time
+            stretch, time = int(samples.stretch[i]), float(samples.time[i])
+            knot = float(samples.knots[stretch])
+            low = float(samples.time[i - 1]) if i and joined[i - 1] else time
+            high = max(time, end - knot) if i == len(joined) else float(samples.time[i + 1]) if joined[i] else time
             value, at = top(span_of(stretch), low, high, sign, self._work)
             self.force(value, knot + at)
 

@@ -39,9 +39,9 @@ _CLOSE = 1e-9  # rad: breaks that are closer are one
 class DriveError(KinError, ValueError):
     """A motion that no series follows; `at` is the shaft angle, radians."""
 
-    def __init__(self, message: str, at: float) -> None:
-        super().__init__(f"{message} near {math.degrees(at) % 360.0:.6g} degrees")
-        self.at = at
+    def __init__(self, message: str, angle: float) -> None:
+        super().__init__(f"{message} near {math.degrees(angle) % 360.0:.6g} degrees")
+        self.at = angle
 
 
 @dataclass(frozen=True, eq=False)

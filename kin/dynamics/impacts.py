@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.dynamics.cycle import Log, Seen, Turn
+from kin.dynamics.cycle import ContactSamples, Log, Turn
 from kin.dynamics.events import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
 from kin.dynamics.flight import Flight, Path
 from kin.dynamics.response import Response, Samples, response
@@ -152,10 +152,10 @@ class _Course:
         above = self.upper.rows(start, np.zeros(1))[0, 0]
         return State(FREE, 0.5 * (above - position), -velocity)
 
-    def _alike(self, one: State, other: State) -> bool:
+    def _alike(self, state: State, other: State) -> bool:
         natural = self.running.bound.natural
-        size = max(abs(one.z), abs(one.v) / natural, abs(other.z), abs(other.v) / natural)
-        return bool(math.hypot(one.z - other.z, (one.v - other.v) / natural) <= _SETTLED * size)
+        size = max(abs(state.z), abs(state.v) / natural, abs(other.z), abs(other.v) / natural)
+        return bool(math.hypot(state.z - other.z, (state.v - other.v) / natural) <= _SETTLED * size)
 
     def _turn(self, state: State, log: Log) -> State:
         contact, place, time = state.contact, 0, 0.0
@@ -267,7 +267,7 @@ class _Course:
             self.work.take(len(at))
             level = span.at(at)
             hit = first(span, at, level, self.work)
-            seen = Seen(np.full(len(at), place), at, level, here.drive.knots)
+            seen = ContactSamples(np.full(len(at), place), at, level, here.drive.knots)
             log.see(contact, seen, lambda _: span, None if hit is None else (place, hit))
             if hit is not None:
                 return FREE, place, hit, here.moved(place, free, hit)
@@ -281,7 +281,7 @@ class _Course:
         if contact == FREE:
             return self._far(starts, at, log)
         level = self.forces[contact].at(starts, at)
-        seen = Seen(at.stretch, at.time, level, here.drive.knots)
+        seen = ContactSamples(at.stretch, at.time, level, here.drive.knots)
 
         def span_of(stretch: int) -> Pressed:
             return self._pressed(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
@@ -297,20 +297,20 @@ class _Course:
         log.see(contact, seen, span_of)
         return None
 
-    def _far(self, starts: Array, at: Samples, log: Log) -> _Event | None:
+    def _far(self, starts: Array, samples: Samples, log: Log) -> _Event | None:
         """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
         here = self.found[FREE]
         knots = here.drive.knots
-        first_, last = int(at.stretch[0]), int(at.stretch[-1])
+        first_, last = int(samples.stretch[0]), int(samples.stretch[-1])
         begin = float(knots[first_])
-        z = here.states(starts, at)[0]
+        z = here.states(starts, samples)[0]
         deep, bend = -z, self._bends(starts)
         if self.gap is not None:
-            deep = np.maximum(deep, z - self._gaps(knots[at.stretch] + at.time)[0])
+            deep = np.maximum(deep, z - self._gaps(knots[samples.stretch] + samples.time)[0])
         # between two places a function is no more above both than this
-        above = np.maximum(deep[:-1], deep[1:]) + bend[at.stretch[1:]] * np.diff(at.time) ** 2 / 8.0
-        near = (above >= 0.0) & (at.stretch[1:] == at.stretch[:-1])
-        for stretch in np.unique(at.stretch[1:][near]).tolist():
+        above = np.maximum(deep[:-1], deep[1:]) + bend[samples.stretch[1:]] * np.diff(samples.time) ** 2 / 8.0
+        near = (above >= 0.0) & (samples.stretch[1:] == samples.stretch[:-1])
+        for stretch in np.unique(samples.stretch[1:][near]).tolist():
             free = here.free(stretch, 0.0, starts[:, stretch])
             flight = self._flight(stretch, free)
             landed = flight.landed(0.0, 2.0 * float(here.half[stretch]), self.work)

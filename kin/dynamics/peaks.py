@@ -32,7 +32,7 @@ class Peaks(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Figure:
+class ResponseFigure:
     """A figure w0 z + w1 z' + q over a response, q a polynomial on each stretch.
 
     `series` (m, DEGREE + 1) is that of w0 p + w1 p' + q, `z` and `v` are w0 and w1, which the free motion takes.
@@ -44,21 +44,21 @@ class Figure:
     v: float
 
     @staticmethod
-    def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> Figure:
+    def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> ResponseFigure:
         """Make the figure z * z + v * z' + more, `more` (m, DEGREE + 1) a series or a constant."""
         series = z * response.p + v * response.v
         if isinstance(more, float):
             series[:, 0] += more
         else:
             series = series + more
-        return Figure(response, series, z, v)
+        return ResponseFigure(response, series, z, v)
 
-    def at(self, starts: Array, at: Samples) -> Array:
+    def at(self, starts: Array, samples: Samples) -> Array:
         """Values (n,) from the states at the starts (2, m)."""
         response = self.response
-        free_z, free_v = response.rung(starts, at)
-        x = at.time / response.half[at.stretch] - 1.0
-        found: Array = evaluated(self.series, at.stretch, x) + self.z * free_z + self.v * free_v
+        free_z, free_v = response.rung(starts, samples)
+        x = samples.time / response.half[samples.stretch] - 1.0
+        found: Array = evaluated(self.series, samples.stretch, x) + self.z * free_z + self.v * free_v
         return found
 
     def peaks(self, starts: Array, stretches: Indices) -> Peaks:
@@ -75,9 +75,9 @@ class Figure:
                 parts.append((part, self.at(starts, part)))
         return Peaks(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
 
-    def least(self, starts: Array, at: Samples) -> float:
+    def least(self, starts: Array, samples: Samples) -> float:
         """Least value at samples (n,) in time order that show every swing, and between neighbours."""
-        return self._highest(starts, [(at, self.at(starts, at))], -1.0)[0]
+        return self._highest(starts, [(samples, self.at(starts, samples))], -1.0)[0]
 
     def _highest(self, starts: Array, parts: list[tuple[Samples, Array]], sign: float) -> tuple[float, float]:
         """Greatest value times sign, and where."""

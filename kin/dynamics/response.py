@@ -155,16 +155,16 @@ class Response:
             state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
         return state
 
-    def states(self, starts: Array, at: Samples) -> Array:
+    def states(self, starts: Array, samples: Samples) -> Array:
         """Values z and z' (2, n), from the states (2, m) at all starts."""
-        x = at.time / self.half[at.stretch] - 1.0
-        driven = np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
-        states: Array = driven + self.rung(starts, at)
+        x = samples.time / self.half[samples.stretch] - 1.0
+        driven = np.stack([evaluated(self.p, samples.stretch, x), evaluated(self.v, samples.stretch, x)])
+        states: Array = driven + self.rung(starts, samples)
         return states
 
-    def rung(self, starts: Array, at: Samples) -> Array:
+    def rung(self, starts: Array, samples: Samples) -> Array:
         """The free part of z and z' (2, n), as `states`."""
-        return self.oscillator.moved((starts - self._steps[0].T)[:, at.stretch], at.time)
+        return self.oscillator.moved((starts - self._steps[0].T)[:, samples.stretch], samples.time)
 
     def lasting(self, bound: Array, stretches: Indices) -> Array:
         """How long (n,) free motions, of bounds (n,), shake p visibly on the given stretches; 0 where p is no slow one.

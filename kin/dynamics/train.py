@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.dynamics.oscillator import Oscillator
-from kin.dynamics.peaks import Figure, Peaks
+from kin.dynamics.peaks import Peaks, ResponseFigure
 from kin.dynamics.response import Forcing, Response, response
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
@@ -129,10 +129,10 @@ class Running:
         """Response in contact with one face that drives it."""
         return response(self.bound, drive, self.forcing)
 
-    def force(self, found: Response, side: int = 1) -> Figure:
+    def force(self, response: Response, side: int = 1) -> ResponseFigure:
         """Contact force of a response over the drive's face; `side` -1 for a face that pushes downward."""
         k, c = self.train.stiffness, self.train.damping * self.speed
-        return Figure.of(found, -side * k, -side * c)
+        return ResponseFigure.of(response, -side * k, -side * c)
 
     def static(self, position: float) -> float:
         """Place z at rest on a face that stands still at a position."""
@@ -191,12 +191,12 @@ def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, 
     return Steady(force, residual, (float(state[0]), float(state[1])), found)
 
 
-def _demand_countable(running: Running, found: Response, starts: Array) -> None:
+def _demand_countable(running: Running, response: Response, starts: Array) -> None:
     """Raise DynamicsError for more swings than are looked at, with the damping that makes them few enough."""
-    _, fine = found.swings(starts, np.arange(len(found)))
+    _, fine = response.swings(starts, np.arange(len(response)))
     if fine.sum() <= MOST_SWUNG:
         return
-    fading = _SILENT_AFTER * max(int(np.count_nonzero(found.slow)), _STRETCHES) / (found.step * MOST_SWUNG)
+    fading = _SILENT_AFTER * max(int(np.count_nonzero(response.slow)), _STRETCHES) / (response.step * MOST_SWUNG)
     least = 2.0 * running.train.mass * running.speed * fading
     raise DynamicsError(
         f"the natural frequency is {running.train.ratio(running.rpm):.4g} times the shaft's and the damping is "
@@ -204,23 +204,23 @@ def _demand_countable(running: Running, found: Response, starts: Array) -> None:
     )
 
 
-def periodic(running: Running, found: Response) -> Array:
+def periodic(running: Running, response: Response) -> Array:
     """State (2,) at shaft angle 0 that a turn brings back to itself; DynamicsError where there is none."""
-    oscillator = found.oscillator
+    oscillator = response.oscillator
     if oscillator.detuning < _LEAST_DETUNING * max(1.0, 1e-6 * oscillator.natural):
         raise DynamicsError(
             f"no steady state: the natural frequency is {oscillator.split:.9g} times the shaft's, and without damping "
             f"a whole multiple resonates; {running.rpm:.9g} rpm"
         )
-    return found.periodic()
+    return response.periodic()
 
 
-def _residual(running: Running, found: Response, starts: Array, begin: float, end: float) -> Residual:
-    drive, train = found.drive, running.train
+def _residual(running: Running, response: Response, starts: Array, begin: float, end: float) -> Residual:
+    drive, train = response.drive, running.train
     middle = 0.5 * (drive.knots[:-1] + drive.knots[1:])
     inside = np.flatnonzero(np.mod(middle - begin, TURN) < end - begin)
     share = 1.0 / (train.stiffness + train.rate)
     more = share * train.rate * drive.position
     more[:, 0] += share * train.preload
-    peaks = Figure.of(found, 1.0, 0.0, more).peaks(starts, inside)
+    peaks = ResponseFigure.of(response, 1.0, 0.0, more).peaks(starts, inside)
     return Residual(begin, end, max(peaks.greatest, -peaks.least, 0.0))

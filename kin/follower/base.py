@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 Rests = tuple[tuple[float, float], ...]
 
 
-class Motion(Protocol):
+class IntendedMotion(Protocol):
     """An intended motion over the shaft angle; `Lift`, `Piecewise` and `kin.follower.laws.Swing` are."""
 
     @property
@@ -89,7 +89,7 @@ class Follower(ABC):
 
     @property
     @abstractmethod
-    def motion(self) -> Motion:
+    def motion(self) -> IntendedMotion:
         """The intended motion."""
 
     @property

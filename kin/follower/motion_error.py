@@ -98,9 +98,9 @@ class Judged(NamedTuple):
 class ContactError(KinError, ValueError):
     """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
 
-    def __init__(self, message: str, at: float) -> None:
-        super().__init__(f"{message} at {degrees(at):.6g} degrees")
-        self.at = at
+    def __init__(self, message: str, angle: float) -> None:
+        super().__init__(f"{message} at {degrees(angle):.6g} degrees")
+        self.at = angle
 
 
 def with_steps(phi: Array) -> Array:

@@ -140,7 +140,7 @@ class _Rollers(Moved):
         """Shaft angles at which each roller whose error counts is looked at: `steps` first."""
 
     @abstractmethod
-    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play | None:
+    def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play | None:
         """Play at shaft angles phi (n,) and where rollers pass from piece to piece; None for a single roller."""
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
@@ -184,7 +184,7 @@ class _Guided(OfLaw, _Rollers):
     def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:  # noqa: ARG002 - nothing else is asked of it
         return (steps,)
 
-    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play | None:  # noqa: ARG002
+    def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play | None:  # noqa: ARG002
         return None
 
 
@@ -219,7 +219,7 @@ class RollerYoke(_Guided):
         near, far = (pitch.leeway(tau, tolerance)[0] for pitch in self.pitches)
         return float((near + far).max())
 
-    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play:  # noqa: ARG002
+    def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play:  # noqa: ARG002
         angle = np.concatenate([phi, passing_angles(obstacle, self.guides[0])])
         near, far = self._positions(obstacle, angle)
         return sampled_play(far - near, angle)
@@ -253,12 +253,12 @@ class DoubleRoller(OfTransmission, _Rollers):
         # of A also where the gap at B may be least or greatest
         return np.concatenate([steps, *(passing_angles(obstacle, guide) for guide in self.guides)]), steps
 
-    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play:
+    def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play:
         # the increments tell nothing new of the gap
         count = sum(len(passing_angles(obstacle, guide)) for guide in self.guides)
         chosen = np.r_[: len(phi), 2 * len(phi) : 2 * len(phi) + count]
         a, b = self.contacts
-        angle, swing = held[0].phi[chosen], a.position(held[0].position[chosen])
+        angle, swing = rollers[0].phi[chosen], a.position(rollers[0].position[chosen])
         second = self.guides[1].centre(angle, b.own(swing))
         return sampled_play(signed_distance(contour.as_arcs()[0], second) - self.radius, angle)
 
@@ -275,31 +275,31 @@ def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, se
     return Held(pieces, guide, phi, *_touched(pieces, guide, phi), offset, sense)
 
 
-def settled(held: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
+def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
     `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
     where they are and no proof is found, all angles are looked at: None then.
     """
-    found = Greatest(*greatest(np.abs(sampled).max(axis=0), held[0].phi[: sampled.shape[1]]), 0.0)
+    found = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
     passing: list[Array] = []
     if few:
         try:
-            found = greatest_error(held, law, found)
+            found = greatest_error(rollers, law, found)
         except UnsettledError:
-            passing = [passing_angles(one.pieces, one.guide) for one in held]
+            passing = [passing_angles(one.pieces, one.guide) for one in rollers]
         else:
             return (found.error, found.at), found.remainder
-    return _closely(held, law, np.concatenate([*(one.phi for one in held), *passing])), None
+    return _closely(rollers, law, np.concatenate([*(one.phi for one in rollers), *passing])), None
 
 
-def _closely(held: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
+def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
     """Greatest absolute error, and its shaft angle, at shaft angles `looked` (n,) and more closely about the worst.
 
     Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And
     about the corners that turn the most: beside a dent in a fine polygon they stand out.
     """
-    for one in held:
+    for one in rollers:
         error, phi = outward(one, law)
         sharp = one.pieces.take(np.argsort(np.abs(one.pieces.curvature * one.pieces.length))[-2 * CLOSER :])
         ends = one.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
@@ -309,7 +309,7 @@ def _closely(held: Sequence[Held], law: Law, looked: Array) -> tuple[float, floa
         meant = law.rows(looked)
         errors = [
             np.abs(one.guide.position(_touched(one.pieces, one.guide, looked)[0]) - one.meant(meant.copy())[0])
-            for one in held
+            for one in rollers
         ]
         error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
@@ -336,16 +336,16 @@ def held_position(obstacle: Arcs, guide: Guide, phi: Array) -> Array:
     return guide.position(_touched(obstacle, guide, phi)[0])
 
 
-def end_angles(pieces: Arcs, guide: Guide, known: Array) -> Array:
+def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:
     """Shaft angles at which the roller's centre comes to an end of a piece, each once, without those known (n,)."""
     angle = guide.shaft_angle(np.concatenate([pieces.start, pieces.ends]))
-    angle = np.concatenate([np.mod(known, TURN), np.mod(angle[np.isfinite(angle)], TURN)])
+    angle = np.concatenate([np.mod(angles, TURN), np.mod(angle[np.isfinite(angle)], TURN)])
     order = np.argsort(angle, kind="stable")
     new = np.diff(angle[order], prepend=-1.0) > ONE_ANGLE
     first = np.flatnonzero(new)
     # the known ones stand first in the original order, and so does the least number of each group
     least = np.minimum.reduceat(order, first) if len(first) else order
-    found: Array = angle[least[least >= len(known)]]
+    found: Array = angle[least[least >= len(angles)]]
     return found
 
 

@@ -297,15 +297,15 @@ def greatest(error: Array, phi: Array) -> tuple[float, float]:
     return float(abs(error[i])), float(phi[i])
 
 
-def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int = MORE) -> Greatest:
-    """Greatest absolute error of rollers, which is at least that `found`. UnsettledError where it is not proved.
+def greatest_error(rollers: Sequence[Held], law: Law, floor: Greatest, tries: int = MORE) -> Greatest:
+    """Greatest absolute error of rollers, which is at least that `floor`. UnsettledError where it is not proved.
 
     Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
     """
-    groups = [one.spans() for one in held]
-    resolution = held[0].resolution
+    groups = [one.spans() for one in rollers]
+    resolution = rollers[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
-    error, best, ceiling = found.error, None, found.error
+    error, best, ceiling = floor.error, None, floor.error
     for cut in range(MOST_CUTS + 1):
         states = [group.state() for group in groups]
         limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
@@ -340,21 +340,21 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
         errors = np.abs(on.guide.position(r) - on.meant(law.rows(phi))[0])
         claimed, (error, at) = error, greatest(errors, phi)
         if tries and not claimed <= error + SHARE * claimed + resolution:
-            seen = [one.looked_at_about(np.array([at])) if one is on else one for one in held]
-            return greatest_error(seen, law, found, tries - 1)
-        if error > found.error:
-            found = Greatest(error, at, 0.0)
+            seen = [one.looked_at_about(np.array([at])) if one is on else one for one in rollers]
+            return greatest_error(seen, law, floor, tries - 1)
+        if error > floor.error:
+            floor = Greatest(error, at, 0.0)
     if not np.isfinite(ceiling):
         raise UnsettledError("the motion error is not proved: it has no bound")
-    return found._replace(remainder=max(ceiling - found.error, 0.0))
+    return floor._replace(remainder=max(ceiling - floor.error, 0.0))
 
 
-def outward(held: Held, law: Law) -> tuple[Array, Array]:
+def outward(roller: Held, law: Law) -> tuple[Array, Array]:
     """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
-    spans = Spans(held, np.ones(0), np.arange(len(held.pieces)), 0.5 * held.pieces.length, np.zeros(0))
+    spans = Spans(roller, np.ones(0), np.arange(len(roller.pieces)), 0.5 * roller.pieces.length, np.zeros(0))
     state = spans.state()
-    error = state.error(held.meant(law.rows(state.phi)))[0]
-    return np.where(within_reach(held.pieces, held.guide, held.slack), error, -np.inf), state.phi
+    error = state.error(roller.meant(law.rows(state.phi)))[0]
+    return np.where(within_reach(roller.pieces, roller.guide, roller.slack), error, -np.inf), state.phi
 
 
 class _Limits(NamedTuple):
@@ -410,11 +410,13 @@ class _State:
         away = guide.away
         return _State(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
 
-    def error(self, meant: Array) -> Array:
+    def error(self, intended: Array) -> Array:
         """Error and two derivatives by s, (3, n), from the intended position's rows (3, n) by the shaft angle."""
         (place, q, q_1), (phi_1, phi_2) = self.position, self.angle
         with np.errstate(invalid="ignore", over="ignore"):
-            return np.stack([place - meant[0], q - meant[1] * phi_1, q_1 - meant[2] * phi_1**2 - meant[1] * phi_2])
+            return np.stack(
+                [place - intended[0], q - intended[1] * phi_1, q_1 - intended[2] * phi_1**2 - intended[1] * phi_2]
+            )
 
     def limits(self, half: Array) -> _Limits:
         """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each."""

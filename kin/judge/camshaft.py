@@ -144,6 +144,13 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, (chains,), solid.uneven)
 
 
+def outside_shaft(least: float, diameter: float) -> Check:
+    """Check that a lobe's contour, at least so far from the axis, mm, stays outside the shaft of a diameter, mm."""
+    radius = 0.5 * diameter
+    remedy = "" if least > radius else "a larger base radius, or a thinner shaft"
+    return Check("shaft", least > radius, least, radius, "mm", sense="at_least", detail=remedy)
+
+
 def _worst(checks: Sequence[Check]) -> Check:
     """One of several checks alike: one that fails, or that with the greatest figure."""
     return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))

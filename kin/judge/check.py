@@ -39,16 +39,16 @@ def at_most(
     limit: float,
     unit: str,
     *,
-    at: float | None = None,
+    angle: float | None = None,
     detail: str = "",
     slack: float = 0.0,
 ) -> Check:
-    """Check that `value` does not exceed `limit`; `at` is a shaft angle in radians. A value that is nan fails.
+    """Check that `value` does not exceed `limit`; `angle` is a shaft angle in radians. A value that is nan fails.
 
     `slack` is the rounding of the measurement itself, by which it may exceed.
     """
     measured = None if math.isnan(value) else float(value)
-    at_deg = None if at is None or not math.isfinite(at) else degrees(at)
+    at_deg = None if angle is None or not math.isfinite(angle) else degrees(angle)
     return Check(name, bool(value <= limit + slack), measured, float(limit), unit, at_deg, detail=detail)
 
 

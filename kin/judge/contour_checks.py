@@ -99,20 +99,22 @@ def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
     return judged._replace(motion=judged.motion.less_sure(follower.motion_limit(uneven)), play=play)
 
 
-def _contour_check(found: Deviation, surface: SurfaceIntent, tolerance: float, slack: float, standing: float) -> Check:
+def _contour_check(
+    deviation: Deviation, surface: SurfaceIntent, tolerance: float, slack: float, standing: float
+) -> Check:
     """Check both sides of a contour against the tolerance; on the cutter's, as much more may stand as it may leave."""
-    worst, parameter = found.worst
+    worst, parameter = deviation.worst
     if standing:
-        worst = max(worst - standing, found.inside if surface.side > 0 else found.outside)
-    detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
-    if found.rounds != 1:
-        detail = f"the contour goes {found.rounds} times round the exact one; {detail}"
+        worst = max(worst - standing, deviation.inside if surface.side > 0 else deviation.outside)
+    detail = f"{deviation.outside:.3g} mm outside, {deviation.inside:.3g} mm inside the exact contour"
+    if deviation.rounds != 1:
+        detail = f"the contour goes {deviation.rounds} times round the exact one; {detail}"
         return failed("contour", detail, unit="mm", limit=tolerance)
-    if found.backwards > tolerance + slack:
-        detail = f"the contour turns back on itself by {found.backwards:.3g} mm; {detail}"
-        worst = max(worst, found.backwards)
+    if deviation.backwards > tolerance + slack:
+        detail = f"the contour turns back on itself by {deviation.backwards:.3g} mm; {detail}"
+        worst = max(worst, deviation.backwards)
     at = float(surface.gauge.shaft_angle(np.array([parameter]))[0])
-    return at_most("contour", worst, tolerance, "mm", at=at, detail=detail, slack=slack)
+    return at_most("contour", worst, tolerance, "mm", angle=at, detail=detail, slack=slack)
 
 
 def _motion_checks(
@@ -128,7 +130,7 @@ def _motion_checks(
         at, detail = np.radians(motion.at_deg), _found(motion)
         direct = follower.direct_limit(limits.tolerance)
         vacuous = limits.motion is None and is_loose(limit, direct, stroke_of(follower))
-        checked = at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room)
+        checked = at_most("motion", worst, limit, motion.unit, angle=at, detail=detail, slack=room)
         checks.append(unlimited(checked) if vacuous else checked)
     closure = follower.closure
     if play is None or own is None or closure is None or (limits.play is None and surface.trimmed):
@@ -164,10 +166,10 @@ def play_checks(
         worst += ALLOWANCE * abs(worst)
     direct = direct_play(closure, follower, limits.tolerance)
     vacuous = given is None and is_loose(limit, direct, closure.radius or stroke_of(follower))
-    checked = at_most(closure.name, worst, limit, play.unit, at=at, detail=detail, slack=room)
+    checked = at_most(closure.name, worst, limit, play.unit, angle=at, detail=detail, slack=room)
     checks = [unlimited(checked) if vacuous else checked]
     if closure.tight is not None:
-        checks.append(at_most(closure.tight, tight[0], limit, play.unit, at=tight[1], slack=room))
+        checks.append(at_most(closure.tight, tight[0], limit, play.unit, angle=tight[1], slack=room))
     return checks
 
 

@@ -83,19 +83,19 @@ Tallies = dict[str, Tally]
 
 def tally(
     tallies: Tallies,
-    found: Sequence[Contour],
-    meant: Sequence[Hole],
+    openings: Sequence[Contour],
+    intended: Sequence[Hole],
     tolerance: float,
     *,
     where: str = "",
-    known: Sequence[Hole] = (),
+    settled: Sequence[Hole] = (),
 ) -> None:
     """Match the openings that were found with those that are meant, and take in how far each is off.
 
-    Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `known`
+    Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `settled`
     that it looks like, else to `holes`, or to `bore` where nothing else is meant.
     """
-    pairs, left_over = _matched(found, meant)
+    pairs, left_over = _matched(openings, intended)
     for hole, contour in pairs:
         told = tallies.setdefault(hole.kind, Tally())
         if contour is None:
@@ -107,7 +107,7 @@ def tally(
         told.measured(off, f"{hole.name}, about {place_text(x, y)}{where}, is off by {off:.3g} mm")
     for contour in left_over:
         x, y = _middle(contour)
-        alike = [hole for hole, one in _matched([contour], known)[0] if one is not None]
+        alike = [hole for hole, one in _matched([contour], settled)[0] if one is not None]
         if alike:
             kind = alike[0].kind
         else:
@@ -117,16 +117,16 @@ def tally(
 
 
 def _matched(
-    found: Sequence[Contour], meant: Sequence[Hole]
+    openings: Sequence[Contour], intended: Sequence[Hole]
 ) -> tuple[list[tuple[Hole, Contour | None]], list[Contour]]:
     """Each opening that is meant with the one found there, None if there is none; and those found besides.
 
     Two belong together if the middles of their boxes lie within half the size of the one that is meant; nearest first.
     """
-    size = [_size(hole.contour) for hole in meant]
-    place = [_middle(hole.contour) for hole in meant]
+    size = [_size(hole.contour) for hole in intended]
+    place = [_middle(hole.contour) for hole in intended]
     ranked = []
-    for k, contour in enumerate(found):
+    for k, contour in enumerate(openings):
         (x, y), large = _middle(contour), _size(contour)
         for j, (u, v) in enumerate(place):
             gap = float(np.hypot(x - u, y - v))
@@ -138,8 +138,8 @@ def _matched(
         if j not in partner and k not in taken:
             partner[j] = k
             taken.add(k)
-    pairs = [(hole, found[partner[j]] if j in partner else None) for j, hole in enumerate(meant)]
-    return pairs, [contour for k, contour in enumerate(found) if k not in taken]
+    pairs = [(hole, openings[partner[j]] if j in partner else None) for j, hole in enumerate(intended)]
+    return pairs, [contour for k, contour in enumerate(openings) if k not in taken]
 
 
 def _middle(contour: Contour) -> tuple[float, float]:
@@ -152,9 +152,9 @@ def _size(contour: Contour) -> float:
     return float(np.hypot(box.x_max - box.x_min, box.y_max - box.y_min))
 
 
-def apart(one: Contour, other: Contour, fine: float) -> float:
+def apart(contour: Contour, other: Contour, fine: float) -> float:
     """Two-sided distance of two closed contours, mm, to within `fine`."""
-    first, second = one.as_arcs()[0], other.as_arcs()[0]
+    first, second = contour.as_arcs()[0], other.as_arcs()[0]
     bend = float(max(np.abs(first.curvature).max(), np.abs(second.curvature).max()))
     return max(_farthest(first, second, bend, fine), _farthest(second, first, bend, fine))
 

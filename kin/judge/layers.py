@@ -129,12 +129,12 @@ def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimet
     return float(total)
 
 
-def slotted(outline: Hole, hole: Hole, at: float, half: float) -> Contour:
+def slotted(outline: Hole, hole: Hole, angle: float, half: float) -> Contour:
     """The section of a ring between two outlines, cut open by a slot of half width `half` along a radius.
 
     Raises ValueError where the slot's sides do not meet both outlines.
     """
-    outer, inner = _turned(outline, -at), _turned(hole, -at)
+    outer, inner = _turned(outline, -angle), _turned(hole, -angle)
     ends = np.array([half, -half])
     out_x, out_piece = reach(outer, ends)
     in_x, in_piece = reach(inner, ends)
@@ -146,7 +146,7 @@ def slotted(outline: Hole, hole: Hole, at: float, half: float) -> Contour:
     (outer_points, outer_bulges), (inner_points, inner_bulges) = outside, inside
     points = np.concatenate([outer_points, inner_points[::-1]])
     bulges = np.concatenate([outer_bulges, [0.0], -inner_bulges[::-1], [0.0]])
-    c, s = np.cos(at), np.sin(at)
+    c, s = np.cos(angle), np.sin(angle)
     return Contour.from_bulges(points @ np.array([[c, s], [-s, c]]), bulges)
 
 
@@ -221,14 +221,14 @@ def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
     return found
 
 
-def _bored(one: CrossHole, outline: Hole, hole: Hole) -> float:
+def _bored(cross: CrossHole, outline: Hole, hole: Hole) -> float:
     """Volume that a cross hole takes from between a hole and an outline.
 
     The integral of the height of the bore times the way from hole to outline over its width, y = r sin a, by Gauss's
     rule between the corners of the hole.
     """
-    outer, inner = _turned(outline, -one.at), _turned(hole, -one.at)
-    radius = 0.5 * one.diameter
+    outer, inner = _turned(outline, -cross.at), _turned(hole, -cross.at)
+    radius = 0.5 * cross.diameter
     corners = inner[0][:, 1] / radius
     knots = np.unique(np.concatenate([[-0.5 * np.pi, 0.5 * np.pi], np.arcsin(corners[np.abs(corners) < 1.0])]))
     node, weight = gauss(GAUSS)

@@ -47,7 +47,7 @@ def unlimited(check: Check) -> Check:
 
 
 def limit_of(
-    implied: Callable[[float], float], given: float | None, tolerance: float, slack: float
+    implied: Callable[[float], float], limit: float | None, tolerance: float, slack: float
 ) -> tuple[float, float]:
     """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it.
 
@@ -55,4 +55,4 @@ def limit_of(
     """
     by_tolerance = implied(tolerance)
     room = implied(tolerance + slack) - by_tolerance
-    return (by_tolerance, room) if given is None else (given, min(room, SPLINE_SHARE * given))
+    return (by_tolerance, room) if limit is None else (limit, min(room, SPLINE_SHARE * limit))

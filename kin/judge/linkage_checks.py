@@ -74,9 +74,9 @@ def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:
     return off
 
 
-def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> float:
+def _band_less_sure(dwell: DwellAsked, mechanism: Mechanism, off: float) -> float:
     """Band within which an output stays for certain in the band asked for, if it may be off either way, rad or mm."""
-    band = asked.band - 2.0 * (float(np.radians(off)) if mechanism.unit == "deg" else off)
+    band = dwell.band - 2.0 * (float(np.radians(off)) if mechanism.unit == "deg" else off)
     if band <= 0.0:
         raise FrameError(
             f"the output may be off by {off:.3g} {mechanism.unit}, which leaves nothing of the dwell's band"
@@ -84,20 +84,20 @@ def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> floa
     return band
 
 
-def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
-    error, across, along = found.error, found.play_across, found.play_along
+def _output_check(linkage: LinkageVerdict, limits: Limits, slack: float) -> Check:
+    error, across, along = linkage.error, linkage.play_across, linkage.play_along
     detail = (
-        f"{found.centred.max:.3g} {error.unit} with the frame centred; "
+        f"{linkage.centred.max:.3g} {error.unit} with the frame centred; "
         f"backlash {across.least:.3g} to {across.most:.3g} mm across, "
         f"{along.least:.3g} to {along.most:.3g} mm along the frame"
     )
-    limit = found.limit if limits.output is None else limits.output
+    limit = linkage.limit if limits.output is None else limits.output
     if limit is None:
         detail = f"the mechanism binds within the tolerance, which thus implies no limit; {detail}"
         return Check("linkage-error", ok=False, value=error.max, limit=None, unit=error.unit, detail=detail)
-    room = 0.0 if found.limit is None else found.limit * slack / limits.tolerance
+    room = 0.0 if linkage.limit is None else linkage.limit * slack / limits.tolerance
     at = np.radians(error.at_deg)
-    return at_most("linkage-error", error.max, limit, error.unit, at=at, detail=detail, slack=room)
+    return at_most("linkage-error", error.max, limit, error.unit, angle=at, detail=detail, slack=room)
 
 
 def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:

@@ -30,10 +30,10 @@ def drawn_checks(
     """Check the openings of a drawing, in mm and no longer mirrored: each once at its place, and none besides."""
     through = [hole for hole in part.holes if hole.depth is None]
     tallies: Tallies = {}
-    tally(tallies, holes, through, tolerance, known=part.holes)
+    tally(tallies, holes, through, tolerance, settled=part.holes)
     shallow = [hole for hole in part.holes if hole.depth is not None]
     if shallow:
-        tally(tallies, engraved, shallow, tolerance, where=", engraved", known=part.holes)
+        tally(tallies, engraved, shallow, tolerance, where=", engraved", settled=part.holes)
     return _told(tallies, tolerance)
 
 
@@ -89,7 +89,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
     z, layer = level
     where = f" at z = {z:.6g} mm"
     if layer.outline is None:
-        tally(tallies, section.holes, layer.holes, tolerance, where=where, known=part.holes)
+        tally(tallies, section.holes, layer.holes, tolerance, where=where, settled=part.holes)
         for chain, surface in zip(section.surfaces, part.surfaces, strict=True):
             kind, envelope = "chamfer", surface.gauge.envelope
             if layer.inset != (0.0, 0.0):
@@ -107,7 +107,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
     (chain,) = section.surfaces
     bored = next((one for one in part.cross_holes if one.half_width(z) > 0.0), None)
     if bored is None:
-        tally(tallies, section.holes, layer.holes, tolerance, where=where, known=part.holes)
+        tally(tallies, section.holes, layer.holes, tolerance, where=where, settled=part.holes)
         off = apart(chain.contour, layer.outline.contour, FINE * tolerance)
         tallies[layer.outline.kind].measured(off, f"{layer.outline.name}{where} is off by {off:.3g} mm")
         return

@@ -120,10 +120,10 @@ class _Read(NamedTuple):
     uneven: float = 0.0
 
 
-def _demand_same(stated: float | None, given: float | None, path: Path) -> None:
+def _demand_same(stated: float | None, units: float | None, path: Path) -> None:
     """Refuse a unit that is given beside another one that the file states."""
-    if stated is not None and given is not None and not abs(stated / given - 1.0) <= UNITS_SHARE:
-        told = f"{path}: the file states its unit, {stated:.9g} mm; {given:.9g} mm is given for it"
+    if stated is not None and units is not None and not abs(stated / units - 1.0) <= UNITS_SHARE:
+        told = f"{path}: the file states its unit, {stated:.9g} mm; {units:.9g} mm is given for it"
         raise UnitsError(f"{told}, which is for files that state none")
 
 
@@ -183,33 +183,33 @@ def _opening_checks(
     return [bore] if bore else []
 
 
-def _units_check(stated: float | None, given: float | None, part: PartIntent, found: Parted) -> Check:
+def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: Parted) -> Check:
     """Check the unit of a drawing or a program: what it states counts, unless its size tells that it is misstated."""
     meant = part.mm
-    if stated is None and given is None:
+    if stated is None and units is None:
         told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
         return failed("units", f"{told}; give it by --units, such as --units mm", limit=UNITS_SHARE)
     if stated is None:
-        return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {given:.9g} mm is given")
+        return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {units:.9g} mm is given")
     off = abs(stated / meant - 1.0)
     detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is expected"
     if off > UNITS_SHARE:
-        chain, exact = found.surfaces[0], part.surfaces[0].gauge.envelope
+        chain, exact = parts.surfaces[0], part.surfaces[0].gauge.envelope
         large = float(np.abs(chain.contour.vertices).max() / np.abs(exact.points(SIZED)).max())
         if abs(large * meant / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
             return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
 
-def _closed_check(drawing: Drawing, found: Parted) -> Check:
+def _closed_check(drawing: Drawing, parts: Parted) -> Check:
     """Check that no surface crosses itself, and that nothing is drawn twice or without length."""
     faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
-    faults += _crossing_places(found)
+    faults += _crossing_places(parts)
     return _count_check("closed", faults)
 
 
-def _crossing_places(found: Parted) -> list[str]:
-    places = [place for chain in found.surfaces for place in crossings(chain.contour).point]
+def _crossing_places(parts: Parted) -> list[str]:
+    places = [place for chain in parts.surfaces for place in crossings(chain.contour).point]
     return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in places]
 
 
@@ -305,9 +305,9 @@ def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> l
     return found
 
 
-def _watertight_check(solid: AnySolid, found: Parted) -> Check:
+def _watertight_check(solid: AnySolid, parts: Parted) -> Check:
     """Check that each edge has two faces that run along it either way, facing outward, and no surface a crossing."""
-    return _count_check("watertight", [*solid.faults, *_crossing_places(found)])
+    return _count_check("watertight", [*solid.faults, *_crossing_places(parts)])
 
 
 def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Check:

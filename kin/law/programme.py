@@ -85,7 +85,7 @@ class Polynomial:
 
 
 @dataclass(frozen=True)
-class Run:
+class AcceleratedPiece:
     """Displacement under a given acceleration: s and s' at `start`, then peak sin(rate x), peak cos(rate x) or peak."""
 
     start: float
@@ -114,7 +114,7 @@ def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
     That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
     """
     run = stretch.function
-    if not (isinstance(run, Run) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
+    if not (isinstance(run, AcceleratedPiece) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
         return None
     if abs(run.rate / abs(stretch.width) - 1.0) > 4.0 * 2.0**-52:
         return None
@@ -137,7 +137,7 @@ def symmetric(
     half: list[Stretch] = []
     s = v = 0.0
     for (begin, end), (peak, rate, shape) in zip(pairwise(knots), runs, strict=True):
-        run = Run(begin, s, v, peak, rate, shape)
+        run = AcceleratedPiece(begin, s, v, peak, rate, shape)
         half.append(run)
         (s,), (v,) = run(Jet.variable(end, 1)).c
     images = [mirrored(function) for function in reversed(half[:-1] if centre else half)]

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from kin.linkage.four_bar import Linkage
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Mechanism", "Motion", "OutsideError", "PlaceError"]
+__all__ = ["LinkageMotion", "Mechanism", "OutsideError", "PlaceError"]
 
 QUARTER = 0.5 * math.pi
 # Rounding of a lift's own constants, as a part of the breadth.
@@ -70,7 +70,7 @@ class OutsideError(IntentError):
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class LinkageMotion:
     """A mechanism at relative angles theta (n,): derivatives by theta, (order + 1, n) each; rad and mm.
 
     `shaft` is phi; `joints` (2, order + 1, n) each are in the fixed axes; `faces` (2, order + 1, n); `solved` has all
@@ -166,7 +166,7 @@ class Mechanism:
         frame, _ = self._driven(np.zeros(1), 0)
         return float(frame.c[0, 0])
 
-    def at(self, theta: float | Array, order: int, side: Side = 1) -> Motion:
+    def at(self, theta: float | Array, order: int, side: Side = 1) -> LinkageMotion:
         """Give the motion at relative angles theta (n,); at a break the right-hand limits, or left (side -1).
 
         PlaceError where a loop cannot be closed, or has no derivative.
@@ -182,7 +182,7 @@ class Mechanism:
         shaft[0] += theta + self.start
         if frame.order > 0:
             shaft[1] += 1.0
-        return Motion(theta, shaft, solved)
+        return LinkageMotion(theta, shaft, solved)
 
     def driven(self, s: Jet, s1: Jet) -> tuple[Jet, Jet]:
         """theta_3 and output for any lifts of the frame's faces 1 and 2, as jets at n points. Raises BindingError."""

@@ -85,13 +85,13 @@ def halves(coefficients: Array) -> tuple[Array, Array]:
     return left, right
 
 
-def split(coefficients: Array, at: Array) -> tuple[Array, Array]:
-    """Coefficients (n, k+1, ...) over [0, at] and over [at, 1], `at` (n,)."""
+def split(coefficients: Array, share: Array) -> tuple[Array, Array]:
+    """Coefficients (n, k+1, ...) over [0, at] and over [at, 1], `share` (n,)."""
     rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
-    left, back = np.empty_like(rows), 1.0 - at
+    left, back = np.empty_like(rows), 1.0 - share
     left[0] = rows[0]
     for level in range(1, len(rows)):
-        rows[:-level] = rows[:-level] * back + rows[1 : len(rows) - level + 1] * at
+        rows[:-level] = rows[:-level] * back + rows[1 : len(rows) - level + 1] * share
         left[level] = rows[0]
     return np.ascontiguousarray(np.moveaxis(left, -1, 0)), np.ascontiguousarray(np.moveaxis(rows, -1, 0))
 

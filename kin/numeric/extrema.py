@@ -109,7 +109,7 @@ class _Block(NamedTuple):
     owner: Indices
 
 
-def _scan(found: Extremes, block: _Block, resolution: float) -> tuple[Extremes, NDArray[np.bool_]]:
+def _scan(extremes: Extremes, block: _Block, resolution: float) -> tuple[Extremes, NDArray[np.bool_]]:
     """Take in the ends of the intervals, and the extremes between where the cubic is trusted; and which to halve."""
     low, high, at_low, at_high, owner = block
     x, value, doubt = _cubic(high - low, at_low, at_high)
@@ -119,16 +119,16 @@ def _scan(found: Extremes, block: _Block, resolution: float) -> tuple[Extremes, 
         which, k = divmod(i, len(low))
         share = (0.0, 1.0, *x[:, k])[which]
         at = float(high[k] if which == 1 else low[k] + share * (high[k] - low[k]))
-        if rising and values[which, k] > found.greatest:
-            found = replace(found, greatest=float(values[which, k]), greatest_at=at, greatest_index=int(owner[k]))
-        if not rising and values[which, k] < found.least:
-            found = replace(found, least=float(values[which, k]), least_at=at, least_index=int(owner[k]))
+        if rising and values[which, k] > extremes.greatest:
+            extremes = replace(extremes, greatest=float(values[which, k]), greatest_at=at, greatest_index=int(owner[k]))
+        if not rising and values[which, k] < extremes.least:
+            extremes = replace(extremes, least=float(values[which, k]), least_at=at, least_index=int(owner[k]))
     if trusted.all():
-        return found, ~trusted
+        return extremes, ~trusted
     # Sixteen times the estimate covers an f''''' that swings, or a break of f''' nobody declared.
     top, bottom = np.maximum(values.max(axis=0), value.max(axis=0)), np.minimum(values.min(axis=0), value.min(axis=0))
-    promising = (top + 16.0 * doubt > found.greatest) | (bottom - 16.0 * doubt < found.least)
-    return found, ~trusted & promising
+    promising = (top + 16.0 * doubt > extremes.greatest) | (bottom - 16.0 * doubt < extremes.least)
+    return extremes, ~trusted & promising
 
 
 def _cubic(h: Array, at_low: Array, at_high: Array) -> tuple[Array, Array, Array]:

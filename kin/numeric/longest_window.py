@@ -102,12 +102,12 @@ def dwells(
     return _polished(chosen, lambda x: f(np.mod(x, period), 0)[0], search)
 
 
-def _demand_continuous(of: Pieces, band: float) -> None:
+def _demand_continuous(pieces: Pieces, band: float) -> None:
     """Refuse jumps between pieces or over the seam; less than this of the band is a matter of resolution."""
-    jump = np.abs(np.roll(of.coefficients[:, 0], -1) - of.coefficients[:, -1])
+    jump = np.abs(np.roll(pieces.coefficients[:, 0], -1) - pieces.coefficients[:, -1])
     worst = int(np.argmax(jump))
-    if jump[worst] > _JUMP * band + 4.0 * of.noise:
-        raise ValueError(f"the output jumps by {jump[worst]:.6g} at {of.x[worst + 1]:.9g}")
+    if jump[worst] > _JUMP * band + 4.0 * pieces.noise:
+        raise ValueError(f"the output jumps by {jump[worst]:.6g} at {pieces.x[worst + 1]:.9g}")
 
 
 class _Windows(NamedTuple):
@@ -147,15 +147,15 @@ class _Search:
     highest: list[Array]
 
     @staticmethod
-    def through(of: Pieces, band: float, period: float) -> _Search:
-        x = np.concatenate([of.x[:-1] - period, of.x[:-1], of.x[:-1] + period, [of.x[-1] + period]])
-        value = np.concatenate([np.tile(of.values[:-1], 3), of.values[:1]])
+    def through(pieces: Pieces, band: float, period: float) -> _Search:
+        x = np.concatenate([pieces.x[:-1] - period, pieces.x[:-1], pieces.x[:-1] + period, [pieces.x[-1] + period]])
+        value = np.concatenate([np.tile(pieces.values[:-1], 3), pieces.values[:1]])
         lowest, highest = [value], [value]
         while 2 ** len(lowest) <= len(value):
             half = 2 ** (len(lowest) - 1)
             lowest.append(np.minimum(lowest[-1][:-half], lowest[-1][half:]))
             highest.append(np.maximum(highest[-1][:-half], highest[-1][half:]))
-        return _Search(of, band, period, x, value, lowest, highest)
+        return _Search(pieces, band, period, x, value, lowest, highest)
 
     def local(self, piece: Indices) -> tuple[Indices, Array]:
         """Each piece (k,) as one of the period's own, and how far it is from there."""

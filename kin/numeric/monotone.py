@@ -54,9 +54,9 @@ SAME = 1e-6
 class RoughError(KinError, ArithmeticError):
     """A function that no polynomials follow to the resolution asked for; `at` is one of the places."""
 
-    def __init__(self, at: float, resolution: float) -> None:
-        super().__init__(f"the function is too rough to be resolved to {resolution:.3g} near {at:.9g}")
-        self.at = at
+    def __init__(self, place: float, resolution: float) -> None:
+        super().__init__(f"the function is too rough to be resolved to {resolution:.3g} near {place:.9g}")
+        self.at = place
         self.resolution = resolution
 
 
@@ -204,9 +204,9 @@ class Pieces:
         return float(ends[k, end]), float(self.x[k + end])
 
 
-def pieces(of: Cells, row: int = 0) -> Pieces:
+def pieces(cells: Cells, row: int = 0) -> Pieces:
     """Cut one of the functions into pieces."""
-    low, high, c, noise = of.low, of.high, of.coefficients[row], of.noise[row]
+    low, high, c, noise = cells.low, cells.high, cells.coefficients[row], cells.noise[row]
     least = LEAST_CELL * (high[-1] - low[0])
     done = []
     while len(low):

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import camgeo
-from camgeo.output.output_folder import Run
+from camgeo.output.output_folder import RunFolder
 
 ROOT = Path(__file__).parents[2]
 
@@ -115,7 +115,7 @@ def test_type_checkers_see_the_names() -> None:
 
 def test_errors_of_the_surroundings_are_named_and_can_be_pickled(tmp_path: Path) -> None:
     recipe = camgeo.load("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {tolerance: 0.05, files: [dxf]}\n")
-    with Run(tmp_path, "recipe"), pytest.raises(camgeo.BusyError, match="another run is at work here") as caught:
+    with RunFolder(tmp_path, "recipe"), pytest.raises(camgeo.BusyError, match="another run is at work here") as caught:
         camgeo.export(recipe, tmp_path)
     assert isinstance(caught.value, camgeo.SurroundingsError)
     again = pickle.loads(pickle.dumps(caught.value))

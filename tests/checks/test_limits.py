@@ -81,6 +81,10 @@ FACE = f"cam: {{kind: disc, base_radius: 36, follower: {{kind: flat, tilt: 8, of
     "dxf", "csv"
 )
 HELD = YOKE.replace("base_radius: 40", "base_radius: 40\n  preload: {interference: 0.02, stiffness: [1.0e7]}") + VERIFY
+LOBE = (
+    "cam: {kind: disc, base_radius: 18, follower: {kind: flat}, "
+    "motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}}\n" + VERIFY
+)
 RIGID = STEM.replace("stiffness: 2.0e5", "width: 10, material: steel")
 # of each figure a recipe that has it
 HAVE = {
@@ -95,6 +99,10 @@ HAVE = {
     **dict.fromkeys(("preload-force-least", "preload-force-greatest"), HELD),
     **dict.fromkeys(("contact-force-least", "contact-force-greatest", "shaft-torque", "contact-pressure"), RIGID),
     **dict.fromkeys(("guide-force", "mean-roller-force"), RIGID),
+    **dict.fromkeys(
+        ("mass", "centre-of-mass", "inertia", "unbalance"), FLAT.replace("bore: 10", "bore: 10, density: 7850")
+    ),
+    **dict.fromkeys(("duration", "lobe-centre", "ramp-velocity", "lift-area"), LOBE),
     "face-width": FACE,
     "law-error": WANTED,
     "least-backlash": YOKE + VERIFY + LOOSE,
@@ -295,6 +303,8 @@ def test_a_figure_that_a_recipe_has_not() -> None:
         "material": FLAT,
         "bearing": FLAT,
         "reaction": FLAT,
+        "wanted": ROLLER,
+        "density": FLAT,
     }
     for name, figure in FIGURES.items():
         if figure.needs:
@@ -385,6 +395,7 @@ def test_the_schema_knows_every_limit() -> None:
     assert schema["additionalProperties"] is False
     more = {"pressure-angle": {"on_return"}, **{f"peak-{one}-at-speed": {"rpm"} for one in ("velocity", "jerk")}}
     more["peak-acceleration-at-speed"] = {"rpm"}
+    more |= {name: {"at_lift"} for name in ("duration", "lobe-centre", "ramp-velocity", "lift-area")}
     for name, bounds in schema["properties"].items():
         assert set(bounds["properties"]) == {"at_least", "at_most"} | more.get(name, set())
         assert bounds["minProperties"] == 1

@@ -22,7 +22,7 @@ from camgeo.cli import batch
 from camgeo.cli.main import main
 from camgeo.common import system, workers
 from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.output.output_folder import Run
+from camgeo.output.output_folder import RunFolder
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -113,13 +113,13 @@ def test_an_open_lock_cannot_be_removed(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_lock_that_a_killed_run_left(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from pathlib import Path; from camgeo.output.output_folder import Run\n"
-        f"with Run(Path(sys.argv[1]), {NAME!r}): print('held', flush=True); time.sleep(60)"
+        "import sys, time; from pathlib import Path; from camgeo.output.output_folder import RunFolder\n"
+        f"with RunFolder(Path(sys.argv[1]), {NAME!r}): print('held', flush=True); time.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
         assert holder.stdout.readline() == "held\n"
-        with pytest.raises(BusyError), Run(tmp_path, NAME):
+        with pytest.raises(BusyError), RunFolder(tmp_path, NAME):
             pass
         holder.kill()
     assert (tmp_path / f".{NAME}.lock").exists()

@@ -12,7 +12,7 @@ from support.dynamics_oracle import Cycloid, Oracle, harmonic
 
 from kin.dynamics.drive import Drive, DriveError, drives
 from kin.dynamics.oscillator import Oscillator
-from kin.dynamics.peaks import Figure
+from kin.dynamics.peaks import ResponseFigure
 from kin.dynamics.response import Forcing, Samples, StiffnessError, response
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.numeric.chebyshev import DEGREE, DERIVATIVE, INTEGRAL, NODES, evaluated, fitted
@@ -168,7 +168,7 @@ def test_a_cycloidal_rise_and_what_rings_on_in_the_dwell(r, zeta):
                 (found.drive.knots[:-1] >= at - 1e-9) & (found.drive.knots[1:] <= at + duration + 1e-9)
             )
             amplitude = float(((z**2 + (v / r) ** 2) ** 0.5).real)
-            peaks = Figure.of(found, 1.0, 0.0).peaks(starts, inside)
+            peaks = ResponseFigure.of(found, 1.0, 0.0).peaks(starts, inside)
             if r * float(duration) > TURN:
                 assert peaks.greatest == pytest.approx(amplitude, rel=1e-9)
                 assert -peaks.least == pytest.approx(amplitude, rel=1e-9)

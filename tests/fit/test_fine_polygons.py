@@ -14,7 +14,7 @@ from camgeo.recipe.loading import load
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
-    from camgeo.fit.edges import Placed, Seen
+    from camgeo.fit.edges import Placed, Sagittas
     from kin.numeric.arrays import Array
 
 RECIPES = Path(__file__).parents[2] / "recipes"
@@ -29,7 +29,7 @@ def test_edges_and_rounds_are_few_where_rounding_shows(
     curve: Curve = load(RECIPES / f"{recipe}.yaml").cam.exact().surfaces[0].curve
     rounds = 0
 
-    def counted(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
+    def counted(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Sagittas:
         nonlocal rounds
         rounds += 1
         return look(curve, edges, sides, tolerance)

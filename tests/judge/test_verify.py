@@ -271,15 +271,15 @@ def test_a_trimmed_undercut_of_rollers(tmp_path):
 
 
 def test_checks_carry_their_figures():
-    check = at_most("motion", 0.002, 0.001, "mm", at=-np.pi / 2, detail="why")
+    check = at_most("motion", 0.002, 0.001, "mm", angle=-np.pi / 2, detail="why")
     assert check == Check("motion", False, 0.002, 0.001, "mm", 270.0, "at_most", None, "why")
     assert about(check, "cam.dxf").file == "cam.dxf"
     assert at_most("x", 1.0 + 1e-12, 1.0, "mm", slack=1e-11).ok
     assert not at_most("x", 1.0 + 1e-10, 1.0, "mm", slack=1e-11).ok
     assert at_most("x", float("nan"), 1.0, "mm") == Check("x", False, None, 1.0, "mm")
-    assert at_most("x", 0.0, 1.0, "mm", at=float("nan")).at_deg is None
+    assert at_most("x", 0.0, 1.0, "mm", angle=float("nan")).at_deg is None
     assert failed("closed", "open").value is None
-    assert at_most("x", 0.0, 1.0, "mm", at=-1e-18).at_deg == 0.0
+    assert at_most("x", 0.0, 1.0, "mm", angle=-1e-18).at_deg == 0.0
 
 
 def test_no_contact_is_a_motion_that_fails(tmp_path):

@@ -15,7 +15,7 @@ from support import sets
 from support.sets import NAME, STEPS, export, names_of, write
 
 from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import Run
+from camgeo.output.output_folder import RunFolder
 
 
 def generation_of(folder, *, size=1):
@@ -53,7 +53,7 @@ def test_sets_replace_one_another_and_leave_other_files_alone(tmp_path):
 
 
 def stopped(out, error):
-    with Run(out, NAME) as run:
+    with RunFolder(out, NAME) as run:
         write(run.folder, 3)
         raise error
 
@@ -64,7 +64,7 @@ def test_the_output_folder_is_made(tmp_path):
 
 def test_nothing_changes_without_a_commit(tmp_path):
     export(tmp_path, 1)
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 2)
     assert generation_of(tmp_path / NAME) == 1
     with pytest.raises(RuntimeError, match="stop"):
@@ -76,7 +76,7 @@ def test_nothing_changes_without_a_commit(tmp_path):
 def test_a_rejected_set_stands_beside(tmp_path):
     export(tmp_path, 1)
     for generation in (2, 3):
-        with Run(tmp_path, NAME) as run:
+        with RunFolder(tmp_path, NAME) as run:
             write(run.folder, generation)
             assert run.reject() == tmp_path / "cam.rejected"
         assert generation_of(tmp_path / NAME) == 1
@@ -86,7 +86,7 @@ def test_a_rejected_set_stands_beside(tmp_path):
 
 def test_files_of_other_formats_are_kept_on_request(tmp_path):
     export(tmp_path, 1)
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 2, ["cam.dxf"])
         kept = run.kept()
         assert kept == ("cam-1.stl", "cam.csv")
@@ -97,7 +97,7 @@ def test_files_of_other_formats_are_kept_on_request(tmp_path):
     assert (folder / "cam.dxf").read_text() == "2 cam.dxf\n"
     assert (folder / "cam.csv").read_text() == "1 cam.csv\n"
     (folder / "cam.csv").unlink()  # by hand
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 3, ["cam.dxf"])
         assert run.kept() == ("cam-1.stl",)
         run.commit(["cam.dxf"])
@@ -105,7 +105,7 @@ def test_files_of_other_formats_are_kept_on_request(tmp_path):
 
 
 def test_nothing_is_kept_of_no_set(tmp_path):
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         assert run.kept() == ()
 
 
@@ -118,12 +118,12 @@ class TestSurroundings:
         assert hidden(tmp_path) == []
 
     def test_one_run_at_a_time(self, tmp_path):
-        with Run(tmp_path, NAME) as run:
+        with RunFolder(tmp_path, NAME) as run:
             self_message = f"{tmp_path / NAME}: another run is at work here (it holds .cam.lock)"
-            with pytest.raises(SurroundingsError) as caught, Run(tmp_path, NAME):
+            with pytest.raises(SurroundingsError) as caught, RunFolder(tmp_path, NAME):
                 pass
             assert str(caught.value) == self_message
-            with Run(tmp_path, "cam2") as other:
+            with RunFolder(tmp_path, "cam2") as other:
                 write(other.folder, 5, ["cam2.dxf"])
                 other.commit(["cam2.dxf"])
             run.commit(write(run.folder, 1))
@@ -180,7 +180,7 @@ class TestSurroundings:
 
     def test_a_linked_lock_is_not_followed(self, tmp_path):
         (tmp_path / ".cam.lock").symlink_to(tmp_path / "elsewhere")
-        with pytest.raises(SurroundingsError), Run(tmp_path, NAME):
+        with pytest.raises(SurroundingsError), RunFolder(tmp_path, NAME):
             pass
         assert not (tmp_path / "elsewhere").exists()
 
@@ -201,7 +201,7 @@ class TestSurroundings:
 
     def test_an_output_folder_that_cannot_be(self, tmp_path):
         (tmp_path / "out").write_text("a file")
-        with pytest.raises(SurroundingsError) as caught, Run(tmp_path / "out", NAME):
+        with pytest.raises(SurroundingsError) as caught, RunFolder(tmp_path / "out", NAME):
             pass
         assert caught.value.path.name == "out"
         assert isinstance(caught.value.__cause__, OSError)
@@ -227,12 +227,12 @@ class TestSurroundings:
 )
 def test_a_name_cannot_leave_the_folder(tmp_path, name):
     with pytest.raises(ValueError, match="is not the name of an output folder"):
-        Run(tmp_path, name)
+        RunFolder(tmp_path, name)
 
 
 @pytest.mark.parametrize("name", ["../cam.dxf", "other.dxf", "cam", ".cam.dxf", "cam/../x.dxf"])
 def test_a_file_has_the_name_of_its_recipe(tmp_path, name):
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 1)
         with pytest.raises(ValueError, match="is not the name of a file of cam"):
             run.commit([name])
@@ -241,7 +241,7 @@ def test_a_file_has_the_name_of_its_recipe(tmp_path, name):
 
 
 def test_what_was_not_written_is_not_committed(tmp_path):
-    with Run(tmp_path, NAME) as run:
+    with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 1)
         with pytest.raises(ValueError, match=r"^cam\.step was not written into "):
             run.commit(["cam.dxf", "cam.step"])
@@ -312,7 +312,7 @@ def test_any_step_may_fail(tmp_path, times):
             assert generation_of(out / NAME) == (1 if failed else 2)
         else:
             assert_whole(out, 1, 2)
-        with Run(out, NAME):
+        with RunFolder(out, NAME):
             generation = generation_of(out / NAME)
         if not failed:
             assert generation == 2
@@ -347,10 +347,10 @@ def test_any_step_of_the_recovery_may_fail(tmp_path, cut_off, times):
         shutil.copytree(cut_off, out)
         with pytest.MonkeyPatch.context() as patch:
             Failing(patch, first, times)
-            with suppress(SurroundingsError), Run(out, NAME):
+            with suppress(SurroundingsError), RunFolder(out, NAME):
                 pass
         assert_whole(out, 1, 2)
-        with Run(out, NAME):
+        with RunFolder(out, NAME):
             assert generation_of(out / NAME) in {1, 2}
         assert_users_files(out)
         assert hidden(out) == []
@@ -397,7 +397,7 @@ def test_killed_at_any_step(tmp_path):
         ended = not killed(out, 2, step)
         assert_whole(out, 1, 2)
         mixed += (out / ".cam.swap").exists()
-        with Run(out, NAME):
+        with RunFolder(out, NAME):
             generation = generation_of(out / NAME)
         assert hidden(out) == []
         assert_users_files(out)
@@ -423,7 +423,7 @@ def test_killed_at_random_moments(tmp_path):
             told = [int(line) for line in writer.stdout.read().split()]
         done = told[-1] if told else done
         assert_whole(tmp_path, done, done + 1, size=2000)
-        with Run(tmp_path, NAME):
+        with RunFolder(tmp_path, NAME):
             last = generation_of(tmp_path / NAME, size=2000)
         assert last in {done, done + 1}
         assert hidden(tmp_path) == []

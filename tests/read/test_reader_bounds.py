@@ -18,7 +18,7 @@ from kin.read.gcode import read_gcode
 from kin.read.mesh import threemf
 from kin.read.mesh.mesh import Mesh
 from kin.read.nesting import MOST_CONTOURS, nested
-from kin.read.size import MOST_BYTES
+from kin.read.size import MOST_BYTES, contents
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="-50 -50 100 100">'
 
@@ -121,7 +121,8 @@ def test_a_file_is_refused_by_its_size_before_it_is_read(tmp_path, monkeypatch, 
     path, kind = tmp_path / f"cam{suffix}", SUFFIXES[suffix]
     recipe = tmp_path / "cam.yaml"
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\n")
-    read = {"dxf": read_drawing, "svg": read_drawing, "gcode": read_gcode}.get(kind_of(path), read_solid)
+    others = {"dxf": read_drawing, "svg": read_drawing, "gcode": read_gcode, "csv": lambda path: contents(path, "csv")}
+    read = others.get(kind_of(path), read_solid)
     for size, told in ((MOST_BYTES[kind] + 1, "MB are read"), (3 << 30, "3221 MB, and of a")):
         with path.open("wb") as stream:
             stream.truncate(size)

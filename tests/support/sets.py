@@ -6,7 +6,7 @@ import sys
 from itertools import count
 from pathlib import Path
 
-from camgeo.output.output_folder import Run
+from camgeo.output.output_folder import RunFolder
 
 NAME = "cam"
 STEPS = ("rename", "replace", "unlink", "link", "mkdir", "rmdir")
@@ -27,7 +27,7 @@ def write(folder, generation, names=None, size=1):
 
 
 def export(out, generation, *, size=1):
-    with Run(out, NAME) as run:
+    with RunFolder(out, NAME) as run:
         return run.commit(write(run.folder, generation, size=size))
 
 

@@ -155,11 +155,11 @@ class _Search:
         first = own[first]
         return Boxes(np.column_stack([low[first], low[second]]), np.column_stack([high[first], high[second]]))
 
-    def turned(self, found: Iterable[Neck]) -> list[Neck]:
+    def turned(self, necks: Iterable[Neck]) -> list[Neck]:
         """Necks with their images by all turns that lead the curve into itself."""
         shape = self.pitch.curve.shape
         by = [shape.period / shape.repeats * k for k in range(shape.repeats)]
-        return [Neck(n.first + turn, n.second + turn, n.half) for n in found for turn in by]
+        return [Neck(n.first + turn, n.second + turn, n.half) for n in necks for turn in by]
 
     def far(self, boxes: Boxes) -> Boxes:
         """Boxes of which the pairs are not all near, one way round or the other."""
@@ -170,7 +170,7 @@ class _Search:
             near |= self.turning.near(boxes.low[:, one], boxes.high[:, other] + np.where(before, period, 0.0))
         return Boxes(boxes.low[~near], boxes.high[~near])
 
-    def sifted(self, boxes: Boxes, least: _Least, found: list[Neck]) -> tuple[Boxes, _Least]:
+    def sifted(self, boxes: Boxes, least: _Least, necks: list[Neck]) -> tuple[Boxes, _Least]:
         """Boxes, divided, in which R may still fall below the least seen, and that after what was found in these."""
         boxes = self.far(boxes)
         if boxes.low.shape[0] == 0:
@@ -190,8 +190,8 @@ class _Search:
             # |x - y| falls by no more than its share slant^2 / 2 bowl from there: Newton's method has come close enough
             held &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
             free[bowls[held]] = True
-            found += [Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[held], half[held], strict=True)]
-            narrowest = min(found, key=lambda n: n.half, default=None)
+            necks += [Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[held], half[held], strict=True)]
+            narrowest = min(necks, key=lambda n: n.half, default=None)
             if narrowest is not None and narrowest.half < least[0]:
                 least = narrowest.half, (narrowest.first, narrowest.second)
         return _divided(boxes, pairs.centre, pairs.doubt.T, ~free), least
@@ -222,9 +222,9 @@ def _pair(at: Array) -> tuple[float, float]:
     return float(at[0]), float(at[1])
 
 
-def _divided(boxes: Boxes, centre: Array, doubt: Array, kept: NDArray[np.bool_]) -> Boxes:
+def _divided(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.bool_]) -> Boxes:
     """Halve the kept boxes, along both intervals unless one leaves much less in doubt."""
-    low, high, centre, doubt = boxes.low[kept], boxes.high[kept], centre[kept], doubt[kept]
+    low, high, centre, doubt = boxes.low[doubtful], boxes.high[doubtful], centre[doubtful], doubt[doubtful]
     for side in (0, 1):
         cut = doubt[:, side] > 0.5 * doubt[:, 1 - side]
         upper, lower = low[cut].copy(), high[cut].copy()
@@ -273,10 +273,10 @@ def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Arra
     return 0.5 * length, (slant <= 1e-6) & inside, slant
 
 
-def _distinct(found: list[Neck], limit: float, period: float) -> tuple[Neck, ...]:
+def _distinct(necks: list[Neck], limit: float, period: float) -> tuple[Neck, ...]:
     """Narrowest necks, each once; its first end is the lower parameter."""
     kept: list[Neck] = []
-    for neck in sorted(found, key=lambda n: n.half):
+    for neck in sorted(necks, key=lambda n: n.half):
         if neck.half > limit * (1.0 + NECK_SHARPNESS):
             break
         a, b = sorted((neck.first % period, neck.second % period))

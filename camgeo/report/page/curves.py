@@ -130,9 +130,9 @@ def _bounds(recipe: Recipe, series: Sequence[Series]) -> tuple[tuple[float, str]
     )
 
 
-def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
+def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
     """Return the plot of the levers of a flat pair's contacts about its pivot, mm (STEPS + 1,) each."""
-    series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", found, strict=True))
+    series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", lengths, strict=True))
     note = "a flat face is pushed along its normal; the lever is that of the push about the pivot"
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 

@@ -110,17 +110,17 @@ class Exact:
     kept: NDArray[np.bool_]
 
     @staticmethod
-    def of(design: Design, made: SurfaceDesign, per: int) -> Exact:
+    def of(design: Design, surface: SurfaceDesign, per: int) -> Exact:
         """Sample the contour of one of a design's surfaces."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
-        curve = made.surface.curve
+        curve = surface.surface.curve
         t = next(iter(design.motion.parameters(shaft, shaft).values()))
-        frame, base = curve.sample(t), made.surface.base.sample(t)
+        frame, base = curve.sample(t), surface.surface.base.sample(t)
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = base.speed / base.turn
         kept = np.ones(len(t), dtype=np.bool_)
-        if made.trimmed and made.contour is not None:
-            inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in made.contour.runs]
+        if surface.trimmed and surface.contour is not None:
+            inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in surface.contour.runs]
             kept = np.any(inside, axis=0)
         return Exact(per, frame.point, frame.normal, radius, base.curvature, kept)
 

@@ -25,7 +25,7 @@ RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that 
 LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watched to where it came from
 
 
-def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
+def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
     """Return the page of a recipe from what it shows and what the report says."""
     ok = report["ok"]
     parts = {
@@ -33,9 +33,9 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         "about": escape(recipe.about),
         "verdict": "every check holds" if ok else tables.failing(report["checks"]),
         "state": "ok" if ok else "failed",
-        "note": escape(found.scene.note),
+        "note": escape(content.scene.note),
         "facts": tables.facts(report),
-        "drawing": svg.moving(found.scene),
+        "drawing": svg.moving(content.scene),
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
@@ -44,7 +44,7 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         "recipe": escape(recipe.text),
         "style": asset("drawing.css") + looks.rules() + asset("page.css"),
         "script": asset("page.js"),
-        "data": encoded(data(recipe, found)),
+        "data": encoded(data(recipe, content)),
     }
     head, *rest = asset("page.html").split("{{")
     text = [head]
@@ -60,25 +60,25 @@ def encoded(values: object) -> str:
     return text.replace("<", "\\u003c")
 
 
-def data(recipe: Recipe, found: Content) -> dict[str, Any]:
+def data(recipe: Recipe, content: Content) -> dict[str, Any]:
     """Return what the script moves and plots; angles in degrees, lengths in the recipe's unit."""
-    view = svg.View.of(found.scene)
+    view = svg.View.of(content.scene)
     extent = max(view.width, view.height) / view.scale
-    at = [*found.point.T, *found.normal.T]
+    at = [*content.point.T, *content.normal.T]
     return {
         "name": recipe.name,
         "unit": "in" if recipe.units == "inch" else "mm",
         "sense": -1 if recipe.rotation == "cw" else 1,
         "steps": STEPS,
         "view": [view.scale, view.x, view.y],
-        "bodies": [_pose(body, extent) for body in found.scene.bodies],
-        "plots": [_plot(plot) for plot in found.plots],
-        "rests": [[rest.start, rest.length, rest.name] for rest in found.rests],
-        "relative": packed(np.degrees(found.relative)),
-        "linked": any(plot.over == "relative" for plot in found.plots),
+        "bodies": [_pose(body, extent) for body in content.scene.bodies],
+        "plots": [_plot(plot) for plot in content.plots],
+        "rests": [[rest.start, rest.length, rest.name] for rest in content.rests],
+        "relative": packed(np.degrees(content.relative)),
+        "linked": any(plot.over == "relative" for plot in content.plots),
         "contour": [packed(row) for row in at],
         "errors": [
-            {"file": error.name, "low": packed(error.low), "high": packed(error.high)} for error in found.errors
+            {"file": error.name, "low": packed(error.low), "high": packed(error.high)} for error in content.errors
         ],
     }
 

@@ -65,18 +65,18 @@ def _remark(remark: dict[str, Any]) -> str:
     return _row(("remark", "remark"), remark, usual, "shaft", remark["sentence"])
 
 
-def _row(state: tuple[str, str], one: dict[str, Any], limit: str, over: str, told: str) -> str:
+def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, text: str) -> str:
     """Return the row of a check or a remark; `state` is its class and its word."""
-    value = number(one["value"])
-    if state[1] == "holds" and one["value"] is not None:
-        value = _hinted(value_text(one), one["value"])
-    detail = f'<div class="detail">{escape(told)}</div>' if told else ""
+    value = number(check["value"])
+    if state[1] == "holds" and check["value"] is not None:
+        value = _hinted(value_text(check), check["value"])
+    detail = f'<div class="detail">{escape(text)}</div>' if text else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
-        f'<th scope="row">{escape(title(one))}{detail}</th>'
+        f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
-        f"<td>{escape(_unit(one['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(one['at_deg'], over))}"
-        f"{_cell(escape(one.get('file', '')), 'file')}</tr>"
+        f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
+        f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
 
@@ -246,9 +246,9 @@ def dynamics(report: dict[str, Any]) -> str:
     return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
 
 
-def _figure(value: float | None, at: float | None) -> str:
+def _figure(value: float | None, angle: float | None) -> str:
     """Return a figure with the place where it is."""
-    return number(value) if value is None or at is None else f"{number(value)} {_place(at, 'shaft')}"
+    return number(value) if value is None or angle is None else f"{number(value)} {_place(angle, 'shaft')}"
 
 
 def skipped(report: dict[str, Any]) -> str:
@@ -282,15 +282,15 @@ def _hinted(short: str, value: float) -> str:
     return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
-def _place(at: float | None, over: str) -> str:
-    if at is None:
+def _place(angle: float | None, over: str) -> str:
+    if angle is None:
         return NONE
     name = "relative angle" if over == "relative" else "shaft angle"
-    label = f"turn to {at:.2f} degrees of the {name}"
+    label = f"turn to {angle:.2f} degrees of the {name}"
     mark = " rel." if over == "relative" else ""
     return (
-        f'<button type="button" class="go" data-deg="{at:.6f}" data-over="{over}" aria-label="{label}">'
-        f"{at:.2f}°{mark}</button>"
+        f'<button type="button" class="go" data-deg="{angle:.6f}" data-over="{over}" aria-label="{label}">'
+        f"{angle:.2f}°{mark}</button>"
     )
 
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.sweep import Axis as Varied
     from camgeo.recipe.sweep import Sweep
-    from camgeo.sweep.search.figures import Found
+    from camgeo.sweep.search.figures import FigureTable
     from camgeo.sweep.search.gather import Floats
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
@@ -130,7 +130,7 @@ class Ask:
         screen = Evaluator.of(self.recipe, self.paths, figures=self._estimated, screened=True).screen
         return screen if isinstance(screen, str) else ""
 
-    def exactly(self, values: Floats) -> Found:
+    def exactly(self, values: Floats) -> FigureTable:
         """All figures of designs with the values (m, axes) of the sweep, and why one has none, from each design."""
         scene = self.scene(self.all_figures)
         return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures).found(values)

@@ -155,17 +155,17 @@ def _of(values: Array, nodes: Indices) -> Array:
     return found
 
 
-def lengths(found: Ends, band: float) -> Array:
+def lengths(ends: Ends, band: float) -> Array:
     """Lengths of m windows, drawn out or in to where the output leaves the best band that holds the core; (m,).
 
     The band [y, y + band] may lie where it will as long as it holds the core; raising it moves ends that lie on its
     floor inward and ends on its ceiling outward, each by 1/slope. So the best y is the lowest, the highest, or where
     the slopes balance, which is found by bisection.
     """
-    best, gain = _length(found, found.high - band, band)
+    best, gain = _length(ends, ends.high - band, band)
     rising = gain > 0.0  # of most windows both ends lie on the floor, and the lowest band is the best
     if rising.any():
-        part = found.part(rising)
+        part = ends.part(rising)
         below, above = part.high - band, part.low
         longest, _ = _length(part, above, band)
         longest = np.maximum(longest, best[rising])
@@ -175,14 +175,14 @@ def lengths(found: Ends, band: float) -> Array:
             longest = np.maximum(longest, length)
             below, above = np.where(gain > 0.0, y, below), np.where(gain > 0.0, above, y)
         best[rising] = longest
-    return np.where(found.whole, _TURN, np.minimum(best, _TURN))
+    return np.where(ends.whole, _TURN, np.minimum(best, _TURN))
 
 
-def _length(found: Ends, floor: Array, band: float) -> tuple[Array, Array]:
+def _length(ends: Ends, floor: Array, band: float) -> tuple[Array, Array]:
     """Length within [floor, floor + band], and its derivative by the floor."""
-    behind, slope_behind = _reach(found.behind, floor, floor + band)
-    ahead, slope_ahead = _reach(found.ahead, floor, floor + band)
-    return found.core + behind + ahead, slope_behind + slope_ahead
+    behind, slope_behind = _reach(ends.behind, floor, floor + band)
+    ahead, slope_ahead = _reach(ends.ahead, floor, floor + band)
+    return ends.core + behind + ahead, slope_behind + slope_ahead
 
 
 def _reach(side: Array, floor: Array, ceiling: Array) -> tuple[Array, Array]:

@@ -48,7 +48,7 @@ DWELLS = (DWELL, "dwell-relative")
 _HEAP = 3 << 20  # numbers, 24 MB
 
 
-class Found(NamedTuple):
+class FigureTable(NamedTuple):
     """Figures by name, (m,) each, in mm and degrees, rates by radian of the shaft; and a number of REASONS, (m,)."""
 
     figures: dict[str, Array]
@@ -173,7 +173,7 @@ class Evaluator:
     def _by_words(self) -> dict[tuple[float, ...], Evaluator | None]:
         return {}
 
-    def _each_word(self, values: Array) -> Found:
+    def _each_word(self, values: Array) -> FigureTable:
         """The figures of designs by the words that they have."""
         m = len(values)
         figures = {name: np.full(m, np.nan) for name in self.wanted}
@@ -187,7 +187,7 @@ class Evaluator:
                 reason[rows] = found.reason
                 for name, column in found.figures.items():
                     figures[name][rows] = column
-        return Found(figures, reason)
+        return FigureTable(figures, reason)
 
     @cached_property
     def screen(self) -> Screen | str:
@@ -225,7 +225,7 @@ class Evaluator:
         linkage = self.recipe.linkage
         return 1.0 if linkage is not None and output_slides(linkage) else math.degrees(1.0)
 
-    def found(self, values: Array) -> Found:
+    def found(self, values: Array) -> FigureTable:
         """Give the figures of designs with values (m, k) at the paths, as the recipe writes them.
 
         A design that does not exist or does not turn has nan for all figures. One that breaks a limit of the recipe's
@@ -244,7 +244,7 @@ class Evaluator:
                 found, reason[:] = self.estimator.found(values)
             figures.update(found)
             reason[(reason == FINE) & self._broken(figures)] = BROKEN
-            return Found(figures, reason)
+            return FigureTable(figures, reason)
         rows = max(1, BLOCK // self.count)
         kept: list[tuple[NDArray[np.intp], dict[str, Ends]]] = []
         for first in range(0, m, rows):
@@ -263,7 +263,7 @@ class Evaluator:
         for column in figures.values():
             column[bad] = np.nan
         reason[(reason == FINE) & self._broken(figures)] = BROKEN
-        return Found(figures, reason)
+        return FigureTable(figures, reason)
 
     @property
     def _band(self) -> float:

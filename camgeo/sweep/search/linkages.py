@@ -81,7 +81,7 @@ def _quarter_on(values: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Loop:
+class LoopArrays:
     """What the loops of a kind come down to, (m, n) each.
 
     `side` is -1 for crossed. `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are
@@ -125,7 +125,7 @@ class Loop:
         return angle
 
 
-class InvertedLoop(Loop):
+class InvertedLoop(LoopArrays):
     """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; x and q stand empty."""
 
     dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker", "joint_offset")
@@ -180,7 +180,7 @@ class InvertedLoop(Loop):
         return np.abs(along) / _length(along, across)
 
 
-class CouplerLoop(Loop):
+class CouplerLoop(LoopArrays):
     """The frame is the coupler: what a four-bar and a slider-crank share."""
 
     @staticmethod

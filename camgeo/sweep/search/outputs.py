@@ -53,7 +53,7 @@ class Files:
 
 def outputs(
     ask: Ask,
-    found: Gathered,
+    designs: Gathered,
     best: Sequence[Best],
     run: Entry,
     reasons: Sequence[str] = (),
@@ -63,21 +63,21 @@ def outputs(
     `reasons` are the words for the numbers of why a design does not turn.
     """
     files = Files()
-    units = ask.units(found.figures)
-    table, marks = with_polished(found, best, ask.ranking)
+    units = ask.units(designs.figures)
+    table, marks = with_polished(designs, best, ask.ranking)
     told = {name: mark for name, mark in marks.items() if ask.sweep.refine or name != "polished"}
     heads = columns(ask.plan, table, units, told)
     files.make(TABLES[:1], lambda: [as_csv(heads)])
     about = {"recipe": ask.recipe.name, "camgeo": __version__, "units": ask.recipe.units}
     files.make(TABLES[1:], lambda: [as_parquet(heads, about)])
-    files.make(PICTURES[:2], lambda: _map(ask, found, best))
+    files.make(PICTURES[:2], lambda: _map(ask, designs, best))
     for design in best:
         files.made[design.file] = recipe_text(ask, design).encode()
     if best:
         files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
-    report = _report(ask, found, best, reasons)
+    report = _report(ask, designs, best, reasons)
     report["counts"]["rows"] = table.rows
-    report["screen"] = None if ask.recipe.linkage is not None else _screen(ask, found.certificate)
+    report["screen"] = None if ask.recipe.linkage is not None else _screen(ask, designs.certificate)
     for design in best:
         if design.why:
             files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
@@ -92,19 +92,19 @@ def _named(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _map(ask: Ask, found: Gathered, best: Sequence[Best]) -> list[bytes]:
+def _map(ask: Ask, designs: Gathered, best: Sequence[Best]) -> list[bytes]:
     """The map as PNG and SVG."""
     rank = ask.sweep.rank
     unit = ask.units([rank])[rank]
     paths = [axis.path for axis in ask.plan.axes]
     flat = len(paths) > 1
-    counts = found.counts
+    counts = designs.counts
     notes = f"{counts.kept:,} of {counts.computed:,} designs kept"
     if FIGURES[rank].needs == "dwell":
         notes += f"; band of {_band(ask)}"
     if len(paths) > 2:
         notes += f"; each cell shows the best over {_and(paths[2:])}"
-    cells = found.cells.scaled(1.0 / unit.divisor)
+    cells = designs.cells.scaled(1.0 / unit.divisor)
     places = [[b.values[paths[0]], b.values[paths[1]] if flat else b.figures[rank] / unit.divisor] for b in best]
     pictures = draw_map(
         f"{ask.recipe.name}: {FIGURES[rank].about.split(',')[0]}",
@@ -130,13 +130,13 @@ def _and(paths: Sequence[str]) -> str:
     return paths[0] if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]}"
 
 
-def _curves(ask: Ask, best: Sequence[Best], made: dict[str, bytes]) -> list[bytes]:
+def _curves(ask: Ask, best: Sequence[Best], files: dict[str, bytes]) -> list[bytes]:
     """The best designs' curves as PNG and SVG."""
     rank = ask.sweep.rank
     unit = ask.units([rank])[rank]
     curves, name = [], ""
     for design in best[:_DRAWN]:
-        recipe = loaded(made[design.file].decode(), design)
+        recipe = loaded(files[design.file].decode(), design)
         value = f"{design.figures[rank] / unit.divisor:.5g} {unit.name}".rstrip()
         curve, name = curve_of(recipe, f"best-{design.place}: {rank} {value}")
         curves.append(curve)
@@ -146,9 +146,9 @@ def _curves(ask: Ask, best: Sequence[Best], made: dict[str, bytes]) -> list[byte
     return [pictures["png"], pictures["svg"]]
 
 
-def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
+def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
     """What was asked and what came of it, figures in the recipe's units."""
-    sweep, counts, units = ask.sweep, found.counts, ask.units(FIGURES)
+    sweep, counts, units = ask.sweep, designs.counts, ask.units(FIGURES)
     bounds = {
         limit.figure: {
             name: value / units[limit.figure].divisor
@@ -177,9 +177,9 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
         },
         "figures": with_former(
             {
-                name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in found.figures}
+                name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in designs.figures}
                 for name in FIGURES
-                if name in found.figures or any(name in design.figures for design in best)
+                if name in designs.figures or any(name in design.figures for design in best)
             }
         ),
         "counts": {
@@ -188,10 +188,12 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
             "reasons": {reasons[number]: count for number, count in counts.reasons},
             "failing": with_former(dict(counts.failing)),
             "kept": counts.kept,
-            "rows": found.rows,
+            "rows": designs.rows,
             "most_rows": MOST_ROWS,
         },
-        "nearest": None if found.nearest is None else _nearest(ask, found.nearest, units[found.nearest.limit.figure]),
+        "nearest": None
+        if designs.nearest is None
+        else _nearest(ask, designs.nearest, units[designs.nearest.limit.figure]),
         "best": [
             {
                 "file": design.file,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.output.output_folder import Family, Run
+from camgeo.output.output_folder import Family, RunFolder
 from camgeo.sweep.screen.certify import certified, slack
 from camgeo.sweep.search.engines import spread
 from camgeo.sweep.search.job import Job
@@ -96,7 +96,7 @@ def search(
         "seconds": round(time.perf_counter() - started, 3),
     }
     files, report = outputs(ask, found, best, run, means.reasons)
-    return Outcome(report, put(out, ask.recipe.name, files, kept=bool(best)), work)
+    return Outcome(report, put(out, ask.recipe.name, files, accepted=bool(best)), work)
 
 
 def demand_extras(ask: Ask, how: How) -> None:
@@ -117,7 +117,7 @@ def demand_room(ask: Ask, out: Path) -> None:
     if not folder.exists():
         return
     try:
-        with Run(out, ask.recipe.name, FILES) as run:
+        with RunFolder(out, ask.recipe.name, FILES) as run:
             ours = {*run.kept(), REPORT}
     except BusyError:
         return  # a run that is putting its files in place; the end will tell
@@ -127,20 +127,20 @@ def demand_room(ask: Ask, out: Path) -> None:
             raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
 
 
-def best_of(ask: Ask, found: Gathered, means: Means, how: How, listener: Listener | None = None) -> list[Best]:
+def best_of(ask: Ask, designs: Gathered, means: Means, how: How, listener: Listener | None = None) -> list[Best]:
     """The best designs with all their figures.
 
     If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
     """
-    rows = found.rows if found.certificate is None else found.certificate.designs
-    places = _apart(ask, found, rows) if ask.sweep.refine else range(min(ask.sweep.keep, rows))
+    rows = designs.rows if designs.certificate is None else designs.certificate.designs
+    places = _apart(ask, designs, rows) if ask.sweep.refine else range(min(ask.sweep.keep, rows))
     plain = [
         Best(
             number,
-            int(found.index[place]),
+            int(designs.index[place]),
             False,
-            _by_path(ask, found.values[place]),
-            {name: float(values[place]) for name, values in found.figures.items()},
+            _by_path(ask, designs.values[place]),
+            {name: float(values[place]) for name, values in designs.figures.items()},
         )
         for number, place in enumerate(places, 1)
     ]
@@ -171,13 +171,13 @@ def _order(ask: Ask, design: Best) -> tuple[float, int]:
     return (-figure if ask.ranking.most else figure), design.place
 
 
-def _apart(ask: Ask, found: Gathered, rows: int) -> list[int]:
+def _apart(ask: Ask, designs: Gathered, rows: int) -> list[int]:
     """Places in the table of the best designs, of so many, from which polishing is likely to lead to different ones."""
     left = np.arange(rows)
     places: list[int] = []
     while len(left) and len(places) < ask.sweep.keep:
         places.append(int(left[0]))
-        left = left[_far(ask, found.values[left], found.values[left[0]])]
+        left = left[_far(ask, designs.values[left], designs.values[left[0]])]
     return places
 
 
@@ -227,21 +227,21 @@ def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of
     return {axis.path: float(value) for axis, value in zip(ask.plan.axes, row, strict=True)}
 
 
-def _same(ask: Ask, one: Best, other: Best) -> bool:
+def _same(ask: Ask, design: Best, other: Best) -> bool:
     """Whether two designs lie so near to each other that they count as one."""
-    return all(abs(one.values[axis.path] - other.values[axis.path]) <= _APART * axis.range for axis in ask.plan.axes)
+    return all(abs(design.values[axis.path] - other.values[axis.path]) <= _APART * axis.range for axis in ask.plan.axes)
 
 
-def put(out: Path, name: str, files: dict[str, bytes], *, kept: bool) -> Path:
+def put(out: Path, name: str, files: dict[str, bytes], *, accepted: bool) -> Path:
     """Put all files in their place at once, or, where no design was kept, beside it as rejected."""
     give_up = time.monotonic() + _WAIT
     while True:
         try:
-            with Run(out, name, FILES) as run:
+            with RunFolder(out, name, FILES) as run:
                 for file, data in files.items():
                     (run.folder / file).write_bytes(data)
                 names = [file for file in files if file != REPORT]
-                return run.commit(names) if kept else run.reject(names)
+                return run.commit(names) if accepted else run.reject(names)
         except BusyError:
             if time.monotonic() > give_up:
                 raise

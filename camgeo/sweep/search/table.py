@@ -26,37 +26,39 @@ if TYPE_CHECKING:
     Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64] | NDArray[np.str_]]
 
 
-def with_polished(found: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, Marks]:
+def with_polished(designs: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, Marks]:
     """The designs kept and the polished ones, best first, at most MOST_ROWS; and what is told of each of them.
 
     `polished` (n,): such a design has the index of the one that it comes from, whose own row stays. `certified` (n,),
     where figures are estimates: those of this one are exact; such designs stand in front.
     """
     new = [design for design in best if design.polished]
-    index = np.append([design.index for design in new], found.index).astype(np.int64)
-    values = np.vstack([*(list(design.values.values()) for design in new), found.values])
+    index = np.append([design.index for design in new], designs.index).astype(np.int64)
+    values = np.vstack([*(list(design.values.values()) for design in new), designs.values])
     figures = {
-        name: np.append([design.figures[name] for design in new], column) for name, column in found.figures.items()
+        name: np.append([design.figures[name] for design in new], column) for name, column in designs.figures.items()
     }
     polished = np.arange(len(index)) < len(new)
-    exact = np.arange(len(index)) < len(new) + (len(index) if found.certificate is None else found.certificate.designs)
+    exact = np.arange(len(index)) < len(new) + (
+        len(index) if designs.certificate is None else designs.certificate.designs
+    )
     order = np.lexsort((index, ~polished, -ranking.score(figures), ~exact))[:MOST_ROWS]
     rows = {name: column[order] for name, column in figures.items()}
-    marks = {"polished": polished[order]} | ({} if found.certificate is None else {"certified": exact[order]})
-    return replace(found, index=index[order], values=values[order], figures=rows), marks
+    marks = {"polished": polished[order]} | ({} if designs.certificate is None else {"certified": exact[order]})
+    return replace(designs, index=index[order], values=values[order], figures=rows), marks
 
 
-def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
+def columns(plan: Plan, designs: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
     """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
 
     Renamed figures stand under their former names too, behind all others; last marks, 0 or 1.
     """
-    figures = {name: values / units[name].divisor for name, values in found.figures.items()}
+    figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
     former = {FORMER[name]: name for name in figures if name in FORMER}
     return {
-        "place": np.arange(1, found.rows + 1),
-        "index": found.index,
-        **{axis.path: _told(axis, found.values[:, i]) for i, axis in enumerate(plan.axes)},
+        "place": np.arange(1, designs.rows + 1),
+        "index": designs.index,
+        **{axis.path: _told(axis, designs.values[:, i]) for i, axis in enumerate(plan.axes)},
         **{_head(name, units[name].name): values for name, values in figures.items()},
         **{_head(old, units[name].name): figures[name] for old, name in former.items()},
         **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},

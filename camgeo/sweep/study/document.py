@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 def document(
     recipe: Recipe,
-    found: Sequence[Rung | Ended],
+    steps: Sequence[Rung | Ended],
     margins: Sequence[Margin],
     skipped: Sequence[tuple[str, str]],
     failed: Sequence[Check] = (),
 ) -> Entry:
     """The study, keys as the contract of study.json fixes them, and more; `failed` are checks of the exact cam."""
     length = in_units(recipe, None, "mm")[1]
-    rungs = [rung for rung in found if isinstance(rung, Rung)]
+    rungs = [rung for rung in steps if isinstance(rung, Rung)]
     return {
         "recipe": recipe.name,
         "camgeo": __version__,
@@ -37,7 +37,7 @@ def document(
         "rows": [_row(recipe, rung) for rung in rungs],
         "ended": [
             {"form": end.form, "tolerance": end.tolerance / recipe.mm, "unit": length, "why": end.why}
-            for end in found
+            for end in steps
             if isinstance(end, Ended)
         ],
         "margins": [_margin(recipe, margin) for margin in margins],

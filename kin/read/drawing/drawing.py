@@ -32,9 +32,9 @@ __all__ = [
     "ENGRAVED",
     "REFERENCE",
     "Aside",
+    "CutEntities",
     "Drawing",
     "Fault",
-    "Found",
     "drawing_of",
 ]
 
@@ -98,7 +98,7 @@ class Drawing(Nest):
     engraved: tuple[Contour, ...] = ()
 
 
-class Found(NamedTuple):
+class CutEntities(NamedTuple):
     """The entities to cut: their shapes, names and layers; and what was set aside."""
 
     shapes: list[Shape]
@@ -108,8 +108,8 @@ class Found(NamedTuple):
 
 
 def drawing_of(
-    curves: Found,
-    marks: Found | None,
+    curves: CutEntities,
+    marks: CutEntities | None,
     unit: float | None,
     gap: float | None,
     path: Path,
@@ -209,7 +209,7 @@ def extent(pieces: Pieces) -> float:
 
 
 def without_faults(
-    pieces: Pieces, run: Indices, curves: Found, same: float, path: Path
+    pieces: Pieces, run: Indices, curves: CutEntities, same: float, path: Path
 ) -> tuple[NDArray[np.bool_], list[Fault]]:
     """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
 
@@ -239,7 +239,7 @@ def without_faults(
     return keep & ~whole[run], faults
 
 
-def fault(kind: str, pieces: Pieces, piece: int, run: Indices, curves: Found) -> Fault:
+def fault(kind: str, pieces: Pieces, piece: int, run: Indices, curves: CutEntities) -> Fault:
     """Return a Fault at the start of a piece."""
     x, y = pieces.start[piece].tolist()
     return Fault(kind, curves.names[run[piece]], curves.layers[run[piece]], x, y)

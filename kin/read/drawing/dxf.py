@@ -13,7 +13,18 @@ import numpy as np
 
 from kin.contour.contour import Box
 from kin.read.drawing.affine import Affine
-from kin.read.drawing.drawing import BESIDE, BORE, CUT, ENGRAVED, REFERENCE, Aside, Drawing, Fault, Found, drawing_of
+from kin.read.drawing.drawing import (
+    BESIDE,
+    BORE,
+    CUT,
+    ENGRAVED,
+    REFERENCE,
+    Aside,
+    CutEntities,
+    Drawing,
+    Fault,
+    drawing_of,
+)
 from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
 from kin.read.drawing.shapes import UnfitError, check
 from kin.read.errors import ReadError
@@ -231,7 +242,7 @@ def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
                 yield Drawn(entity, on, name, to, insert.rise + insert.scale * rise, insert.scale * scale)
 
 
-def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, path: Path) -> Found:
+def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, path: Path) -> CutEntities:
     """Find the entities on the layers to cut, and count the others. Raises ReadError for what cannot be read there."""
     there = {one.layer.upper() for one in drawn if one.kind in CURVES}
     if layer is not None and layer.upper() not in there:
@@ -249,15 +260,15 @@ def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, p
     return found
 
 
-def entities_engraved(drawn: list[Drawn], path: Path) -> Found:
+def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
     """Find the entities on the layer that is engraved; none where no layer is cut by its name."""
     by_name = any(one.layer.upper() == CUT for one in drawn)
     return gather(drawn, {ENGRAVED} if by_name else set(), path)
 
 
-def gather(drawn: list[Drawn], layers: set[str], path: Path) -> Found:
+def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
     """Read the entities on some layers, and count the others."""
-    found = Found([], [], [], Counter())
+    found = CutEntities([], [], [], Counter())
     for one in drawn:
         if one.layer.upper() not in layers or one.kind in NOTES:
             found.aside[one.layer, one.kind] += 1

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
 from kin.read.drawing.affine import Affine
-from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, Drawing, Found, drawing_of
+from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities, Drawing, drawing_of
 from kin.read.drawing.shapes import Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
 from kin.read.errors import ReadError, xml_fault
@@ -154,9 +154,9 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
         yield from _elements(element, own, here, path, depth + 1)
 
 
-def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> Found:
+def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntities:
     """Read the elements on some layers, and count the others."""
-    found = Found([], [], [], Counter())
+    found = CutEntities([], [], [], Counter())
     for number, (element, layer, to) in enumerate(elements, start=1):
         kind = element.tag.removeprefix(SVG)
         if layer not in layers:

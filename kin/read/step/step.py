@@ -19,7 +19,7 @@ from kin.numeric.distinct import distinct
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
 from kin.read.bodies import MOST_BODIES, Sought, beside, missing
-from kin.read.drawing.drawing import Found, drawing_of
+from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section
 from kin.read.nesting import Nest
@@ -213,7 +213,7 @@ class _Body:
 
     def section(self, z: float) -> Drawing:
         """Contour and holes at a height."""
-        found = Found([], [], [], Counter())
+        found = CutEntities([], [], [], Counter())
         for face in self.faces:
             for one in face.section(self.space, z):
                 found.shapes.append(one)
