@@ -13,6 +13,7 @@ from support.cases import examples, few
 from support.sweepers import compute, evaluate
 
 from camgeo.cams.flat_faced import breadth_of
+from camgeo.measures.figures import of_design
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search.ask import Ask
@@ -20,6 +21,7 @@ from camgeo.sweep.search.figures import REASONS, Evaluator
 from camgeo.sweep.search.figures import figures as searched
 from camgeo.sweep.search.linkages import Lengths, Support, angles, engine
 from camgeo.sweep.search.rebuilt import recipe_with
+from camgeo.synthesis.design import designed
 from camgeo.synthesis.linkage import mechanism_of
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 
@@ -416,3 +418,21 @@ def test_links_that_shape_the_cam_make_it_anew():
         assert_like(found.figures, wanted, row, tolerance=3e-5)
         assert found.figures["swing"][row] == pytest.approx(20.0, abs=1e-6)
     assert np.ptp(found.figures["radius-of-curvature"]) > 1.0
+
+
+@pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
+def test_forces_of_a_rigid_train_are_ranked_by(figure):
+    """Those of each design's own cam, as limits have them."""
+    text = (
+        "cam: {kind: disc, base_radius: 36, follower: {kind: roller, radius: 9}, "
+        "motion: [{rise: 18, over: 180, law: cycloidal}, {return: 18, over: 180, law: cycloidal}]}\n"
+        "dynamics: {mass: 0.4, preload: 900, rpm: 300, width: 10, material: steel, "
+        "guide: {overhang: 40, length: 60, friction: 0.1}}\n"
+        f"sweep: {{vary: {{cam.base_radius: {{from: 34, to: 40, steps: 2}}}}, rank: {figure}}}\n"
+    )
+    recipe = load_text(text, "cam.yaml")
+    found = Evaluator.of(recipe, ["cam.base_radius"], figures=[figure]).found(np.array([[34.0], [40.0]]))
+    for value, base in zip(found.figures[figure].tolist(), (34, 40), strict=True):
+        own = recipe.replace("cam.base_radius", base)
+        exact = designed(own)
+        assert value == of_design(own, exact, exact.checks, [figure])[figure].value

@@ -12,17 +12,23 @@ from camgeo.recipe.figures import (
     CONTACT_TRAVEL,
     ECCENTRICITY,
     FACE_WIDTH,
+    FORCE_GREATEST,
+    FORCE_LEAST,
+    GUIDE_FORCE,
     HOLLOW_RADIUS,
     INERTIA,
     JAM_MARGIN,
     MASS,
+    MEAN_FORCE,
     ON_RETURN,
     ON_RISE,
     PEAKS,
     PIVOT_CLEARANCE,
     PRELOAD_GREATEST,
     PRELOAD_LEAST,
+    PRESSURE,
     ROLLER_SPEED,
+    TORQUE,
     UNBALANCE,
 )
 from camgeo.recipe.keys import RECIPE
@@ -49,7 +55,7 @@ if TYPE_CHECKING:
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
 _DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN, MASS, ECCENTRICITY, INERTIA, UNBALANCE)
-_DEAR += (PRELOAD_LEAST, PRELOAD_GREATEST)
+_DEAR += (PRELOAD_LEAST, PRELOAD_GREATEST, FORCE_LEAST, FORCE_GREATEST, TORQUE, PRESSURE, GUIDE_FORCE, MEAN_FORCE)
 EXACT = 100  # designs: of no more each is worked out, which takes seconds
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}

@@ -77,8 +77,7 @@ class Scene:
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
-    if recipe.dynamics is not None:
-        given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
+    given |= {path for path in recipe.marks if path.partition(".")[0] == "dynamics"}
     if recipe.part.density is not None and recipe.linkage is None:
         given.add("part.density")
     given |= {NEEDS["wanted"], NEEDS["stiff"]}.intersection(recipe.marks)
