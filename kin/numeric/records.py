@@ -9,12 +9,14 @@ standard library, when that is asked. To a type checker there is no difference.
 from __future__ import annotations
 
 import dataclasses
+import sys
 from dataclasses import KW_ONLY, MISSING, Field, FrozenInstanceError, field, fields, replace
 from functools import cached_property
 from operator import attrgetter
 from reprlib import recursive_repr
 from threading import RLock
-from typing import TYPE_CHECKING, NoReturn, TypeVar
+from types import ModuleType
+from typing import TYPE_CHECKING, ClassVar, NoReturn, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,12 +90,21 @@ class _Shape:
         type.__setattr__(self.kind, "__init__", names["__init__"])
 
     def standardise(self) -> None:
-        """Let the standard library see the class."""
-        for name in _STANDARD:
-            delattr(self.kind, name)
-        for name, entry in self.described.items():
-            setattr(self.kind, name, entry)
-        dataclasses.dataclass(init=False, repr=False, eq=False, kw_only=self.kw_only)(self.kind)
+        """Let the standard library see the class; it looks into the class's module, which may be unloaded by then."""
+        module = self.kind.__module__
+        unloaded = module not in sys.modules
+        if unloaded:
+            sys.modules[module] = ModuleType(module)
+            vars(sys.modules[module]).update(ClassVar=ClassVar, KW_ONLY=KW_ONLY)
+        try:
+            for name in _STANDARD:
+                delattr(self.kind, name)
+            for name, entry in self.described.items():
+                setattr(self.kind, name, entry)
+            dataclasses.dataclass(init=False, repr=False, eq=False, kw_only=self.kw_only)(self.kind)
+        finally:
+            if unloaded:
+                del sys.modules[module]
 
 
 class _Later:

@@ -128,3 +128,21 @@ def test_the_standard_library_sees_a_class_before_and_after_its_first_record() -
         assert Fresh.__match_args__ == ("x", "y")
         assert replace(Fresh(1.0), z=2.0) == Fresh(1.0, z=2.0) != Fresh(1.0)
         assert repr(Fresh(1.0, z=2.0)).endswith("Fresh(x=1.0, y=0.0)")
+
+
+def test_a_class_of_a_module_that_is_unloaded_is_still_a_dataclass(monkeypatch):
+    import sys
+    from types import ModuleType
+
+    module = ModuleType("passing")
+    monkeypatch.setitem(sys.modules, "passing", module)
+    text = (
+        "from __future__ import annotations\nfrom typing import ClassVar\nfrom kin.numeric.records import dataclass\n"
+        "@dataclass(frozen=True)\nclass Passing:\n    kind: ClassVar[str] = 'passing'\n    width: float\n"
+    )
+    exec(text, vars(module))
+    record = module.Passing(2.0)
+    monkeypatch.delitem(sys.modules, "passing")
+    assert replace(record, width=3.0).width == 3.0
+    assert [entry.name for entry in dataclasses.fields(record)] == ["width"]
+    assert "passing" not in sys.modules
