@@ -220,7 +220,7 @@ def _marked(scene: Scene, file: FileRequest) -> bool:
 
 
 def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
-    return scene.yoke and _contour(scene, file)
+    return scene.yoke and scene.follower.closure != "form-closure" and _contour(scene, file)
 
 
 def _form_closed(scene: Scene, file: FileRequest) -> bool:

@@ -91,6 +91,29 @@ def made(path: Path) -> tuple[dict[str, Any], ...]:
 
 
 MORE = {
+    "a wanted law": """\
+cam:
+  kind: double-roller
+  ratio: 2
+  arm: 40
+  roller_radius: 8
+  delta:
+    harmonics: 15
+    law: [{rise: 8, over: 35, law: modified-sine}, {dwell: 15}, {return: 8, over: 40, law: cycloidal}]
+export: {files: [csv]}
+""",
+    "a milled groove": """\
+cam:
+  kind: disc
+  base_radius: 32
+  follower: {kind: roller, radius: 8}
+  track: {groove: {clearance: 0.03, depth: 8}}
+  motion: [{rise: 10, over: 180, law: cycloidal}, {return: 10, over: 180, law: cycloidal}]
+part: {thickness: 14, outer: 130, bore: 16}
+manufacture: {cutter: 12, feed: 500, plunge: 100, spindle: 6000, depth_of_cut: 4, safe_height: 5}
+export: {tolerance: 0.01, files: [gcode]}
+verify: {angles: 90}
+""",
     "a part with everything": """\
 cam: {kind: support, p: 40 + 2*cos(3*t)}
 part:

@@ -465,7 +465,11 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         p = intent.derivatives(theta, 2)
         low, high, radius = p[0].min(), p[0].max(), (p[0] + p[2]).min()
         assert radius > 0 or path.stem == "reuleaux-irregular"  # of sharp corners
-        papers = path.stem.startswith("as-") or path.stem in {"six-bar", "sweep-four-bar"}  # the paper's own shafts
+        papers = path.stem.startswith("as-") or path.stem in {
+            "six-bar",
+            "sweep-four-bar",
+            "coupler-curve",
+        }  # the paper's own shafts
         assert low - bore > (THIN if papers else WALL)
     elif isinstance(intent, Displacement):
         theta = np.linspace(0, 2 * np.pi, 72001)
