@@ -11,7 +11,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
-    from camgeo.cams.position import Position
+    from camgeo.motions.position import Position
     from kin.numeric.arrays import Array
 
 

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
-from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
-from camgeo.cams.motion import FormulaAsked
 from camgeo.cams.preload import PRELOAD, build_preload
+from camgeo.motions.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
+from camgeo.motions.motion import FormulaAsked
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.motion import MotionAsked
+    from camgeo.motions.motion import MotionAsked
     from camgeo.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint

@@ -12,17 +12,17 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Preload, Undercut
 from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
-from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.cams.preload import PRELOAD, build_preload, preloaded
+from camgeo.motions.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.guided import Holding
-    from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.motion import MotionAsked
     from camgeo.schema.reader import Reader, Values
 
 

@@ -9,9 +9,9 @@ from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.guided import Holding
-from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
+from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
 from camgeo.schema.readers import form_of_kinds

@@ -17,10 +17,10 @@ from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Preload
-    from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.motion import MotionAsked
     from kin.law.contacts import Guide, Side, Touch
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion

@@ -20,10 +20,10 @@ from kin.numeric.records import dataclass, field, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme, ShaftFigure
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node

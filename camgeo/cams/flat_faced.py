@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
-from camgeo.cams.position import LiftPosition, Position
 from camgeo.cams.preload import preloaded
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
+from camgeo.motions.position import LiftPosition, Position
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
 from kin.numeric.angles import degrees
 from kin.numeric.distinct import distinct

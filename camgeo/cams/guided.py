@@ -11,10 +11,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from camgeo.cams.family import Advice, Cam, Circle, ExactCam, GrownError, Surface
-from camgeo.cams.position import Position, position_of
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from camgeo.motions.position import ArmPosition, LiftPosition, Position
 from kin.law.contacts import KnifeEdge, Roller, Shoe, Translating
 from kin.law.programme import IntentError
 from kin.numeric.records import dataclass, field, replace
@@ -274,8 +274,11 @@ class ExactLed(ExactCam):
 
     @cached_property
     def motion(self) -> Position:
-        """The displacement."""
-        return position_of(self.follower.contacts[0].guide, self.law)
+        """Along a stem or about an arm's pivot, by its law from displacement 0."""
+        guide = self.follower.contacts[0].guide
+        if isinstance(guide, Translating):
+            return LiftPosition(self.law)
+        return ArmPosition(self.law, arm=guide.pivot if guide.length is None else guide.length)
 
     @cached_property
     def judged_law(self) -> Piecewise:

@@ -11,10 +11,10 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Preload, Proof
 from camgeo.cams.flat_faced import spread
-from camgeo.cams.motion import MotionAsked, check_filled, motion_field
-from camgeo.cams.position import Position, SwingPosition
 from camgeo.cams.preload import PRELOAD, preloaded
 from camgeo.common.rounding import downward
+from camgeo.motions.motion import MotionAsked, check_filled, motion_field
+from camgeo.motions.position import Position, SwingPosition
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat
 from kin.numeric.angles import degrees

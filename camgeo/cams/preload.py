@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from camgeo.cams.family import Cam, Circle, Follower, Margin, Proof, Surface
-    from camgeo.cams.position import Position
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.position import Position
     from camgeo.schema.reader import Values
     from kin.follower.base import Follower as Gauge
     from kin.law.joints import Joint

@@ -7,7 +7,7 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from camgeo.cams.lift_table import read_path
+from camgeo.motions.lift_table import read_path
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import FILES, build_export, export_of
 from camgeo.recipe.keys import RECIPE, UNITS

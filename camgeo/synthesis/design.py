@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from camgeo.cams.family import ExactCam, Follower, Surface
-    from camgeo.cams.position import Position
     from camgeo.curve.curvature import Least
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut
+    from camgeo.motions.position import Position
     from camgeo.recipe.part import Part
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven

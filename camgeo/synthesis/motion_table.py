@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from camgeo.cams.position import Position
+    from camgeo.motions.position import Position
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
 

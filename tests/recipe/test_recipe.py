@@ -22,11 +22,11 @@ from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.families import FAMILIES
 from camgeo.cams.flat_pair import FlatPairCam
-from camgeo.cams.motion import SegmentsAsked
 from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
-from camgeo.cams.segments import MotionSegment, SccaLaw
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.curve.moving_frame import Displacement
+from camgeo.motions.motion import SegmentsAsked
+from camgeo.motions.segments import MotionSegment, SccaLaw
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
 from camgeo.recipe.keys import RECIPE

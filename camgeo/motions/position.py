@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, TypeAlias
 
 import numpy as np
 
-from kin.law.contacts import Translating
 from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Guide
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
@@ -118,13 +116,6 @@ class ArmPosition(_Swing, LiftPosition):
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Swing in rad, and the arm in mm."""
         return super().stroke(parameter)[0], self.arm
-
-
-def position_of(guide: Guide, law: Law) -> LiftPosition:
-    """Position on a guide by its law from displacement 0."""
-    if isinstance(guide, Translating):
-        return LiftPosition(law)
-    return ArmPosition(law, arm=guide.pivot if guide.length is None else guide.length)
 
 
 @dataclass(frozen=True)

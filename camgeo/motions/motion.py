@@ -11,15 +11,15 @@ from abc import ABC, abstractmethod
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.lift_table import FILE, Rows, Unit, read_rows
-from camgeo.cams.segments import read_segments, segment_table, segments_schema
+from camgeo.motions.lift_table import FILE, Rows, Unit, read_rows
+from camgeo.motions.segments import read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, described, join
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.segments import MotionSegment
+    from camgeo.motions.segments import MotionSegment
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node

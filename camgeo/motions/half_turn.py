@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.cams.motion import MotionAsked, check_filled, motion_field
+from camgeo.motions.motion import MotionAsked, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.cli.main import main
+from camgeo.motions.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.output import pipeline
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, load_text
@@ -524,7 +524,7 @@ def test_a_displacement_without_end_is_refused_with_its_line(cell, tmp_path):
 
 
 def test_a_table_of_more_rows_than_any_motion_needs(tmp_path, monkeypatch):
-    monkeypatch.setattr("camgeo.cams.lift_table.MAX_ROWS", 400)
+    monkeypatch.setattr("camgeo.motions.lift_table.MAX_ROWS", 400)
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(
         "cam: {kind: constant-breadth, base_radius: 40, motion: {table: lift.csv, angle: cam, units: mm}}\n"
