@@ -56,12 +56,12 @@ class Dynamics:
 _MOST = MOST**2  # of figures in SI: a bound against slips
 MATERIALS = {
     "steel": (206_000.0, 0.3),
-    "nodular-iron": (170_000.0, 0.28),
+    "nodular-iron": (169_000.0, 0.275),
     "grey-iron": (110_000.0, 0.26),
     "bronze": (110_000.0, 0.34),
-    "aluminium": (70_000.0, 0.33),
-    "pom": (2_800.0, 0.35),
-    "pa66": (2_000.0, 0.4),
+    "aluminium": (71_000.0, 0.33),
+    "pom": (3_000.0, 0.35),
+    "pa66": (3_000.0, 0.39),
 }
 """Young's modulus, N/mm^2, and Poisson's ratio: round figures of handbooks, for the pressure of contacts alone."""
 
@@ -146,6 +146,8 @@ DYNAMICS = Table(
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
     ),
+    alternatives=(("preload", ()), ("backlash", ())),
+    optional=True,
 )
 
 
@@ -172,11 +174,10 @@ def check_train(train: Values, reader: Reader) -> None:
 
 def _check_spring(train: Values, reader: Reader) -> None:
     """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
-    given = [name for name in ("preload", "backlash", "least_force") if f"dynamics.{name}" in reader.marks]
-    for name in given[1:]:
-        either = "preload or backlash" if "least_force" not in given else "preload, backlash or least_force"
-        remedy = f"give exactly one of {either}"
-        reader.fault_at(f"dynamics.{name}", f"cannot be combined with {given[0]}", None, remedy)
+    given = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
+    if given and "dynamics.least_force" in reader.marks:
+        remedy = "give exactly one of preload, backlash or least_force"
+        reader.fault_at("dynamics.least_force", f"cannot be combined with {given[0]}", None, remedy)
     if "dynamics" not in reader.marks or not train:
         return
     if "dynamics.stiffness" in reader.marks:

@@ -12,7 +12,7 @@ import re
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
-from kin.numeric.records import KW_ONLY, dataclass
+from kin.numeric.records import KW_ONLY, dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -181,12 +181,13 @@ class Field:
 class Table:
     """The keys of a mapping.
 
-    Of `alternatives` exactly one is given; each names the keys that must come with it. `later` are keys that this
-    version recognises and refuses, each with what it would make, if there is a word for that.
+    Of `alternatives` exactly one is given, or none where they are `optional`; each names the keys that must come with
+    it. `later` are keys that this version recognises and refuses, each with what it would make, if there is a word.
     """
 
     fields: tuple[Field, ...]
     alternatives: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    optional: bool = field(default=False, kw_only=True)
     later: tuple[tuple[str, str], ...] = ()
 
     @property

@@ -57,6 +57,8 @@ def table_schema(table: Table) -> Schema:
         names = [name for name, _ in table.alternatives]
         names += [former[name] for name in names if name in former]
         found["oneOf"] = [_alternative(table, name) for name in names]
+        if table.optional:
+            found["oneOf"].append({"required": [], "properties": dict.fromkeys(sorted(names), False)})
     return found
 
 

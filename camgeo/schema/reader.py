@@ -191,7 +191,7 @@ class Reader:
     def _refuse_alternatives(self, table: Table, nodes: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in nodes]
-        if names and not chosen and not _asks_later(table, nodes):
+        if names and not chosen and not table.optional and not _asks_later(table, nodes):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
             problem = f"cannot be combined with {self._key(path, chosen[0])}"

@@ -314,9 +314,14 @@ def test_forms_that_hold_no_pair_refuse_by_name():
     assert set(DISCS) <= set(SURFACES)
     recipe = read(RECIPE.encode(), Path("pair.yaml"))
     design = designed(recipe)
-    of_others = {("csv", "grinding"), ("csv", "lift"), ("csv", "trace")}  # refused as the recipe is read
-    for kind, form in sorted(set(SURFACES) - set(DISCS) - of_others):
-        text = RECIPE.replace("glb", f"{{{kind}: {{as: {form}}}}}")
+    needs = {"grinding": ("manufacture: {wheel: 300}\n", ""), "lift": ("", ", roller: 25")}
+    for kind, form in sorted(set(SURFACES) - set(DISCS)):
+        more, key = needs.get(form, ("", ""))
+        text = more + RECIPE.replace("glb", f"{{{kind}: {{as: {form}{key}}}}}")
+        if form == "trace":  # of a linkage, which a pair does not drive
+            with pytest.raises(camgeo.RecipeErrors, match=r"needs linkage\.trace"):
+                read(text.encode(), Path("pair.yaml"))
+            continue
         changed = read(text.encode(), Path("pair.yaml"))
         with pytest.raises(camgeo.RecipeErrors, match=f"{kind} as {form} does not hold a cam of 2 discs"):
             demand_taught(changed, design, changed.export.files[-1])

@@ -21,8 +21,12 @@ if TYPE_CHECKING:
 PART = "part: {thickness: 8, bore: 10, outer: 160}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
 FORMS = sorted(SURFACES, key=str)
-READ = {"grinding", "lift", "trace"}  # tables that are refused of a groove as its recipe is read
-ALONE = [form for form in FORMS if SURFACES[form] == 1 and form[1] not in READ]
+READ = {  # tables of one surface that are refused of a groove as its recipe is read
+    ("csv", "grinding"): ("{csv: {as: grinding}}", "a wheel grinds the outside of a disc"),
+    ("csv", "lift"): ("{csv: {as: lift, roller: 25}}", "a wheel grinds the outside of a disc"),
+    ("csv", "trace"): ("{csv: {as: trace}}", "needs linkage.trace"),
+}
+ALONE = [form for form in FORMS if SURFACES[form] == 1 and form not in READ]
 
 
 def written(kind: str, how: str | None) -> str:
@@ -48,6 +52,17 @@ def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | Non
     assert error.path == "export.files[0]"
     assert f"{kind}{f' as {how}' if how else ''} does not hold a cam of 2 surfaces" in str(error)
     assert not list(tmp_path.rglob("*.*"))
+
+
+@pytest.mark.parametrize("form", READ, ids=str)
+def test_a_table_that_no_groove_has(form: tuple[str, str]) -> None:
+    assert SURFACES[form] == 1
+    file, problem = READ[form]
+    with pytest.raises(RecipeErrors) as caught:
+        grooved(f"{CAM}\n{PART}\nmanufacture: {{wheel: 300}}\nexport: {{files: [{file}]}}\n")
+    (error,) = caught.value.errors
+    assert error.path == "export.files[0].csv.as"
+    assert problem in str(error)
 
 
 def test_a_form_that_is_taught_more_is_named(tmp_path: Path) -> None:

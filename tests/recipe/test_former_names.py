@@ -216,9 +216,10 @@ def test_the_schema_has_former_names_as_deprecated() -> None:
     (support,) = (one for one in schema["cam"]["oneOf"] if one["properties"]["kind"]["const"] == "support")
     assert support["properties"]["pivot"]["deprecated"]
     assert support["properties"]["pivot"]["items"] == support["properties"]["shaft"]["items"]
-    held = schema["dynamics"]["properties"]  # a rigid train may have none of both
-    assert held["play"]["deprecated"]
-    assert {key: value for key, value in held["play"].items() if key in held["backlash"]}
+    held = schema["dynamics"]["oneOf"]
+    assert [one["required"] for one in held] == [["preload"], ["backlash"], ["play"], []]  # a rigid train may have none
+    assert held[2]["properties"] == {"backlash": False, "preload": False}
+    assert held[3]["properties"] == {"backlash": False, "play": False, "preload": False}
     words, former = schema["sweep"]["properties"]["rank"]["anyOf"]
     assert former == {"enum": ["transmission", "face-length"], "deprecated": True}
     assert not {*former["enum"]} & {*words["enum"]}

@@ -390,14 +390,6 @@ WALL = 3.0  # mm of metal that a shipped cam leaves around its bore
 THIN = 1.2  # where AS has the shaft near the edge
 
 
-OTHER_FILES = {  # of cams with two surfaces, which show that every format holds them
-    "conjugate-arm": {"dxf", "svg", "glb", "html"},
-    "conjugate-flat": {"dxf", "stl", "html"},
-    "conjugate-stem": {"dxf", "3mf", "csv", "html"},
-    "groove-arm": {"dxf", "3mf", "csv"},
-}
-
-
 def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     recipes = {path.stem: load(path) for path in SHIPPED}
     assert {f"as-figure-{n}" for n in ("1", "2a", "2b", "2c", "2d")} <= recipes.keys()
@@ -406,7 +398,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     for recipe in recipes.values():
         assert recipe.about
         whole = any(file.parts == "all" for file in recipe.export.files)
-        kinds = OTHER_FILES.get(recipe.name, {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"})
+        kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
         assert {file.kind for file in recipe.export.files} - {"gcode"} == kinds
     files = [file for recipe in recipes.values() for file in recipe.export.files]
     tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace"}
