@@ -260,7 +260,8 @@ def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | N
 
 def elsewhere(root: Table, name: str, here: Table) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
-    if below := tuple(item.name for item in here.fields if item.table and name in item.table.keys):
+    below = tuple(item.name for item in here.fields if item.table and name in item.table.keys)
+    if below and here is not root:
         return f"it belongs under {either(below)}"
     if name in root.keys:
         return "it belongs at the top level"

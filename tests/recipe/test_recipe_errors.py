@@ -231,8 +231,8 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "naem: x\n", "2:1: naem: unknown key; did you mean name?"),
         (SUPPORT + "bore: 5\n", "2:1: bore: unknown key; it belongs under part"),
         (
-            "cam: {kind: disc, base_radius: 20, motion: 2*sin(t), follower: {kind: roller, radius: 4, pivot: 50}}",
-            "1:90: cam.follower.pivot: unknown key; it belongs under arm",
+            "cam: {kind: disc, base_radius: 20, motion: [{dwell: 360}], follower: {kind: roller, radius: 4, pivot: 50}}",
+            "1:96: cam.follower.pivot: unknown key; it belongs under arm",
         ),
         (SUPPORT + "xyz: 5\n", f"2:1: xyz: unknown key; the keys here are {KEYS}"),
         (SUPPORT + "cam.shaft: 5\n", f"2:1: 'cam.shaft': unknown key; the keys here are {KEYS}"),
