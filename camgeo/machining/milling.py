@@ -17,7 +17,7 @@ from camgeo.synthesis.part.as_intent import holes_of
 from kin.judge.check import Check, failed
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import ArcSpline
     from camgeo.machining.cutter import CutterPath, Fit

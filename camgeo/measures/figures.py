@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
     from camgeo.measures.balance import Balance

@@ -231,7 +231,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "naem: x\n", "2:1: naem: unknown key; did you mean name?"),
         (SUPPORT + "bore: 5\n", "2:1: bore: unknown key; it belongs under part"),
         (
-            "cam: {kind: disc, base_radius: 20, motion: [{dwell: 360}], follower: {kind: roller, radius: 4, pivot: 50}}",
+            "cam: {kind: disc, base_radius: 20, motion: [{dwell: 360}], follower: {kind: roller, radius: 4, pivot: 5}}",
             "1:96: cam.follower.pivot: unknown key; it belongs under arm",
         ),
         (SUPPORT + "xyz: 5\n", f"2:1: xyz: unknown key; the keys here are {KEYS}"),
