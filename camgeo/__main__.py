@@ -4,7 +4,7 @@ Nothing is imported before the interrupt is seen to, as the imports take most of
 reach is Python's own start before this. numpy starts with one thread, as nothing here multiplies great matrices and
 starting threads takes longer than a small cam; what the user has set stays, and so does the environment of a program
 that imports the library. Python's search for cycles waits until there is something to find: by default it goes again
-and again over what the imports make, ezdxf's above all, and once more at the end over what goes with the process anyway.
+and again over what the imports make, ezdxf's above all, and at the end over what goes with the process anyway.
 """
 
 from __future__ import annotations
