@@ -103,5 +103,5 @@ def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array,
     return total, sum((np.array(one.error) for _, one in outlines), np.zeros(4))
 
 
-def _row(one: Moments) -> Array:
-    return np.array([one.area, one.x, one.y, one.polar])
+def _row(moments: Moments) -> Array:
+    return np.array([moments.area, moments.x, moments.y, moments.polar])
