@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
+    from kin.numeric.monotone import Pieces
 
 CRANK = 2.0  # turns of the crank for one of the cam
 NODES, WEIGHTS = gauss(12)
@@ -56,15 +57,23 @@ class EventError(KinError, ValueError):
 
 
 @lru_cache(maxsize=16)
-def event_of(exact: ExactCam, lift: float) -> Event:
-    """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
+def monotone(exact: ExactCam) -> Pieces:
+    """Give the motion over a turn, mm or rad by shaft angles in rad, as monotone pieces.
+
+    Raises EventError for a motion that they do not follow.
+    """
     position = exact.motion
+    places = between(0.0, TURN, exact.breaks.tolist())
     try:
-        made = pieces(
-            cells(lambda t: position.by_parameter(t, 0), between(0.0, TURN, exact.breaks.tolist()), share=SHARE)
-        )
+        return pieces(cells(lambda t: position.by_parameter(t, 0), places, share=SHARE))
     except RoughError as error:
         raise EventError("the motion changes too abruptly to be resolved") from error
+
+
+@lru_cache(maxsize=16)
+def event_of(exact: ExactCam, lift: float) -> Event:
+    """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
+    position, made = exact.motion, monotone(exact)
     datum, _ = made.least()
     crossings = made.crossings(datum + lift)
     if len(crossings) != 2:
