@@ -71,7 +71,7 @@ def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
         return ()
     middle = 0.5 * (x[:-1] + x[1:])
     phases = np.where(exact.motion.by_parameter(middle, 1)[1] > 0.0, "rise", "return")
-    for begin, end in exact.gauge.rests:
+    for begin, end in {rest for gauge in exact.gauges.values() for rest in gauge.rests}:
         phases[np.mod(middle - begin, TURN) < end - begin] = "dwell"
     first = np.flatnonzero(phases != np.roll(phases, 1))
     if not first.size:
