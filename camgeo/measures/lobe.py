@@ -123,19 +123,23 @@ _MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
 _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
 
 
+def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
+    """Give a figure of a lobe at a lift, mm from the lowest; without a value where the lobe does not cross it twice."""
+    if name == LIFT_AREA and lift == 0.0:
+        turn = between(0.0, TURN, exact.breaks.tolist())
+        return Measured(math.degrees(_integral(exact, turn, 0.0)), _UNITS[name])
+    try:
+        event = event_of(exact, lift)
+    except EventError as error:
+        return Measured(None, _UNITS[name], detail=str(error))
+    return _MADE.get(name, _area)(event, exact)
+
+
 def of_lobe(name: str) -> Callable[[Recipe, Design], Measured]:
-    """Make the measure of a figure at the lift that the recipe's limit of it states, or at its usual one."""
+    """Make the measure of a figure at the lift that the recipe's first limit of it states, or at its usual one."""
 
     def measure(recipe: Recipe, design: Design) -> Measured:
-        stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
-        lift = next(stated, AT_LIFT[name])
-        if name == LIFT_AREA and lift == 0.0:
-            turn = between(0.0, TURN, design.exact.breaks.tolist())
-            return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
-        try:
-            event = event_of(design.exact, lift)
-        except EventError as error:
-            return Measured(None, _UNITS[name], detail=str(error))
-        return _MADE.get(name, _area)(event, design.exact)
+        lift = next((limit.lift for limit in recipe.limits if limit.figure == name), AT_LIFT[name])
+        return lobe_figure(name, design.exact, lift)
 
     return measure
