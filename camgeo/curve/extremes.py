@@ -18,10 +18,10 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from camgeo.curve.rates import Series
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 CELLS = 16  # of each stretch, at first
-PARTS = 4  # into which an undecided interval is divided
+PARTS, TOGETHER = 4, 64  # into which an undecided interval is divided, or so many of all intervals if they are few
 LEVELS = 24
 MOST = 20_000  # undecided intervals; then the rest is given as room
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
@@ -138,8 +138,8 @@ def _highest(figure: ShaftFigure, stretches: Array, *senses: int) -> list[Extrem
                 open_[left] = True
         if not open_.any():
             break
-        low, high = divided(seen.low[open_], seen.high[open_], PARTS)
-        seen = _Seen.of(figure, low, high, np.repeat(seen.sense[open_], PARTS))
+        low, high, owner = divided_anew(seen.low[open_], seen.high[open_])
+        seen = _Seen.of(figure, low, high, seen.sense[open_][owner])
     return [found[sense] for sense in senses]
 
 
@@ -148,6 +148,12 @@ def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
     share = np.linspace(0.0, 1.0, parts + 1)
     knots = low[:, None] * (1.0 - share) + high[:, None] * share
     return knots[:, :-1].ravel(), knots[:, 1:].ravel()
+
+
+def divided_anew(low: Array, high: Array) -> tuple[Array, Array, Indices]:
+    """Undecided intervals (n,) in the parts that cost least in all, and the interval that each part is of."""
+    parts = max(PARTS, TOGETHER // low.size)
+    return *divided(low, high, parts), np.repeat(np.arange(low.size), parts)
 
 
 def _with_tops(figure: ShaftFigure, seen: _Seen) -> tuple[Array, Array]:

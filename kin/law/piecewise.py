@@ -297,7 +297,9 @@ class Piecewise:
             first, ways = _bare(stretches[0]), _ways(stretches, members, owner.size)
             if isinstance(first, Alike):
                 rows = np.zeros((len(first.numbers), owner.size))
-                rows[:, members] = np.transpose([bare.numbers for f in stretches if isinstance(bare := _bare(f), Alike)])
+                rows[:, members] = np.transpose(
+                    [bare.numbers for f in stretches if isinstance(bare := _bare(f), Alike)]
+                )
                 groups.append(_Alike(first, rows, ways))
             else:
                 as_is = not any(isinstance(member, Affine) for member in stretches)

@@ -108,7 +108,7 @@ class AcceleratedPiece(Alike):
 
     def together(self, rows: Array) -> Stretch:
         """Pieces of one shape by their numbers."""
-        return _Accelerated(self.shape, rows)
+        return _Accelerated(self.shape, tuple(rows))
 
     def __call__(self, u: Series, /) -> Series:
         """Give the displacement."""
@@ -117,10 +117,10 @@ class AcceleratedPiece(Alike):
 
 @dataclass(frozen=True, eq=False)
 class _Accelerated:
-    """Displacements of pieces of one shape by their rows of numbers (5, n), each at its own point or interval."""
+    """Displacements of pieces of one shape by their five numbers (n,), each at its own point or interval."""
 
     shape: Literal["sin", "cos", "flat"]
-    rows: Array
+    rows: tuple[Array, ...]
 
     def __call__(self, u: Series, /) -> Series:
         """Give each displacement."""
