@@ -4,7 +4,7 @@ Nothing is imported before the interrupt is seen to, as the imports take most of
 reach is Python's own start before this. numpy starts with one thread, as nothing here multiplies great matrices and
 starting threads takes longer than a small cam; what the user has set stays, and so does the environment of a program
 that imports the library. Python's search for cycles waits until there is something to find: by default it goes again
-and again over what the imports make, ezdxf's above all.
+and again over what the imports make, ezdxf's above all, and at the end over what goes with the process anyway.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")  # of numpy's BLAS
 _COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
+_INTERRUPTED = "camgeo: interrupted\n"
 _IMPATIENT = 1.0  # seconds from which a second interrupt is a person's: one may arrive twice, by way of a launcher
 
 
@@ -34,7 +35,7 @@ class _Interrupts:
 
     def __init__(self) -> None:
         self.first: float | None = None
-        self.quiet = False  # at the end, where there is nothing left to interrupt
+        self.over = False  # at the end, where there is nothing left to interrupt
         self._again = False  # the first was swallowed
 
     def listen(self) -> None:
@@ -47,8 +48,10 @@ class _Interrupts:
         now = time.monotonic()
         if self.first is None or self._again:
             self.first, self._again = now, False
-            if not self.quiet:
+            if not self.over:
                 raise KeyboardInterrupt
+            _say(_INTERRUPTED)
+            os._exit(130)  # what is raised in the interpreter's own way out is printed and lost
         elif now - self.first > _IMPATIENT:
             os._exit(130)
 
@@ -56,7 +59,7 @@ class _Interrupts:
         """Raise an interrupt again that fell into a callback from which nothing can be raised."""
         if not isinstance(what.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(what)
-        elif not self.quiet:
+        elif not self.over:
             import threading
             from _thread import interrupt_main
 
@@ -75,15 +78,26 @@ def main() -> NoReturn:
     try:
         interrupts.listen()
         status = _status()
-        interrupts.quiet = True
+        interrupts.over = True
     except (KeyboardInterrupt, Exception) as end:
         # a compiled library that is being imported turns an interrupt into an error of its own
         if interrupts.first is None and not isinstance(end, KeyboardInterrupt):
             raise
-        interrupts.quiet = True
+        interrupts.over = True
         status = 130
-        _say("camgeo: interrupted\n")
-    _leave(interrupts, status)
+        _say(_INTERRUPTED)
+    if interrupts.first is not None and status != 130:  # a library kept it to itself
+        status = 130
+        _say(_INTERRUPTED)
+    try:
+        sys.stdout.flush()
+    except (OSError, ValueError):
+        from camgeo.common.terminal import silence
+
+        silence("stdout")
+        status = status or 3
+    gc.freeze()  # else Python's way out, which loses nothing, takes a fifth of a run
+    sys.exit(status)
 
 
 def _status() -> int:
@@ -93,22 +107,6 @@ def _status() -> int:
         return run()
     except SystemExit as end:  # of argparse
         return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
-
-
-def _leave(interrupts: _Interrupts, status: int) -> NoReturn:
-    """Leave at once, as the interpreter's own way out is open to interrupts, and reports them as tracebacks."""
-    import atexit
-
-    atexit._run_exitfuncs()  # noqa: SLF001 - what libraries leave to the end; there is no public way to it
-    try:
-        sys.stdout.flush()
-    except (OSError, ValueError):
-        status = status or 3
-    _say("")
-    if interrupts.first is not None and status != 130:
-        status = 130
-        _say("camgeo: interrupted\n")
-    os._exit(status)
 
 
 def _say(text: str) -> None:

@@ -389,8 +389,8 @@ WHERE_ONE_IS_ALL = {
     "camgeo/report/page/curves.py": 1,
     "camgeo/report/page/content.py": 1,  # where the zero of the motion is marked
     "camgeo/machining/compensation.py": 1,  # a chamfer runs along one
-    "camgeo/machining/grinding.py": 2,  # tables of one surface: SURFACES
-    "camgeo/machining/milling.py": 1,  # polar tables and solids are taught one: SURFACES
+    "camgeo/machining/grinding.py": 2,  # tables of one surface: CAPACITIES
+    "camgeo/machining/milling.py": 1,  # polar tables and solids are taught one: CAPACITIES
     "camgeo/output/gcode.py": 1,
     "camgeo/output/job.py": 2,
     "camgeo/output/table.py": 1,

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, Follower, GrownError, Preload, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, GrownError, Preload, Undercut
+from camgeo.cams.follower import Follower
 from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.preload import PRELOAD, build_preload, preloaded
 from camgeo.motions.half_turn import MOTION, HalfTurnCam, check_half_turn

@@ -7,10 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.conjugate import opposite_face
-from camgeo.cams.family import Advice, Circle, ExactCam, Follower, Surface, Undercut
+from camgeo.cams.family import Advice, Circle, ExactCam, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
+from camgeo.cams.follower import Follower
 from camgeo.cams.guided import SMALLER_STROKE, ExactGuided, ExactLed, GuidedCam, Holding, RoundAdvice, smaller
 from camgeo.cams.preload import preloaded
+from camgeo.cams.surface import Surface
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Shoe, Translating
 from kin.numeric.records import dataclass, replace

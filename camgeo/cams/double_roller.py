@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Preload, Surface, Undercut
+from camgeo.cams.family import Cam, Circle, Family, GrownError, Preload, Undercut
+from camgeo.cams.follower import Follower
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
 from camgeo.cams.preload import build_preload
+from camgeo.cams.surface import Surface
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel

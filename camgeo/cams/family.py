@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import Field, Kind
-from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from camgeo.curve.curve import Curve
-    from camgeo.curve.extremes import Extreme, ShaftFigure
+    from camgeo.cams.follower import Follower
+    from camgeo.cams.surface import Surface
+    from camgeo.curve.extremes import Extreme
     from camgeo.curve.moving_frame import Displacement
     from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
     from kin.follower.base import Follower as Gauge
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Arrangement, Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
@@ -47,115 +47,6 @@ UNDERCUT = Field(
     default="refuse",
     choices=("refuse", "trim"),
 )
-
-
-def upright(t: Array) -> Array:
-    """Pressure angle of a flat face at right angles to its way, rad (n,): none."""
-    return 0.0 * t
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """A surface of a disc that a follower touches.
-
-    `base` is what the motion describes, the pitch curve of a roller or the surface itself; `curve` is the surface, by
-    `radius` (mm, 0 for flat faces) within the base, or around it where the metal lies outside (`side` -1). `pressure`
-    is the angle between the contact's normal and the follower's way, rad, over parameters of the curve (n,), above 0
-    where the cam drives a rise; `place` is where a flat face is touched, mm along it. `series` are figures over the
-    shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place on a flat face,
-    mm; spin, turns of the roller per turn of the shaft. `name` is that by which contacts and reports tell it from the
-    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft, `layer` is that of drawings.
-    `depth` is how far it reaches down from the top face, mm, None of one that goes through.
-    """
-
-    base: Curve
-    curve: Curve
-    radius: float = 0.0
-    side: Side = 1
-    pressure: Callable[[Array], Array] = upright
-    place: Callable[[Array], Array] | None = None
-    series: Mapping[str, ShaftFigure] = field(default_factory=dict)
-    name: str = ""
-    disc: int = 0
-    layer: str = "CUT"
-    depth: float | None = None
-    _extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
-
-    @property
-    def prefix(self) -> str:
-        """What names of its columns in tables begin with: its name, where the cam has several."""
-        return f"{self.name.replace(' ', '_')}_" if self.name else ""
-
-    def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
-        """Least and greatest value of one of `series`, found once; None of one that there is not."""
-        from camgeo.curve.extremes import both
-        from camgeo.curve.rates import stretches
-
-        if name not in self._extremes:
-            figure = self.series.get(name)
-            if figure is None:
-                return None
-            self._extremes[name] = both(figure, stretches(self.base.shape))
-        return self._extremes[name]
-
-
-@dataclass(frozen=True)
-class Follower:
-    """What follows the disc: the name in reports, its contacts, the checks of its intended motion in their order.
-
-    `closure` is the name of the check of files on what is left between the cam and a follower that is held from both
-    sides, empty for other followers.
-    """
-
-    name: str
-    contacts: tuple[Contact[Guide, Touch], ...]
-    checks: tuple[str, ...]
-    closure: str = ""
-
-    @property
-    def arrangement(self) -> Arrangement:
-        """Guide and touch of its contacts, and in how many places they are: one roller may touch two surfaces."""
-        first = self.contacts[0]
-        places, surfaces = {contact.place for contact in self.contacts}, {contact.surface for contact in self.contacts}
-        return Arrangement(type(first.guide), type(first.touch), len(places), min(len(places), len(surfaces)))
-
-    def sense(self, surface: str) -> Side:
-        """Whether a surface pushes the follower out, 1, or back, -1."""
-        return next(contact.sense for contact in self.contacts if contact.surface == surface)
-
-    def running(self, contact: Contact[Guide, Touch]) -> Touch:
-        """The touch that runs where a contact is: that of the first one there, where a flank's gauge is wider."""
-        return next(first.touch for first in self.contacts if first.place == contact.place)
-
-    @property
-    def width(self) -> float | None:
-        """How wide a flat face is, mm, centred on the axis of its stem; None of one as wide as it needs to be."""
-        touch = self.contacts[0].touch
-        return touch.width if isinstance(touch, Flat) else None
-
-    @property
-    def lean(self) -> float:
-        """Tangent of the pressure angle at which an eccentric stem begins to rise; 0 on an arm."""
-        first = self.contacts[0]
-        return abs(first.guide.offset) / first.datum if isinstance(first.guide, Translating) and first.datum else 0.0
-
-    @property
-    def pivot(self) -> float:
-        """Distance of an arm's pivot from the shaft, mm; infinite of a stem."""
-        guide = self.contacts[0].guide
-        return math.inf if isinstance(guide, Translating) else guide.pivot
-
-    @property
-    def offset(self) -> float:
-        """Eccentricity of a stem's line, mm; 0 on an arm."""
-        guide = self.contacts[0].guide
-        return guide.offset if isinstance(guide, Translating) else 0.0
-
-    @property
-    def breadth(self) -> float | None:
-        """How far two opposite faces are apart, mm; None for other followers."""
-        *_, last = self.contacts
-        return last.datum if last.sense < 0 and isinstance(last.touch, Flat) and last.guide.unit == "mm" else None
 
 
 class Circle(NamedTuple):

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
+from camgeo.cams.family import Advice, Cam, ExactCam, Proof
+from camgeo.cams.follower import Follower
 from camgeo.cams.preload import preloaded
+from camgeo.cams.surface import Surface
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from camgeo.motions.position import LiftPosition, Position

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import Cam, Circle, Family, Follower, Preload, Surface, Undercut
+from camgeo.cams.family import Cam, Circle, Family, Preload, Undercut
+from camgeo.cams.follower import Follower
 from camgeo.cams.pairs import PairAdvice, PairCam, Route, SwingOf, build_route, check, pair_table
 from camgeo.cams.preload import build_preload
+from camgeo.cams.surface import Surface
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm

@@ -10,7 +10,8 @@ from abc import abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from camgeo.cams.family import Advice, Cam, Circle, ExactCam, GrownError, Surface
+from camgeo.cams.family import Advice, Cam, Circle, ExactCam, GrownError
+from camgeo.cams.surface import Surface
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
@@ -20,7 +21,7 @@ from kin.law.programme import IntentError
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Follower
+    from camgeo.cams.follower import Follower
     from camgeo.curve import moving_frame
     from camgeo.curve.curve import Side as Before
     from camgeo.curve.extremes import ShaftFigure

@@ -23,7 +23,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.cams.family import Follower, Surface
+    from camgeo.cams.follower import Follower
+    from camgeo.cams.surface import Surface
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission

@@ -18,7 +18,9 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.cams.family import Cam, Circle, Follower, Margin, Proof, Surface
+    from camgeo.cams.family import Cam, Circle, Margin, Proof
+    from camgeo.cams.follower import Follower
+    from camgeo.cams.surface import Surface
     from camgeo.curve.moving_frame import Displacement
     from camgeo.motions.position import Position
     from camgeo.schema.reader import Values

@@ -18,7 +18,8 @@ from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import ExactCam, Surface
+    from camgeo.cams.family import ExactCam
+    from camgeo.cams.surface import Surface
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Preload, Surface, Undercut
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
+from camgeo.cams.surface import Surface
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating

@@ -32,7 +32,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.family import Follower
+    from camgeo.cams.follower import Follower
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe

@@ -21,8 +21,7 @@ from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-
-    from _typeshed import SupportsWrite
+    from typing import NoReturn
 
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.camshaft import CamshaftRecipe
@@ -54,13 +53,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose help and complaints go the way of all others."""
+    """A parser whose complaints go the way of all others."""
 
-    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
-        if file is sys.stderr:
-            complain(message.removesuffix("\n"))
-        else:
-            say(message.removesuffix("\n"))
+    def error(self, message: str) -> NoReturn:
+        complain(f"{self.format_usage()}{self.prog}: error: {message}")
+        raise SystemExit(WRONG)
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:

@@ -14,7 +14,7 @@ from camgeo.curve.measures import touched
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.output.job import Made
 from camgeo.recipe.export import BY_DISC, SOLIDS, name_of_disc
@@ -69,59 +69,51 @@ def _make(job: Job, request: FileRequest, path: Path) -> Made:
     raise ValueError(f"nothing makes {request.kind} alone")
 
 
-SURFACES: dict[tuple[str, str | None], int] = {
-    ("dxf", "arcs"): 2,
-    ("dxf", "polyline"): 2,
-    ("dxf", "spline"): 2,
-    ("dxf", "exact"): 1,
-    ("svg", "arcs"): 2,
-    ("svg", "polyline"): 2,
-    ("svg", "spline"): 2,
-    ("step", "arcs"): 2,
-    ("step", "spline"): 2,
-    ("step", "exact"): 1,
-    ("stl", None): 2,
-    ("3mf", None): 2,
-    ("glb", None): 2,
-    ("gcode", None): 2,
-    ("csv", "motion"): 2,
-    ("csv", "contacts"): 2,
-    ("csv", "polar"): 1,
-    ("csv", "grinding"): 1,
-    ("csv", "lift"): 1,
-    ("csv", "inspection"): 2,
-    ("csv", "forces"): 2,
-    ("csv", "trace"): 1,
-}
-"""How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
+class Capacity(NamedTuple):
+    """How many surfaces of a cam of one disc, and how many discs on one shaft, a form of a file is taught to hold."""
 
-DISCS: dict[tuple[str, str | None], int] = {
-    ("dxf", "arcs"): 2,
-    ("dxf", "polyline"): 2,
-    ("dxf", "spline"): 2,
-    ("svg", "arcs"): 2,
-    ("svg", "polyline"): 2,
-    ("svg", "spline"): 2,
-    ("step", "arcs"): 2,
-    ("step", "spline"): 2,
-    ("stl", None): 2,
-    ("3mf", None): 2,
-    ("glb", None): 2,
-    ("gcode", None): 2,
-    ("csv", "motion"): 2,
-    ("csv", "contacts"): 2,
-    ("csv", "forces"): 2,
+    surfaces: int
+    discs: int
+
+
+CAPACITIES: dict[tuple[str, str | None], Capacity] = {
+    ("dxf", "arcs"): Capacity(2, 2),
+    ("dxf", "polyline"): Capacity(2, 2),
+    ("dxf", "spline"): Capacity(2, 2),
+    ("dxf", "exact"): Capacity(1, 1),
+    ("svg", "arcs"): Capacity(2, 2),
+    ("svg", "polyline"): Capacity(2, 2),
+    ("svg", "spline"): Capacity(2, 2),
+    ("step", "arcs"): Capacity(2, 2),
+    ("step", "spline"): Capacity(2, 2),
+    ("step", "exact"): Capacity(1, 1),
+    ("stl", None): Capacity(2, 2),
+    ("3mf", None): Capacity(2, 2),
+    ("glb", None): Capacity(2, 2),
+    ("gcode", None): Capacity(2, 2),
+    ("csv", "motion"): Capacity(2, 2),
+    ("csv", "contacts"): Capacity(2, 2),
+    ("csv", "polar"): Capacity(1, 1),
+    ("csv", "grinding"): Capacity(1, 1),
+    ("csv", "lift"): Capacity(1, 1),
+    ("csv", "inspection"): Capacity(2, 1),
+    ("csv", "forces"): Capacity(2, 2),
+    ("csv", "trace"): Capacity(1, 1),
 }
-"""How many discs on one shaft each form of a file is taught to hold, one where it does not stand here."""
+"""Of each form of a file: of a cam with more it would be silently wrong, and is refused."""
 
 
 def demand_taught(recipe: Recipe, design: Design, request: FileRequest) -> None:
     """Raise RecipeErrors where a form of file is not taught as many surfaces or discs as the cam has."""
     form, surfaces, discs = (request.kind, request.as_), len(design.exact.surfaces), len(design.discs)
-    if discs > DISCS.get(form, 1):
-        others, what = [other for other, most in DISCS.items() if most >= discs], f"{discs} discs"
-    elif discs == 1 and surfaces > SURFACES.get(form, 1):
-        others, what = [other for other, most in SURFACES.items() if most >= surfaces], f"{surfaces} surfaces"
+    capacity = CAPACITIES.get(form, Capacity(1, 1))
+    if discs > capacity.discs:
+        others, what = [other for other, most in CAPACITIES.items() if most.discs >= discs], f"{discs} discs"
+    elif discs == 1 and surfaces > capacity.surfaces:
+        others, what = (
+            [other for other, most in CAPACITIES.items() if most.surfaces >= surfaces],
+            f"{surfaces} surfaces",
+        )
     else:
         return
     held = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in others)

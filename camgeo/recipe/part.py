@@ -324,7 +324,6 @@ PART = mapping(
         above=0,
         at_most=DENSEST,
     ),
-    later=(("follower", ""),),
 )
 
 

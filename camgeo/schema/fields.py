@@ -1,9 +1,8 @@
 """What a schema of a recipe is made of: fields and tables of fields, with their bounds.
 
 The tables themselves stand in the topics above this room. They are data: recipes are read and checked by them,
-`json_schema` publishes them, `starter` turns them into comments. A key that a coming version will know stands under
-`later` of its table: moving it into `fields` is what makes it known. A key that was renamed is read under its former
-name for one version, with a notice: `formerly` of its field is all that says so.
+`json_schema` publishes them, `starter` turns them into comments. A key that was renamed is read
+under its former name for one version, with a notice: `formerly` of its field is all that says so.
 """
 
 from __future__ import annotations
@@ -181,14 +180,12 @@ class Field:
 class Table:
     """The keys of a mapping.
 
-    Of `alternatives` exactly one is given, or none where they are `optional`; each names the keys that must come with
-    it. `later` are keys that this version recognises and refuses, each with what it would make, if there is a word.
+    Of `alternatives` exactly one is given, or none where they are `optional`; each names what must come with it.
     """
 
     fields: tuple[Field, ...]
     alternatives: tuple[tuple[str, tuple[str, ...]], ...] = ()
     optional: bool = field(default=False, kw_only=True)
-    later: tuple[tuple[str, str], ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -205,11 +202,6 @@ class Table:
         return next(item for item in self.fields if item.name == name)
 
 
-def not_yet(product: str) -> str:
-    """Say that a key is known and refused: `grooves are not made yet`."""
-    return f"{product} are not made yet" if product else "not available in this version"
-
-
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
     """Make the field of a length above 0, in the recipe's unit."""
     return Field(name, Kind.LENGTH, about, required, default=default, above=0, at_most=MOST)
@@ -220,9 +212,9 @@ def coordinate(name: str, about: str, *, required: bool = False, default: str = 
     return Field(name, Kind.LENGTH, about, required, default=default, at_least=-MOST, at_most=MOST)
 
 
-def mapping(name: str, about: str, *fields: Field, later: tuple[tuple[str, str], ...] = ()) -> Field:
+def mapping(name: str, about: str, *fields: Field) -> Field:
     """Make the field of a mapping with these fields."""
-    return Field(name, Kind.TABLE, about, table=Table(fields, later=later))
+    return Field(name, Kind.TABLE, about, table=Table(fields))
 
 
 def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
@@ -266,8 +258,11 @@ def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | N
     return field, ".".join(parts)
 
 
-def elsewhere(root: Table, name: str, keys: tuple[str, ...]) -> str:
+def elsewhere(root: Table, name: str, here: Table) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
+    below = tuple(item.name for item in here.fields if item.table and name in item.table.keys)
+    if below and here is not root:
+        return f"it belongs under {either(below)}"
     if name in root.keys:
         return "it belongs at the top level"
     plain = tuple(item.name for item in root.fields if item.table and name in (*item.table.keys, *item.table.former))
@@ -279,7 +274,7 @@ def elsewhere(root: Table, name: str, keys: tuple[str, ...]) -> str:
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
         return f"it belongs under {', or under '.join(places)}"
-    return f"the keys here are {either(keys, 'and')}" if keys else "there are no keys here"
+    return f"the keys here are {either(here.keys, 'and')}" if here.keys else "there are no keys here"
 
 
 def of_other_kind(root: Table, path: str) -> bool:

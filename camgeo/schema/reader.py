@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.schema.errors import RecipeError, shown, suggestion
-from camgeo.schema.fields import Field, Kind, Table, either, elsewhere, not_yet, of_other_kind
+from camgeo.schema.fields import Field, Kind, Table, either, elsewhere, of_other_kind
 from camgeo.schema.quantity import parted
 from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import (
@@ -139,7 +139,7 @@ class Reader:
                 value = self.field(field, given[field.name], below)
                 if value is not None:
                     values[field.name] = value
-            elif field.required and not _asks_later(table, given):
+            elif field.required:
                 self.fault(node.mark, below, "missing", None, f"{self.wanted(field)}: {field.about}")
         return values
 
@@ -174,10 +174,7 @@ class Reader:
             below = join(path, name)
             if name in known or name in table.former:
                 continue
-            if name in (later := dict(table.later)):
-                remedy = f"leave it out; the keys here are {either(known, 'and')}"
-                self.fault(key.mark, below, not_yet(later[name]), None, remedy)
-            elif name == "<<":
+            if name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             else:
                 if other := _other_measure(name, entries(node)[name], known):
@@ -186,12 +183,12 @@ class Reader:
                 near = suggestion(name, known)
                 if name not in near and of_other_kind(self.root, below):
                     near = ""  # it is no slip for another word, unless it is a part of that one
-                self.fault(key.mark, below, "unknown key", None, near or elsewhere(self.root, name, known))
+                self.fault(key.mark, below, "unknown key", None, near or elsewhere(self.root, name, table))
 
     def _refuse_alternatives(self, table: Table, nodes: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in nodes]
-        if names and not chosen and not table.optional and not _asks_later(table, nodes):
+        if names and not chosen and not table.optional:
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
             problem = f"cannot be combined with {self._key(path, chosen[0])}"
@@ -235,7 +232,7 @@ class Reader:
         kind = Field("kind", Kind.CHOICE, about, required=True, choices=tuple(tables), others=others)
         if found := kind_of(node, tables):
             table = tables[found]
-            return self.table(Table((kind, *table.fields), table.alternatives, table.later), node, path)
+            return self.table(Table((kind, *table.fields), table.alternatives), node, path)
         # Without a kind only keys that no table has are faults, and which kind was meant is not guessed at.
         every = {item.name: item for table in tables.values() for item in table.fields}
         self._refuse_unknown(Table((kind, *every.values())), node, path)
@@ -268,11 +265,6 @@ def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]
                 return f"give {wanted}: {factor * read_number(text):.12g} {unit}".rstrip()
             return f"give {wanted}"
     return ""
-
-
-def _asks_later(table: Table, nodes: dict[str, Node]) -> bool:
-    """Whether a mapping is of something that is not made yet: what it lacks besides is not missed."""
-    return any(name in nodes for name, _ in table.later)
 
 
 def kind_of(node: Node | None, tables: collections.abc.Mapping[str, Table]) -> str:

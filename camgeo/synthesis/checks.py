@@ -17,7 +17,8 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from camgeo.cams.family import ExactCam, Proof, Surface
+    from camgeo.cams.family import ExactCam, Proof
+    from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side

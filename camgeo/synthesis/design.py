@@ -21,7 +21,9 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.cams.family import ExactCam, Follower, Surface
+    from camgeo.cams.family import ExactCam
+    from camgeo.cams.follower import Follower
+    from camgeo.cams.surface import Surface
     from camgeo.curve.curvature import Least
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from camgeo.checks.declared import EVERY, Scene
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Follower
+    from camgeo.cams.follower import Follower
     from camgeo.recipe.recipe import Recipe
 
 

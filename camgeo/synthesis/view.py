@@ -30,7 +30,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array

@@ -44,3 +44,35 @@ def test_a_command_starts_one_thread_unless_told_otherwise(given: dict[str, str]
 def test_the_library_leaves_the_environment_alone() -> None:
     bare = {name: value for name, value in os.environ.items() if name not in NAMES}
     subprocess.run([sys.executable, "-c", LIBRARY], env=bare, cwd=ROOT, check=True)
+
+
+LEFT_TO_THE_END = """
+import atexit, threading, time, weakref
+class Kept: pass
+kept = Kept()
+weakref.finalize(kept, print, "finalizer")
+atexit.register(print, "registered before")
+import camgeo.cli.main as cli
+def run():
+    atexit.register(print, "registered within")
+    threading.Thread(target=lambda: (time.sleep(0.2), print("thread"))).start()
+    return 1
+cli.main = run
+from camgeo.__main__ import main
+main()
+"""
+
+
+def test_nothing_that_is_left_to_the_end_is_lost() -> None:
+    done = subprocess.run([sys.executable, "-c", LEFT_TO_THE_END], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert sorted(done.stdout.splitlines()) == ["finalizer", "registered before", "registered within", "thread"]
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")  # noqa: PTH110
+def test_an_output_that_cannot_be_written_changes_no_other_status() -> None:
+    with open("/dev/full", "w", encoding="utf-8") as full:  # noqa: PTH123
+        done = subprocess.run(
+            [sys.executable, "-c", LEFT_TO_THE_END], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 1

@@ -9,7 +9,7 @@ from support.groove import CAM, grooved
 from support.heavy import ezdxf
 
 from camgeo.output import pipeline
-from camgeo.output.dispatch import SURFACES
+from camgeo.output.dispatch import CAPACITIES
 from camgeo.recipe.export import FILES
 from camgeo.report import document
 from camgeo.schema.errors import RecipeErrors
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 PART = "part: {thickness: 8, bore: 10, outer: 160}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
-FORMS = sorted(SURFACES, key=str)
+FORMS = sorted(CAPACITIES, key=str)
 READ = {  # tables of one surface that are refused of a groove as its recipe is read
     ("csv", "grinding"): ("{csv: {as: grinding}}", "a wheel grinds the outside of a disc"),
     ("csv", "lift"): ("{csv: {as: lift, roller: 25}}", "a wheel grinds the outside of a disc"),
     ("csv", "trace"): ("{csv: {as: trace}}", "needs linkage.trace"),
 }
-ALONE = [form for form in FORMS if SURFACES[form] == 1 and form not in READ]
+ALONE = [form for form in FORMS if CAPACITIES[form].surfaces == 1 and form not in READ]
 
 
 def written(kind: str, how: str | None) -> str:
@@ -39,7 +39,7 @@ def test_every_form_of_a_file_is_in_the_table() -> None:
     for kind, table in FILES.items():
         choices = next((field.choices for field in table.fields if field.name == "as"), None) or (None,)
         offered |= {(kind, how) for how in choices}
-    assert set(SURFACES) == offered - {("html", None)}
+    assert set(CAPACITIES) == offered - {("html", None)}
 
 
 @pytest.mark.parametrize(("kind", "how"), ALONE)
@@ -56,7 +56,7 @@ def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | Non
 
 @pytest.mark.parametrize("form", READ, ids=str)
 def test_a_table_that_no_groove_has(form: tuple[str, str]) -> None:
-    assert SURFACES[form] == 1
+    assert CAPACITIES[form].surfaces == 1
     file, problem = READ[form]
     with pytest.raises(RecipeErrors) as caught:
         grooved(f"{CAM}\n{PART}\nmanufacture: {{wheel: 300}}\nexport: {{files: [{file}]}}\n")
@@ -71,7 +71,7 @@ def test_a_form_that_is_taught_more_is_named(tmp_path: Path) -> None:
         pipeline.export(recipe, tmp_path / "out")
 
 
-HELD = [form for form in FORMS if SURFACES[form] > 1 and form[0] in {"dxf", "svg"}]
+HELD = [form for form in FORMS if CAPACITIES[form].surfaces > 1 and form[0] in {"dxf", "svg"}]
 LIMITED = "limits: {contour-error: {at_most: 0.002}, size: {at_most: 200}}"
 
 
@@ -80,6 +80,7 @@ def exported(files: str, folder: Path, clearance: float = 0.03, more: str = "") 
     return pipeline.export(grooved(text, clearance), folder)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("kind", "how"), HELD)
 def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, tmp_path: Path) -> None:
     outcome = exported(written(kind, how), tmp_path, more=LIMITED)
@@ -98,6 +99,7 @@ def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, t
     assert "perimeter" not in file
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("kind", "how"), HELD)
 def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: Path) -> None:
     """A file of another clearance fails on the outer flank alone, by what it is off."""

@@ -114,7 +114,7 @@ def test_yaml_signs(text: str) -> None:
 def _keys(table: Table) -> set[str]:
     tables = [each for field in table.fields for each in (field.table, field.form and field.form.instead) if each]
     below = {key for each in tables for key in _keys(each)}
-    return {*table.keys, *(name for name, _ in table.later), *below}
+    return {*table.keys, *below}
 
 
 TABLES = [*CAMS.values(), *LINKAGES.values(), *DYADS.values(), RANGE, *map(bounds, FIGURES.values())]

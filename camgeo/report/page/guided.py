@@ -19,7 +19,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from camgeo.synthesis.view import Round
     from kin.law import contacts
     from kin.law.contacts import Contact, Oscillating

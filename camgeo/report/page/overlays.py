@@ -23,7 +23,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.cams.family import Surface
+    from camgeo.cams.surface import Surface
     from kin.law.contacts import Arrangement, Guide, Touch
     from kin.numeric.arrays import Array
 

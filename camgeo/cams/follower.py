@@ -1,0 +1,71 @@
+"""The follower of a cam, by its contacts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from kin.law.contacts import Arrangement, Flat, Translating
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.contacts import Contact, Guide, Side, Touch
+
+
+@dataclass(frozen=True)
+class Follower:
+    """What follows the disc: the name in reports, its contacts, the checks of its intended motion in their order.
+
+    `closure` is the name of the check of files on what is left between the cam and a follower that is held from both
+    sides, empty for other followers.
+    """
+
+    name: str
+    contacts: tuple[Contact[Guide, Touch], ...]
+    checks: tuple[str, ...]
+    closure: str = ""
+
+    @property
+    def arrangement(self) -> Arrangement:
+        """Guide and touch of its contacts, and in how many places they are: one roller may touch two surfaces."""
+        first = self.contacts[0]
+        places, surfaces = {contact.place for contact in self.contacts}, {contact.surface for contact in self.contacts}
+        return Arrangement(type(first.guide), type(first.touch), len(places), min(len(places), len(surfaces)))
+
+    def sense(self, surface: str) -> Side:
+        """Whether a surface pushes the follower out, 1, or back, -1."""
+        return next(contact.sense for contact in self.contacts if contact.surface == surface)
+
+    def running(self, contact: Contact[Guide, Touch]) -> Touch:
+        """The touch that runs where a contact is: that of the first one there, where a flank's gauge is wider."""
+        return next(first.touch for first in self.contacts if first.place == contact.place)
+
+    @property
+    def width(self) -> float | None:
+        """How wide a flat face is, mm, centred on the axis of its stem; None of one as wide as it needs to be."""
+        touch = self.contacts[0].touch
+        return touch.width if isinstance(touch, Flat) else None
+
+    @property
+    def lean(self) -> float:
+        """Tangent of the pressure angle at which an eccentric stem begins to rise; 0 on an arm."""
+        first = self.contacts[0]
+        return abs(first.guide.offset) / first.datum if isinstance(first.guide, Translating) and first.datum else 0.0
+
+    @property
+    def pivot(self) -> float:
+        """Distance of an arm's pivot from the shaft, mm; infinite of a stem."""
+        guide = self.contacts[0].guide
+        return math.inf if isinstance(guide, Translating) else guide.pivot
+
+    @property
+    def offset(self) -> float:
+        """Eccentricity of a stem's line, mm; 0 on an arm."""
+        guide = self.contacts[0].guide
+        return guide.offset if isinstance(guide, Translating) else 0.0
+
+    @property
+    def breadth(self) -> float | None:
+        """How far two opposite faces are apart, mm; None for other followers."""
+        *_, last = self.contacts
+        return last.datum if last.sense < 0 and isinstance(last.touch, Flat) and last.guide.unit == "mm" else None
