@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from camgeo.curve.ring import steps_along
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import RegionError
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline, Polygon
 

@@ -38,9 +38,13 @@ class Extreme(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FollowerTurn:
-    """A design's follower over the turn, by the parameter of its law: its position and the lines of its contacts."""
+    """A design's follower over the turn, by the parameter of its law: its position and the lines of its contacts.
+
+    `corners` are shaft angles, rad, at which what is found over the turn is not smooth, besides those of the motion.
+    """
 
     design: Design
+    corners: tuple[float, ...] = ()
 
     @cached_property
     def swings(self) -> bool:
@@ -81,9 +85,9 @@ class FollowerTurn:
 
     def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
         """Functions of the shaft angle, values(phi (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
-        from kin.numeric.monotone import cells, pieces
+        from kin.numeric.monotone import between, cells, pieces
 
-        made = cells(values, self.places, share=SHARE)
+        made = cells(values, between(0.0, TURN, [*self.places, *self.corners]), share=SHARE)
         return [pieces(made, row) for row in range(len(made.coefficients))]
 
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.remedies import Missed, of_limit
 from camgeo.measures.figures import of_design, of_dynamics, of_file
-from camgeo.measures.lobe import lobe_figure
 from camgeo.recipe.figures import AT_LIFT, FIGURES
 from kin.judge.check import Check
 
@@ -45,6 +44,8 @@ def limit_checks(
     for limit in recipe.limits:
         name, of = limit.figure, FIGURES[limit.figure].of
         if name in AT_LIFT:
+            from camgeo.measures.lobe import lobe_figure
+
             found += _held(recipe, limit, lobe_figure(name, design.exact, limit.lift))
         elif name in measured:
             found += _held(recipe, limit, measured[name])

@@ -17,6 +17,7 @@ import numpy as np
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.recipe.dynamics import MATERIALS
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -56,7 +57,13 @@ class Running:
     @cached_property
     def turn(self) -> FollowerTurn:
         """The follower over the turn."""
-        return FollowerTurn(self.design)
+        return FollowerTurn(self.design, self.corners)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Shaft angles, rad, at which a table of the load has corners."""
+        load = self.train.load
+        return () if isinstance(load, str) else tuple(load.corners.tolist())
 
     @cached_property
     def sides(self) -> tuple[Side, ...]:
@@ -98,7 +105,10 @@ class Running:
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
-        formula = Formula(self.train.load)
+        given = self.train.load
+        if not isinstance(given, str):
+            return given
+        formula = Formula(given)
         try:
             at = unbounded(formula)
             formula(self.turn.places)
@@ -106,7 +116,7 @@ class Running:
             raise self.recipe.error("dynamics.load", str(error)) from error
         if at is not None:
             why = f"it has no bound near {degrees(at):.6g} degrees"
-            raise self.recipe.error("dynamics.load", why, f"'{self.train.load}'", "give a load that is finite")
+            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def _rest(self, phi: Array, y: Array) -> Array:
@@ -220,6 +230,7 @@ class Running:
         places = np.unique(np.concatenate([self.turn.places, self.changes]))
         x, weight = np.polynomial.legendre.leggauss(NODES)
         edges = np.concatenate([np.linspace(a, b, PANELS + 1)[:-1] for a, b in pairwise(places)])
+        edges = distinct(np.concatenate([edges, self.corners]))
         width = np.diff(np.append(edges, places[-1]))
         phi = (edges[:, None] + 0.5 * width[:, None] * (x + 1.0)).ravel()
         state, steps = self.state(phi), (0.5 * width[:, None] * weight).ravel()

@@ -61,7 +61,7 @@ def below(found, path):
 
 
 def is_motion(field):
-    return field.form is not None and field.form.instead is not None
+    return field.table is not None and field.form is not None and field.form.instead is not None
 
 
 def motions(found):
