@@ -17,6 +17,7 @@ from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAM
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError, between, cells, pieces
+from kin.numeric.quadrature import gauss
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
+    from kin.numeric.monotone import Pieces
 
 CRANK = 2.0  # turns of the crank for one of the cam
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+NODES, WEIGHTS = gauss(12)
 SHARE = 1e-12  # of the greatest lift, to which it is followed
 PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
 
@@ -57,11 +59,8 @@ class EventError(KinError, ValueError):
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> Event:
     """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
-    position = exact.motion
     try:
-        made = pieces(
-            cells(lambda t: position.by_parameter(t, 0), between(0.0, TURN, exact.breaks.tolist()), share=SHARE)
-        )
+        made = _pieces(exact)
     except RoughError as error:
         raise EventError("the motion changes too abruptly to be resolved") from error
     datum, _ = made.least()
@@ -69,8 +68,15 @@ def event_of(exact: ExactCam, lift: float) -> Event:
     if len(crossings) != 2:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
     first, last = crossings.tolist()
-    above = float(position.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
+    above = float(exact.motion.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
     return Event(lift, first, last) if above else Event(lift, last, first + TURN)
+
+
+@lru_cache(maxsize=16)
+def _pieces(exact: ExactCam) -> Pieces:
+    """The follower's position over a turn; raises RoughError."""
+    position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
+    return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
 
 
 def _duration(event: Event, _: ExactCam) -> Measured:
@@ -114,19 +120,15 @@ _MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
 _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
 
 
-def of_lobe(name: str) -> Callable[[Recipe, Design], Measured]:
-    """Make the measure of a figure at the lift that the recipe's limit of it states, or at its usual one."""
-
-    def measure(recipe: Recipe, design: Design) -> Measured:
-        stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
-        lift = next(stated, AT_LIFT[name])
-        if name == LIFT_AREA and lift == 0.0:
-            turn = between(0.0, TURN, design.exact.breaks.tolist())
-            return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
-        try:
-            event = event_of(design.exact, lift)
-        except EventError as error:
-            return Measured(None, _UNITS[name], detail=str(error))
-        return _MADE.get(name, _area)(event, design.exact)
-
-    return measure
+def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
+    """Measure a figure at the lift that the recipe's limit of it states, or at its usual one."""
+    stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
+    lift = next(stated, AT_LIFT[name])
+    if name == LIFT_AREA and lift == 0.0:
+        turn = between(0.0, TURN, design.exact.breaks.tolist())
+        return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
+    try:
+        event = event_of(design.exact, lift)
+    except EventError as error:
+        return Measured(None, _UNITS[name], detail=str(error))
+    return _MADE.get(name, _area)(event, design.exact)

@@ -10,8 +10,7 @@ from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
 from camgeo.curve.curve import CurveError
-from camgeo.files.errors import MissingExtraError
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError

@@ -245,7 +245,7 @@ def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> 
     assert re.search(r"position, roller", text)
 
 
-OF_A_LOBE = ("phase", "contour", "motion", "thickness")
+OF_A_LOBE = ("phase", "contour", "motion")
 PLANTED = {
     "crank for cam degrees": (TWO.replace("33.3", "66.6"), SHAFT, {f"{check}, intake" for check in OF_A_LOBE}),
     "a tenth of a degree": (TWO.replace("-120", "-119.9"), SHAFT, {f"{check}, roller" for check in OF_A_LOBE}),
