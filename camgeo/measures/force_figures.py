@@ -80,8 +80,10 @@ def forces_section(running: Running, found: Extremes) -> dict[str, object]:
         pair = zip(("near", "far"), found.guide, strict=True)
         section["guide"] = [{"end": end, **_range(one, "N")} for end, one in pair]
     if found.pressure:
+        bearable = running.most_pressure
         section["pressure"] = [
             {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}
+            | ({} if bearable is None else {"limit": bearable, "share_of_limit": most.value / bearable})
             for name, (_, most) in zip(names, found.pressure, strict=True)
         ]
     if len(names) > 1:

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
-from camgeo.recipe.dynamics import MATERIALS
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
@@ -229,8 +228,8 @@ class Running:
         train, width = self.train, self.train.width or self.recipe.part.thickness
         if train.material is None or width is None:
             return None
-        bodies = [MATERIALS[train.material], MATERIALS[train.roller_material or train.material]]
-        compliance = sum((1.0 - nu**2) / modulus for modulus, nu in bodies)
+        bodies = [train.material, train.roller_material or train.material]
+        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
         found = []
         follower = self.design.follower
         for normal, line, side, one in zip(state.normal, state.lines, self.sides, follower.contacts, strict=True):
@@ -238,6 +237,12 @@ class Running:
             curvature = side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0)
             found.append(np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance)))
         return np.array(found)
+
+    @property
+    def most_pressure(self) -> float | None:
+        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
+        bodies = (self.train.material, self.train.roller_material)
+        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
 
     def roller_speeds(self, state: State) -> Array | None:
         """Speed of the roller about its pin as each contact turns it, turns a minute (m, n); None of other touches."""
