@@ -39,7 +39,7 @@ class Rates(Protocol):
 
 ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
 ORDER = 5  # of the series that bounds come from
-NARROW = 0.0075  # rad: intervals narrower to either side were halved more than once; there a higher order saves most
+NARROW = 0.01  # rad: intervals narrower to either side were halved, at a fold; there a higher order saves most of them
 FINE_ORDER = 9
 
 
