@@ -273,11 +273,15 @@ class Piecewise:
             raise ValueError("a parameter is not finite")
         turns = np.zeros_like(t) if self.period is None else np.floor((t - knots[0]) / self.period)
         x = t if self.period is None else t - turns * self.period
-        snap = self._snap(t)
-        if self.period is None and ((x < knots[0] - snap) | (x > knots[-1] + snap)).any():
-            raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
         inside = np.minimum(np.maximum(np.searchsorted(knots, x, side="right") - 1, 0), last)
-        below, above = np.abs(x - knots[inside]), np.abs(knots[inside + 1] - x)
+        below, above = x - knots[inside], knots[inside + 1] - x
+        least = np.minimum(below, above)
+        if t.size and least.min() > self._snap(np.abs(t).max(keepdims=True))[0]:
+            return inside, x, turns
+        snap = self._snap(t)
+        if self.period is None and (least < -snap).any():
+            raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
+        below, above = np.abs(below), np.abs(above)
         on_knot = np.minimum(below, above) <= snap
         if not on_knot.any():
             return inside, x, turns
