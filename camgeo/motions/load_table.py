@@ -84,7 +84,7 @@ def _table(reader: Reader, file: str, angles: Angles, path: str) -> LoadTable | 
     if (found := read_rows(reader, file, path, angles=angles, unit="N")) is None:
         return None
     try:
-        rows = periodic(found[0].samples(), TURN, path, "N m" if Kind.STROKE in reader.angular else "N")
+        rows = periodic(found[0].samples(), TURN, path, reader.unit(Kind.THRUST))
     except IntentError as error:
         reader.fault_at(path, f"{file}, {error.message}")
         return None

@@ -111,11 +111,11 @@ def test_contacts_under_preload_and_limits() -> None:
 
 def test_a_sweep_accepts_designs_by_pounds() -> None:
     more = (
-        "sweep: {vary: {cam.base_radius: [40, 45]}, accept: {contact-force-greatest: {at_most: 100 lbf}}, rank: size}\n"
+        "sweep: {vary: {cam.base_radius: [40, 45]}, limits: {contact-force-greatest: {at_most: 100 lbf}}, rank: size}\n"
     )
     sweep = made("mass: 1, preload: 12 lbf", more=more).sweep
     assert sweep is not None
-    assert sweep.accept[0].at_most == pytest.approx(444.82216152605)
+    assert sweep.limits[0].at_most == pytest.approx(444.82216152605)
 
 
 FORCE, RATE, MASS = (
@@ -176,3 +176,13 @@ def test_the_schema_takes_them() -> None:
         ("rate", "30 lb/in", False),
     ):
         assert bool(re.search(schema[key]["anyOf"][1]["pattern"], value)) is ok, (key, value)
+
+
+def test_a_linkage_whose_output_swings_has_moments() -> None:
+    linked = """\
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
+linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
+"""
+    found = train("mass: 0.02, stiffness: 200, damping: 0.01, preload: 20 lbf*in", linked)
+    assert found.preload == pytest.approx(20.0 * 0.1129848290276167, rel=1e-15)
+    assert "'lbf' is no unit of a moment" in refusal("mass: 0.02, stiffness: 200, preload: 20 lbf", linked)
