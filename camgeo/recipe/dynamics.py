@@ -121,6 +121,7 @@ DYNAMICS = Table(
             required=True,
             above=0,
             at_most=_MOST,
+            unit=Kind.INERTIA,
         ),
         Field(
             "damping",
@@ -137,6 +138,7 @@ DYNAMICS = Table(
             default="rigid",
             above=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "preload",
@@ -144,6 +146,7 @@ DYNAMICS = Table(
             "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         replace(
             length(
@@ -158,6 +161,7 @@ DYNAMICS = Table(
             default="0",
             at_least=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "least_force",
@@ -165,13 +169,14 @@ DYNAMICS = Table(
             "least force along the travel for which the preload of the spring is found, N; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         Field(
             "load",
             Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
-            unit=Kind.NUMBER,
+            unit=Kind.THRUST,
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
