@@ -80,8 +80,10 @@ def forces_section(running: Running, found: Extremes) -> dict[str, object]:
         pair = zip(("near", "far"), found.guide, strict=True)
         section["guide"] = [{"end": end, **_range(one, "N")} for end, one in pair]
     if found.pressure:
+        bearable = running.most_pressure
         section["pressure"] = [
             {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}
+            | ({} if bearable is None else {"limit": bearable, "share_of_limit": most.value / bearable})
             for name, (_, most) in zip(names, found.pressure, strict=True)
         ]
     if len(names) > 1:
@@ -111,6 +113,8 @@ def found_forces(recipe: Recipe, design: Design) -> Forces | None:
     if running is None:
         return None
     try:
+        if running.jam_deg is not None:  # which a check tells
+            return Forces({"rpm": running.train.rpm, "jams_at_deg": running.jam_deg}, ())
         found = extremes_of(running)
     except RoughError as error:
         raise recipe.error("dynamics", f"{ABRUPT}: {error}") from error
@@ -141,6 +145,8 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     if running is None:
         return {}
     try:
+        if running.jam_deg is not None:
+            return dict.fromkeys(FORCES, Measured(None, "N", running.jam_deg, detail="the stem jams in its guide"))
         found = extremes_of(running)
     except RoughError:
         return dict.fromkeys(FORCES, Measured(None, "N", detail=ABRUPT))

@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
-from camgeo.recipe.dynamics import MATERIALS
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from camgeo.recipe.dynamics import Dynamics
     from camgeo.recipe.recipe import Recipe
@@ -149,33 +148,66 @@ class Running:
         lines = self.turn.lines(rows)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self._rest(phi, y[0]) + self.preload
-        pushes = [sense * self.senses[0] for sense in self.senses]
-        levers = [self._lever(line, y, push) for line, push in zip(lines, pushes, strict=True)]
+        levers = self._levers(lines, y)
         if len(lines) == 1:
-            return State(force, y, lines, np.array([force / levers[0]]))
+            return State(force, y, lines, force / levers)
         given = self.design.exact.preload
         if given is not None and given.stiffness is not None:
             scale = PER_MM if self.turn.swings else 1.0
             pair = elastic(self.turn, given, rows).split(force / scale) * scale
         else:
             pair = np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
-        return State(force, y, lines, pair / np.array(levers))
+        return State(force, y, lines, pair / levers)
 
-    def _lever(self, line: ContactLine, y: Array, push: int) -> Array:
-        """Lever of a contact's normal force along the travel, 1 or m; of a stem less the friction of its guide."""
-        guide = self.train.guide
+    def _levers(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """Lever of each contact's normal force along the travel, 1 or m (m, n); on a stem less its guide's friction.
+
+        Not a number where that leaves nothing: the stem jams.
+        """
+        levers = np.array([line.lever for line in lines]) * (PER_MM if self.turn.swings else 1.0)
+        if self.train.guide is None:
+            return levers
+        levers = self._free(lines, y)
+        return np.where(levers > 0.0, levers, np.nan)
+
+    def _free(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """What the friction of a guide leaves of each contact's lever, (m, n)."""
+        friction = 0.0 if self.train.guide is None else self.train.guide.friction
+        rubbing = np.abs(self._at_ends(lines, y)).sum(axis=1)
+        pushes = np.array(self.senses)[:, None] * self.senses[0]
+        found: Array = np.array([line.lever for line in lines]) - pushes * np.sign(y[1]) * friction * rubbing
+        return found
+
+    def _at_ends(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """What each contact's normal force of 1 bears on the guide's near end and far one, across the stem: (m, 2, n).
+
+        A force across the stem bears by its overhang, one along it by its distance from the stem's axis. The axes of a
+        contact that is turned see the stem from beyond the shaft.
+        """
+        guide, contacts = self.train.guide, self.design.follower.contacts
         if guide is None:
-            return line.lever * (PER_MM if self.turn.swings else 1.0)
-        ahead, length = self._overhang(y), guide.length
-        drag = push * np.sign(y[1]) * guide.friction * (2.0 * ahead + length) / length
-        lever: Array = line.lever - drag * np.abs(line.normal[:, 1])
-        return lever
+            return np.zeros((len(lines), 2, y.shape[1]))
+        offset, risen = self.design.follower.offset, (y[0] - self.lowest) / self.unit
+        found = []
+        for line, contact in zip(lines, contacts, strict=True):
+            beyond = contacts[0].zero + contact.zero if contact.turned else 0.0
+            ahead, way = guide.overhang + beyond - risen, math.cos(contact.turned)
+            across, couple = way * line.normal[:, 1], line.normal[:, 0] * (line.centre[:, 1] - way * offset)
+            found.append([across * (ahead + guide.length) + couple, across * ahead + couple])
+        return np.array(found) / guide.length
 
-    def _overhang(self, y: Array) -> Array:
-        guide = self.train.guide
-        ahead = 0.0 if guide is None else guide.overhang
-        overhang: Array = ahead - (y[0] - self.lowest) / self.unit
-        return overhang
+    @cached_property
+    def jam_deg(self) -> float | None:
+        """Shaft angle in degrees at which the stem jams in its guide, None where it does not."""
+        if self.train.guide is None:
+            return None
+
+        def free(phi: Array) -> Array:
+            rows = self.turn.rows(phi)
+            return self._free(self.turn.lines(rows), self.position(rows))
+
+        least = min((one for one, _ in self.turn.extremes(free)), key=lambda one: one.value)
+        return least.at_deg if least.value <= 0.0 else None
 
     def torque(self, state: State) -> Array:
         """Torque that the shaft gives, N m (n,), above 0 where it drives."""
@@ -185,13 +217,10 @@ class Running:
 
     def guide_forces(self, state: State) -> Array | None:
         """Reactions of the guide at its near end and its far one, N (2, n), across the stem; None without."""
-        guide = self.train.guide
-        if guide is None:
+        if self.train.guide is None:
             return None
-        each = zip(self.sides, state.normal, state.lines, strict=True)
-        side = np.sum([side * normal * line.normal[:, 1] for side, normal, line in each], axis=0)
-        ahead = self._overhang(state.rows)
-        forces: Array = np.array([side * (ahead + guide.length), side * ahead]) / guide.length
+        pushed = np.array(self.sides)[:, None] * state.normal
+        forces: Array = np.sum(pushed[:, None] * self._at_ends(state.lines, state.rows), axis=0)
         return forces
 
     def pressure(self, state: State) -> Array | None:
@@ -199,8 +228,8 @@ class Running:
         train, width = self.train, self.train.width or self.recipe.part.thickness
         if train.material is None or width is None:
             return None
-        bodies = [MATERIALS[train.material], MATERIALS[train.roller_material or train.material]]
-        compliance = sum((1.0 - nu**2) / modulus for modulus, nu in bodies)
+        bodies = [train.material, train.roller_material or train.material]
+        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
         found = []
         follower = self.design.follower
         for normal, line, side, one in zip(state.normal, state.lines, self.sides, follower.contacts, strict=True):
@@ -208,6 +237,12 @@ class Running:
             curvature = side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0)
             found.append(np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance)))
         return np.array(found)
+
+    @property
+    def most_pressure(self) -> float | None:
+        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
+        bodies = (self.train.material, self.train.roller_material)
+        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
 
     def roller_speeds(self, state: State) -> Array | None:
         """Speed of the roller about its pin as each contact turns it, turns a minute (m, n); None of other touches."""

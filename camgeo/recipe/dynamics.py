@@ -7,28 +7,44 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
 from camgeo.motions.load_table import LOAD
-from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.motions.load_table import LoadTable
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
 
 @dataclass(frozen=True)
 class StemGuide:
-    """The guide of a stem, mm: how far the contact stands out before it, its length, and its friction."""
+    """The guide of a stem, mm: how far the contact stands out before it, its length B, and its friction mu."""
 
     overhang: float
     length: float
     friction: float
 
+    def jam(self, beyond: float = 0.0) -> float:
+        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B)), A more by `beyond`."""
+        return math.atan2(self.length, self.friction * (2.0 * (self.overhang + beyond) + self.length))
+
     @property
-    def jam(self) -> float:
-        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B))."""
-        return math.atan2(self.length, self.friction * (2.0 * self.overhang + self.length))
+    def reach(self) -> float:
+        """Distance of a flat face's contact from the stem's axis, mm, at which no force moves the stem: B/(2 mu)."""
+        return self.length / (2.0 * self.friction)
+
+
+@dataclass(frozen=True)
+class Material:
+    """Young's modulus, N/mm^2, Poisson's ratio, and the pressure in contacts that a recipe says it bears, N/mm^2."""
+
+    modulus: float
+    poisson: float
+    limit: float | None = None
 
 
 @dataclass(frozen=True)
@@ -51,21 +67,49 @@ class Dynamics:
     load: str | LoadTable = "0"
     least_force: float | None = None
     width: float | None = None
-    material: str | None = None
-    roller_material: str | None = None
+    material: Material | None = None
+    roller_material: Material | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
 MATERIALS = {
-    "steel": (206_000.0, 0.3),
-    "nodular-iron": (169_000.0, 0.275),
-    "grey-iron": (110_000.0, 0.26),
-    "bronze": (110_000.0, 0.34),
-    "aluminium": (71_000.0, 0.33),
-    "pom": (3_000.0, 0.35),
-    "pa66": (3_000.0, 0.39),
+    "steel": Material(206_000.0, 0.3),
+    "nodular-iron": Material(169_000.0, 0.275),
+    "grey-iron": Material(110_000.0, 0.26),
+    "bronze": Material(110_000.0, 0.34),
+    "aluminium": Material(71_000.0, 0.33),
+    "pom": Material(3_000.0, 0.35),
+    "pa66": Material(3_000.0, 0.39),
 }
-"""Young's modulus, N/mm^2, and Poisson's ratio: round figures of handbooks, for the pressure of contacts alone."""
+"""Round figures of handbooks, for the pressure of contacts alone; none has a limit of its own."""
+
+
+OWN_MATERIAL = Table(
+    (
+        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST),
+        Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
+        Field(
+            "limit", Kind.NUMBER, "pressure that it bears, N/mm², which is told and not judged", above=0, at_most=MOST
+        ),
+    )
+)
+
+
+def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Material | None:
+    """Read a material's name, or a mapping with its figures."""
+    if isinstance(node, Mapping):
+        values = reader.table(OWN_MATERIAL, node, path)
+        return Material(values["E"], values["nu"], values.get("limit")) if {"E", "nu"} <= values.keys() else None
+    return MATERIALS.get(reader.readers[Kind.CHOICE](reader, field, node, path))
+
+
+_MATERIAL: Form[Reader] = Form(
+    "a material",
+    f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
+    _read_material,
+    lambda _: {"anyOf": [{"enum": list(MATERIALS)}, table_schema(OWN_MATERIAL)]},
+    instead=OWN_MATERIAL,
+)
 
 
 DYNAMICS = Table(
@@ -77,6 +121,7 @@ DYNAMICS = Table(
             required=True,
             above=0,
             at_most=_MOST,
+            unit=Kind.INERTIA,
         ),
         Field(
             "damping",
@@ -93,6 +138,7 @@ DYNAMICS = Table(
             default="rigid",
             above=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "preload",
@@ -100,6 +146,7 @@ DYNAMICS = Table(
             "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         replace(
             length(
@@ -114,6 +161,7 @@ DYNAMICS = Table(
             default="0",
             at_least=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "least_force",
@@ -121,30 +169,36 @@ DYNAMICS = Table(
             "least force along the travel for which the preload of the spring is found, N; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         Field(
             "load",
             Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
-            unit=Kind.NUMBER,
+            unit=Kind.THRUST,
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
-        Field("material", Kind.CHOICE, "material of the cam", choices=tuple(MATERIALS)),
+        Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
         Field(
             "roller_material",
-            Kind.CHOICE,
+            Kind.OWN,
             "that of what touches it",
             default="that of the cam",
             choices=tuple(MATERIALS),
+            form=_MATERIAL,
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
         Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),
         mapping(
             "guide",
             "guide of the stem, in which it must not jam",
-            length("overhang", "how far the roller's centre stands out before the guide, at its lowest", required=True),
+            length(
+                "overhang",
+                "how far the roller's centre, or the flat face, stands out before the guide, at its lowest",
+                required=True,
+            ),
             length("length", "length of the guide", required=True),
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
@@ -157,9 +211,6 @@ DYNAMICS = Table(
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
     _check_spring(train, reader)
-    if "guide" in train and "stem" not in reader.offers:
-        remedy = "leave it out, or give a cam of kind disc whose follower is round and has no arm"
-        reader.fault_at("dynamics.guide", "the follower has no stem that a roller drives", None, remedy)
     if "backlash" in train and "rate" in train:
         key = reader.written("dynamics.backlash").removeprefix("dynamics.")
         remedy = f"give preload in place of {key}, or leave the rate out"
@@ -173,6 +224,19 @@ def check_train(train: Values, reader: Reader) -> None:
             most = train["damping"] * MOST_DAMPING / ratio
             remedy = f"give less than {downward(most)}"
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
+
+
+def check_guide(values: Values, reader: Reader) -> None:
+    """Note a guide that is not found for the follower of a cam."""
+    if "dynamics.guide" not in reader.marks:
+        return
+    if reader.offers.isdisjoint({"stem", "stem-face"}):
+        remedy = "leave it out, or give a cam of kind disc whose follower has no arm"
+        reader.fault_at("dynamics.guide", "the follower has no stem of its own", None, remedy)
+    elif values.get("cam", {}).get("follower", {}).get("tilt"):
+        reader.fault_at(
+            "dynamics.guide", "the friction of a tilted face is not found", None, "leave it out, or the tilt"
+        )
 
 
 def _check_spring(train: Values, reader: Reader) -> None:

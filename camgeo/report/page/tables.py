@@ -191,6 +191,10 @@ def forces(report: dict[str, Any]) -> str:
     section = report.get("forces")
     if section is None:
         return ""
+    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
+    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
+    if "jams_at_deg" in section:
+        return f"{head}<p>{told} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
     rows: list[_Row] = []
     ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
     ranges += [("torque of the shaft", section["torque"])]
@@ -202,12 +206,20 @@ def forces(report: dict[str, Any]) -> str:
         (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
         for one in section.get("pressure", ())
     ]
+    rows += [
+        (
+            f"that pressure over the {one['limit']:.6g} N/mm² that the material bears",
+            one["share_of_limit"],
+            "",
+            None,
+        )
+        for one in section.get("pressure", ())
+        if "limit" in one
+    ]
     rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section["rollers"]]
     rows += [
         (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
     ]
-    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
-    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
     return f"{head}<p>{told}</p>{_figures('Forces', rows)}</section>"
 
 
