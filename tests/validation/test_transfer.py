@@ -48,7 +48,7 @@ def test_d20_metal_that_is_too_small_everywhere(tmp_path: Path, cam: str, stroke
 
 
 def test_d20_radius_at_a_nose() -> None:
-    """Where S' is 0 the pitch curve's radius is b²/(b - S''): 25 mm for S'' = -40 at b = 46.503676272 from the shaft."""
+    """Where S' is 0 the pitch curve's radius is b²/(b - S''): 25 mm for S'' = -40 at b = 46.503676272."""
     cam = "base_radius: 18.503676272, follower: {kind: roller, radius: 8}, motion: {formula: 10*(1 - cos(2*t))}"
     report = camgeo.check(camgeo.load(f"cam: {{kind: disc, {cam}}}\nlimits: {{pitch-radius: {{at_least: 24}}}}\n"))
     (check,) = [check for check in report.checks if check.name == "limit:pitch-radius"]
