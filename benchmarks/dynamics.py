@@ -1,7 +1,7 @@
 """Error against run time of a follower train's first turn: exact propagation, Radau and RK45, over its stiffness.
 
     python benchmarks/dynamics.py            prints the table
-    python benchmarks/dynamics.py --write    and puts table and picture into docs/dynamics.md
+    python benchmarks/dynamics.py --write    and puts table and picture into docs/dynamics-numerics.md
     python benchmarks/dynamics.py --small    one row of each method, to see that it works
 
 The motion is a cycloidal rise of 100 degrees, a dwell, and the same back; damping ratio 0.05; the train starts at rest.
@@ -174,7 +174,7 @@ def main(*, write: bool):
     text = table(rows)
     print(text)
     if write and not SMALL:
-        page = ROOT / "docs" / "dynamics.md"
+        page = ROOT / "docs" / "dynamics-numerics.md"
         before, rest = page.read_text(encoding="utf-8").split("<!-- work -->\n")
         page.write_text(f"{before}<!-- work -->\n{text}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}", "utf-8")
         picture(rows)
@@ -183,5 +183,5 @@ def main(*, write: bool):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
-    parser.add_argument("--write", action="store_true", help="put it into docs/dynamics.md")
+    parser.add_argument("--write", action="store_true", help="put it into docs/dynamics-numerics.md")
     main(write=parser.parse_args().write)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from camgeo.files.errors import RegionError
 from camgeo.files.prism import rounded_contour, rounded_loop
 from camgeo.files.solid import BEYOND, manifold, meshed, prism
-from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Polygon
 
 if TYPE_CHECKING:

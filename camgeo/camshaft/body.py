@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.curve.ring import steps_along
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import RegionError
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline, Polygon
 from kin.numeric.records import replace

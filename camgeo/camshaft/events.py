@@ -37,13 +37,13 @@ class Valves(NamedTuple):
     separation: float
 
 
-def event(exact: ExactCam, at: float, lift: float) -> Event | None:
-    """When a lobe turned by `at`, rad, lifts its follower beyond a lift; None where it does not do so once a turn."""
+def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
+    """When a lobe whose motion begins at `zero`, rad, is beyond a lift; None where it is not just once a turn."""
     try:
         crossed = event_of(exact, lift)
     except EventError:
         return None
-    opens, closes = (math.degrees(angle + at) for angle in (crossed.opening, crossed.closing))
+    opens, closes = (math.degrees(angle + zero) for angle in (crossed.opening, crossed.closing))
     return Event(opens % 360.0, closes % 360.0, 0.5 * (opens + closes) % 360.0, closes - opens)
 
 

@@ -29,12 +29,17 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class PlacedLobe:
-    """A lobe, its exact design, and the angle, rad, by which its zero is turned counter-clockwise as drawn for `cw`."""
+    """A lobe, its exact design, and the angle, rad, by which its metal is turned; counter-clockwise, drawn for `cw`."""
 
     lobe: Lobe
     design: Design
     at: float
     events: dict[float, Event | None] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def zero(self) -> float:
+        """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k (THEORY_FORCES: machines)."""
+        return self.at - self.lobe.direction
 
     @property
     def contour(self) -> Curve | None:
@@ -44,12 +49,12 @@ class PlacedLobe:
     def event(self, lift: float) -> Event | None:
         """When it lifts its follower beyond a lift, mm or rad; None where it does not do so once a turn."""
         if lift not in self.events:
-            self.events[lift] = event(self.design.exact, self.at, lift)
+            self.events[lift] = event(self.design.exact, self.zero, lift)
         return self.events[lift]
 
     def rows(self, shaft: Array, order: int) -> Array:
         """Lift above the lowest position, mm or rad, and derivatives by the shaft angle, at shaft angles (n,), rad."""
-        return self.design.motion.rows(np.mod(shaft - self.at, TURN), order)
+        return self.design.motion.rows(np.mod(shaft - self.zero, TURN), order)
 
 
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
@@ -76,7 +81,7 @@ def _demand_one_outside(recipe: CamshaftRecipe, design: Design, index: int) -> N
 
 
 def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> float:
-    """Angle by which a lobe's zero is turned, rad from 0 to below a turn: as given, or so that its centre is right."""
+    """Angle by which a lobe's metal is turned, rad from 0 to below a turn: as given, or so that its centre is right."""
     if lobe.at is not None or recipe.engine is None or lobe.cylinder is None:
         return float(np.mod(lobe.at or 0.0, TURN))
     unturned = event(design.exact, 0.0, recipe.engine.lift)
@@ -84,7 +89,8 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
         remedy = "give a camshaft.engine.lift that each lobe crosses once on its rise and once on its return"
         told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
         raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
-    return float(np.mod(recipe.engine.centre(lobe.cylinder, lobe.valve) - math.radians(unturned.centre), TURN))
+    zero = recipe.engine.centre(lobe.cylinder, lobe.valve) - math.radians(unturned.centre)
+    return float(np.mod(zero + lobe.direction, TURN))
 
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:

@@ -20,6 +20,7 @@ LOBES = {
     "name": "lobe",
     "recipe": "recipe",
     "at_deg": "turned by, deg",
+    "zero_deg": "begins at, deg",
     "from": "from z",
     "to": "to z",
     "lift": "lift of events",

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
-from camgeo.files.errors import MissingExtraError
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult

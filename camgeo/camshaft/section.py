@@ -41,6 +41,7 @@ def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
         "name": lobe.lobe.name,
         "recipe": lobe.lobe.recipe.path.name,
         "at_deg": math.degrees(lobe.at),
+        "zero_deg": math.degrees(lobe.zero) % 360.0,
         "from": lobe.lobe.low / recipe.mm,
         "to": lobe.lobe.high / recipe.mm,
         "lift": math.degrees(lift) if swings else lift / recipe.mm,

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context
-
 NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is reported as 6
 
 
 def upward(value: float, digits: int = 6) -> str:
     """A positive figure with so many digits, not below it but for noise: more than that will do."""
-    return _rounded(value * (1.0 - NOISE), digits, ROUND_CEILING)
+    return _rounded(value * (1.0 - NOISE), digits, up=True)
 
 
 def downward(value: float, digits: int = 6) -> str:
     """A positive figure with so many digits, not above it but for noise: less than that will do."""
-    return _rounded(value * (1.0 + NOISE), digits, ROUND_FLOOR)
+    return _rounded(value * (1.0 + NOISE), digits, up=False)
 
 
-def _rounded(value: float, digits: int, rounding: str) -> str:
+def _rounded(value: float, digits: int, *, up: bool) -> str:
+    from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+
+    rounding = ROUND_CEILING if up else ROUND_FLOOR
     return f"{float(Context(prec=digits, rounding=rounding).create_decimal_from_float(value)):.{digits}g}"

@@ -15,8 +15,7 @@ import numpy as np
 
 from camgeo.curve.ring import centre_of
 from camgeo.files.curves import CONFUSION, curves_of, inset, measures, point
-from camgeo.files.errors import MissingExtraError, demand_uninterrupted, install
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import MissingExtraError, RegionError, demand_uninterrupted, install
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 

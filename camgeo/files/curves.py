@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.curve.ring import centre_of, radius_of
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import RegionError
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
 
 if TYPE_CHECKING:

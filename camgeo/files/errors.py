@@ -1,10 +1,14 @@
-"""The one error for a library that a file needs and that is not installed."""
+"""What a writer refuses: a library that is not installed, a region that has no triangles."""
 
 from kin.numeric.errors import KinError
 
 
 class MissingExtraError(KinError, ImportError):
     """An extra of this package is not installed; the message names it and says how to get it."""
+
+
+class RegionError(KinError, ValueError):
+    """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
 
 
 def install(extra: str) -> str:

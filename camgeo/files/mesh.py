@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import RegionError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:

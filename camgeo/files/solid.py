@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.files.errors import RegionError
 from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
-from camgeo.files.triangulate import RegionError, disc
+from camgeo.files.triangulate import disc
 from camgeo.fit.pieces import Bound, Polygon
 from kin.numeric.records import dataclass, replace
 

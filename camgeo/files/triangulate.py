@@ -13,12 +13,11 @@ the contour of a file crosses itself.
 from __future__ import annotations
 
 from collections import deque
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.numeric.errors import KinError
+from camgeo.files.errors import RegionError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,10 +32,6 @@ if TYPE_CHECKING:
 _TURNS = 10  # of edges for each flat triangle: more go round in circles
 
 
-class RegionError(KinError, ValueError):
-    """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
-
-
 def sides(a: Array, b: Array, c: Array) -> NDArray[np.int64]:
     """Exact side of line a b on which c lies, (n,): 1 left, -1 right, 0 on it. Points (n, 2).
 
@@ -47,6 +42,8 @@ def sides(a: Array, b: Array, c: Array) -> NDArray[np.int64]:
     right = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     determinant = left - right
     for i in np.flatnonzero(np.abs(determinant) <= 1e-15 * (np.abs(left) + np.abs(right))):
+        from fractions import Fraction
+
         (ax, ay), (bx, by), (cx, cy) = (map(Fraction, point[i].tolist()) for point in (a, b, c))
         first, second = (bx - ax) * (cy - ay), (by - ay) * (cx - ax)
         determinant[i] = (first > second) - (first < second)

@@ -78,17 +78,19 @@ def reach_checks(recipe: Recipe, design: Design) -> list[tuple[Check, CutterPath
     return found
 
 
-def _reached(asked: Manufacture, design: Design, surface: Surface, contour: Curve) -> tuple[Check, CutterPath | None]:
+def _reached(
+    manufacture: Manufacture, design: Design, surface: Surface, contour: Curve
+) -> tuple[Check, CutterPath | None]:
     told = "no hollow"
     if not no_hollow(contour):
         radius, at = hollow_radius(surface.side, contour)
         told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
     try:
-        path = cutter_path(contour, asked.radius)
+        path = cutter_path(contour, manufacture.radius)
     except UndercutError as error:
-        return failed(REACH.name, f"{error}; {told}", unit="mm", limit=asked.unreached), None
+        return failed(REACH.name, f"{error}; {told}", unit="mm", limit=manufacture.unreached), None
     if not path.lost:
-        return Check(REACH.name, True, 0.0, asked.unreached, "mm", detail=told), path
+        return Check(REACH.name, True, 0.0, manufacture.unreached, "mm", detail=told), path
     deepest = max(cut.depth for cut in path.lost)
     worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
     first, last = design.motion.shaft_deg(worst.start), design.motion.shaft_deg(worst.end)
@@ -96,7 +98,13 @@ def _reached(asked: Manufacture, design: Design, surface: Surface, contour: Curv
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
     at_deg = design.motion.shaft_deg(worst.at)
     return Check(
-        REACH.name, worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
+        REACH.name,
+        worst.depth <= manufacture.unreached,
+        worst.depth,
+        manufacture.unreached,
+        "mm",
+        at_deg,
+        detail=detail,
     ), path
 
 

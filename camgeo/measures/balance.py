@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.measures import Moments, moments, moments_of_chain
+from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 KG = 1e-9  # kg/mm^3 of 1 kg/m^3
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
+NODES, WEIGHTS = gauss(3)
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Balance:
         return angle if angle < 360.0 else 0.0
 
 
-def balances(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
+def balances_of(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
     """The balance of each disc at `part.density`, none without it, or of a part that is no single body."""
     density = recipe.part.density
     if density is None:
@@ -102,5 +103,5 @@ def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array,
     return total, sum((np.array(one.error) for _, one in outlines), np.zeros(4))
 
 
-def _row(one: Moments) -> Array:
-    return np.array([one.area, one.x, one.y, one.polar])
+def _row(moments: Moments) -> Array:
+    return np.array([moments.area, moments.x, moments.y, moments.polar])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import starmap
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,6 @@ from camgeo.checks.declared import (
     TRAVEL,
     WALL,
 )
-from camgeo.measures.lobe import of_lobe
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.recipe.figures import (
     AT_LIFT,
@@ -280,15 +280,21 @@ def _of_mass(value: Callable[[Balance], float], unit: str) -> Callable[[Recipe, 
     """Make the measure of the discs' balance: the greatest of them."""
 
     def measure(recipe: Recipe, design: Design) -> Measured:
-        from camgeo.measures.balance import balances
+        from camgeo.measures.balance import balances_of
 
-        found = balances(recipe, design)
+        found = balances_of(recipe, design)
         if not found:
             return Measured(None, unit, detail="the part is no single body")
         detail = f"without the {', '.join(found[0].without)}" if found[0].without else ""
         return _greatest(Measured(value(one), unit, detail=detail, surface=one.surface) for one in found)
 
     return measure
+
+
+def _of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
+    from camgeo.measures.lobe import of_lobe
+
+    return of_lobe(name, recipe, design)
 
 
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
@@ -311,7 +317,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
     INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
     UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
-    **{name: of_lobe(name) for name in AT_LIFT},
+    **{name: partial(_of_lobe, name) for name in AT_LIFT},
 }
 
 

@@ -38,7 +38,12 @@ class Extreme(NamedTuple):
 
 
 class Turn(ABC):
-    """What moves over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn."""
+    """What moves over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
+
+    `corners` are shaft angles, rad, at which what is found over the turn is not smooth, besides those of the motion.
+    """
+
+    corners: tuple[float, ...]
 
     @property
     @abstractmethod
@@ -74,9 +79,10 @@ class Turn(ABC):
 
     def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
         """Functions of the parameter, values(t (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
-        from kin.numeric.monotone import cells, pieces
+        from kin.numeric.monotone import between, cells, pieces
 
-        made = cells(values, self.places, share=SHARE)
+        corners = self.parameter(np.array(self.corners)) if self.corners else ()
+        made = cells(values, between(0.0, TURN, [*self.places, *corners]), share=SHARE)
         return [pieces(made, row) for row in range(len(made.coefficients))]
 
     def degrees(self, t: float) -> float:
@@ -97,6 +103,7 @@ class FollowerTurn(Turn):
     """A design's follower over the turn, by the shaft angle: its position and the lines of its contacts."""
 
     design: Design
+    corners: tuple[float, ...] = ()
 
     @cached_property
     def swings(self) -> bool:

@@ -44,6 +44,7 @@ class FrameTurn(Turn):
     """A linkage's output over the turn, by the relative angle between cam and frame."""
 
     mechanism: Mechanism
+    corners: tuple[float, ...] = ()
 
     @property
     def swings(self) -> bool:
@@ -86,7 +87,7 @@ class FrameRunning(Running):
     @cached_property
     def turn(self) -> FrameTurn:
         """Its output over the turn."""
-        return FrameTurn(self.mechanism)
+        return FrameTurn(self.mechanism, self.corners)
 
     def position(self, rows: Array) -> Array:
         """Output and two derivatives, SI."""

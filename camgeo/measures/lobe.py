@@ -17,6 +17,7 @@ from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAM
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError, between, cells, pieces
+from kin.numeric.quadrature import gauss
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 CRANK = 2.0  # turns of the crank for one of the cam
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+NODES, WEIGHTS = gauss(12)
 SHARE = 1e-12  # of the greatest lift, to which it is followed
 PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
 
@@ -114,19 +115,15 @@ _MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
 _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
 
 
-def of_lobe(name: str) -> Callable[[Recipe, Design], Measured]:
-    """Make the measure of a figure at the lift that the recipe's limit of it states, or at its usual one."""
-
-    def measure(recipe: Recipe, design: Design) -> Measured:
-        stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
-        lift = next(stated, AT_LIFT[name])
-        if name == LIFT_AREA and lift == 0.0:
-            turn = between(0.0, TURN, design.exact.breaks.tolist())
-            return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
-        try:
-            event = event_of(design.exact, lift)
-        except EventError as error:
-            return Measured(None, _UNITS[name], detail=str(error))
-        return _MADE.get(name, _area)(event, design.exact)
-
-    return measure
+def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
+    """Measure a figure at the lift that the recipe's limit of it states, or at its usual one."""
+    stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
+    lift = next(stated, AT_LIFT[name])
+    if name == LIFT_AREA and lift == 0.0:
+        turn = between(0.0, TURN, design.exact.breaks.tolist())
+        return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
+    try:
+        event = event_of(design.exact, lift)
+    except EventError as error:
+        return Measured(None, _UNITS[name], detail=str(error))
+    return _MADE.get(name, _area)(event, design.exact)

@@ -102,6 +102,12 @@ class Running(ABC):
         """Rad/s."""
         return self.train.rpm * TURN / 60.0
 
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Shaft angles, rad, at which a table of the load has corners."""
+        load = self.train.load
+        return () if isinstance(load, str) else tuple(load.corners.tolist())
+
     @cached_property
     def lowest(self) -> float:
         """Least y."""
@@ -116,7 +122,10 @@ class Running(ABC):
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
-        formula = Formula(self.train.load)
+        given = self.train.load
+        if not isinstance(given, str):
+            return given
+        formula = Formula(given)
         try:
             at = unbounded(formula)
             formula(self.turn.shaft(self.turn.places))
@@ -124,7 +133,7 @@ class Running(ABC):
             raise self.recipe.error("dynamics.load", str(error)) from error
         if at is not None:
             why = f"it has no bound near {degrees(at):.6g} degrees"
-            raise self.recipe.error("dynamics.load", why, f"'{self.train.load}'", "give a load that is finite")
+            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def rest(self, t: Array, y: Array) -> Array:

@@ -17,6 +17,7 @@ from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.measures.frame_forces import frame_running
 from camgeo.measures.running import Lost, Running, State
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class FollowerRunning(Running):
     @cached_property
     def turn(self) -> FollowerTurn:
         """The follower over the turn."""
-        return FollowerTurn(self.design)
+        return FollowerTurn(self.design, self.corners)
 
     @cached_property
     def sides(self) -> tuple[Side, ...]:
@@ -139,6 +140,7 @@ class FollowerRunning(Running):
         places = np.unique(np.concatenate([self.turn.places, self.changes]))
         x, weight = np.polynomial.legendre.leggauss(NODES)
         edges = np.concatenate([np.linspace(a, b, PANELS + 1)[:-1] for a, b in pairwise(places)])
+        edges = distinct(np.concatenate([edges, self.corners]))
         width = np.diff(np.append(edges, places[-1]))
         phi = (edges[:, None] + 0.5 * width[:, None] * (x + 1.0)).ravel()
         state, steps = self.state(phi), (0.5 * width[:, None] * weight).ravel()

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kin.law.sources.ring import Samples
 
 Angles: TypeAlias = Literal["cam", "crank"]
-Unit: TypeAlias = Literal["mm", "inch", "thou", "degrees"]  # of displacements
+Unit: TypeAlias = Literal["mm", "inch", "thou", "degrees", "N"]  # of displacements, or of loads
 
 MAX_BYTES = 16_000_000
 MAX_ROWS = 200_000

@@ -90,18 +90,18 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
     return path_arcs(job.recipe, path, tolerance, fitted)
 
 
-def _contour(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
+def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
     """Passes along the contour, round a disc or within a ring, and the path that makes it."""
     thickness, (surface, _) = job.recipe.part.thickness, job.design.contours[0]
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
     (path,) = paths_of(job.recipe, job.design)
     fine, rough = _outline(job, path, tolerance), list[ArcSpline]()
-    if asked.allowance is not None:
-        (path,) = paths_of(job.recipe, job.design, asked.allowance)
-        rough = [_outline(job, path, ROUGH * asked.allowance)]
-    loops = [_round(job, asked, outline, surface.side) for outline in (*rough, fine)]
-    return passes(loops[:-1], loops[-1:], asked, thickness), [fine]
+    if manufacture.allowance is not None:
+        (path,) = paths_of(job.recipe, job.design, manufacture.allowance)
+        rough = [_outline(job, path, ROUGH * manufacture.allowance)]
+    loops = [_round(job, manufacture, outline, surface.side) for outline in (*rough, fine)]
+    return passes(loops[:-1], loops[-1:], manufacture, thickness), [fine]
 
 
 def _round(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
@@ -115,13 +115,13 @@ def _round(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room
     return led(drawn, min(lead, LEAD * room), side=side, clockwise=clockwise)
 
 
-def _pocket(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
+def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
     """Passes between two surfaces, down the middle first and along both last, and the paths that make them.
 
     Where the paths along both are one within the tolerance, that in the middle makes both.
     """
     (inner, _), (outer, _) = job.design.contours
-    pitch, radius, depth = inner.base.shape, asked.radius, pocket_of(job.design)
+    pitch, radius, depth = inner.base.shape, manufacture.radius, pocket_of(job.design)
     if depth is None:
         raise job.recipe.error("cam.track.groove.depth", "gcode needs the depth of the groove")
     near, far = radius - inner.radius, outer.radius - radius  # without the pitch curve
@@ -134,17 +134,17 @@ def _pocket(job: Job, asked: Manufacture, tolerance: float) -> tuple[list[Pass],
     if room <= ONE * tolerance and not any(path.lost for path in reached):
         middle = along(0.5 * (near + far), tolerance - 0.5 * max(room, 0.0))
         fine = [replace(middle, bound=middle.bound.widened(0.5 * max(room, 0.0)))]
-        return passes([], [_round(job, asked, middle, inner.side, 0.0)], asked, depth), fine
-    ways = side_by_side(near, far, radius, asked.allowance or 0.0)
-    if not asked.allowance and len(ways) > 1:
+        return passes([], [_round(job, manufacture, middle, inner.side, 0.0)], manufacture, depth), fine
+    ways = side_by_side(near, far, radius, manufacture.allowance or 0.0)
+    if not manufacture.allowance and len(ways) > 1:
         del ways[-2:]  # the flanks' own
     few_passes(job.recipe, depth, len(ways) + len(reached))
     rough = [along(place, max(tolerance, ROUGH * min(place - near, far - place, radius))) for place in ways]
     fine = [_outline(job, path, tolerance) for path in reached]
     sides = [(inner if place - near < far - place else outer).side for place in ways]
-    first = [_round(job, asked, path, side, 0.0) for path, side in zip(rough, sides, strict=True)]
-    last = [_round(job, asked, path, each.side, room) for path, each in zip(fine, (inner, outer), strict=True)]
-    return passes(first, last, asked, depth), fine
+    first = [_round(job, manufacture, path, side, 0.0) for path, side in zip(rough, sides, strict=True)]
+    last = [_round(job, manufacture, path, each.side, room) for path, each in zip(fine, (inner, outer), strict=True)]
+    return passes(first, last, manufacture, depth), fine
 
 
 def _holes(job: Job, manufacture: Manufacture) -> list[tuple[str, list[Pass]]]:

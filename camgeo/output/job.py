@@ -10,8 +10,7 @@ from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
 from camgeo.curve.curve import CurveError
-from camgeo.files.errors import MissingExtraError
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
@@ -194,12 +193,12 @@ class Job:
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
-    def closed(self, request: FileRequest, made: Sequence[Made]) -> Made:
+    def closed(self, request: FileRequest, products: Sequence[Made]) -> Made:
         """Put together what was made of each disc, and judge what is left between them."""
         from kin.judge.together import DiscsRead, left_between
 
-        files = [replace(file, disc=rank) for rank, each in enumerate(made) for file in each.files]
-        checks = [check for each in made for check in each.checks]
+        files = [replace(file, disc=rank) for rank, each in enumerate(products) for file in each.files]
+        checks = [check for each in products for check in each.checks]
         if not files:
             return Made((), tuple(checks))
         limits = permitted(self.recipe, self.tolerance(request))

@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.assembly.interference import slabs
 from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
 from camgeo.common.units import UNIT_MM
-from camgeo.files.triangulate import RegionError
+from camgeo.files.errors import RegionError
 from camgeo.fit.pieces import Bound
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made

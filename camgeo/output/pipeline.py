@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from camgeo.measures.balance import Balance
     from camgeo.output.sets import FileSet
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
@@ -141,10 +142,10 @@ def judged(
     return document(recipe, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped)))
 
 
-def _alone(given: FileSet, meant: ShaftIntent) -> list[Skipped]:
+def _alone(files: FileSet, meant: ShaftIntent) -> list[Skipped]:
     """What is not judged of a set that lacks a disc."""
-    lacking = [part.name for rank, part in enumerate(meant.parts) if not {rank, None} & given.discs]
-    names = " and ".join(path.name for _, path, _ in given.files)
+    lacking = [part.name for rank, part in enumerate(meant.parts) if not {rank, None} & files.discs]
+    names = " and ".join(path.name for _, path, _ in files.files)
     why = f"{names} is judged alone: {' and '.join(lacking)} is not among the files that are given"
     return [(closure.name, why) for closure in meant.closures if lacking]
 
@@ -248,8 +249,12 @@ def _findings(
         with clock.stage("limits"):
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
+    balances: tuple[Balance, ...] = ()
+    if recipe.part.density is not None:
+        from camgeo.measures.balance import balances_of
+
+        balances = balances_of(recipe, design)
     from camgeo.curve.measures import measures
-    from camgeo.measures.balance import balances
     from camgeo.measures.remarks import dwells_lost, remarks_of
     from camgeo.measures.units import of_displacements
 
@@ -270,5 +275,5 @@ def _findings(
         joints=design.exact.joints,
         displacements=of_displacements(recipe),
         contours={surface.name: measures(contour) for surface, contour in design.contours},
-        balances=balances(recipe, design),
+        balances=balances,
     )

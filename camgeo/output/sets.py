@@ -66,10 +66,10 @@ def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> l
     return sets
 
 
-def _disc_of(recipe: Recipe, path: Path, asked: FileRequest | None, count: int) -> tuple[str, int | None]:
+def _disc_of(recipe: Recipe, path: Path, request: FileRequest | None, count: int) -> tuple[str, int | None]:
     """The stem of a name without the end that tells the disc, and that disc; None where it tells none."""
     told = re.fullmatch(r"(.+)-([1-9])", path.stem)
-    whole = asked is not None and recipe.filenames(asked) == (path.name,)
+    whole = request is not None and recipe.filenames(request) == (path.name,)
     if told is None or whole or int(told[2]) > count:
         return path.stem, None
     return told[1], int(told[2]) - 1

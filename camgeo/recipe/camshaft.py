@@ -66,7 +66,8 @@ class Engine:
 class Lobe:
     """A lobe: its cam's recipe, where it stands on the shaft (mm), and its phase.
 
-    Either `at`, the cam angle (rad) by which its zero is turned, or `cylinder` and `valve`.
+    Either `at`, the cam angle (rad) by which its zero is turned, or `cylinder` and `valve`. `direction` (rad) is the
+    angle about the shaft between where its follower is and where its own recipe has it, counter-clockwise for `cw`.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Lobe:
     at: float | None = None
     cylinder: int | None = None
     valve: str = ""
+    direction: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -110,8 +112,8 @@ def _list_of(name: str, table: Table, about: str, example: str, *, required: boo
     return Field(name, Kind.OWN, about, required, default="" if required else "none", form=form)
 
 
-def _angle(name: str, about: str, least: float, most: float, *, required: bool = False) -> Field:
-    return Field(name, Kind.ANGLE, about, required, at_least=least, at_most=most)
+def _angle(name: str, about: str, least: float, most: float, *, required: bool = False, default: str = "") -> Field:
+    return Field(name, Kind.ANGLE, about, required, default=default, at_least=least, at_most=most)
 
 
 _PATH = Form(
@@ -131,6 +133,7 @@ LOBE = Table(
         ),
         Field("cylinder", Kind.INTEGER, "number of its cylinder, in place of `at`", at_least=1, at_most=MOST_CYLINDERS),
         Field("valve", Kind.CHOICE, "which of the cylinder's valves it opens", choices=("intake", "exhaust")),
+        _angle("direction", "angle about the shaft by which its follower is turned likewise", -360, 360, default="0"),
         coordinate("z", "height of the lobe's lower face", required=True),
         length("length", "length of the lobe along the shaft", default="part.thickness of its recipe"),
     ),
@@ -307,9 +310,8 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
             where, remedy = f"camshaft.lobes[{i}].length", f"give it, or part.thickness in {row['recipe']}"
             raise document.error(where, "missing, as the lobe's recipe has no thickness", None, remedy)
         own = replace(cam, rotation=rotation, units=values.get("units", "mm"), mm=mm)
-        lobes.append(
-            Lobe(name, own, row["z"], row["z"] + long, row.get("at"), row.get("cylinder"), row.get("valve", ""))
-        )
+        stated = {key: row[key] for key in ("at", "cylinder", "valve", "direction") if key in row}
+        lobes.append(Lobe(name, own, row["z"], row["z"] + long, **stated))
     _demand_apart(document, lobes, journals, (low, high))
     return CamshaftRecipe(
         name=values["name"],

@@ -6,11 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
+from camgeo.motions.load_table import LOAD
 from camgeo.recipe.linkage import TURNING
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.motions.load_table import LoadTable
     from camgeo.schema.reader import Reader, Values
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
@@ -57,7 +59,7 @@ class Dynamics:
     guide: StemGuide | None = None
     coupler: CouplerBody | None = None
     transient: bool = False
-    load: str = "0"
+    load: str | LoadTable = "0"
     least_force: float | None = None
     width: float | None = None
     material: str | None = None
@@ -133,10 +135,11 @@ DYNAMICS = Table(
         ),
         Field(
             "load",
-            Kind.FORMULA,
+            Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
             unit=Kind.NUMBER,
+            form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
         Field("material", Kind.CHOICE, "material of the cam", choices=tuple(MATERIALS)),

@@ -135,9 +135,9 @@ def _remark(recipe: Order, remark: Remark) -> dict[str, Any]:
     }
 
 
-def _jumps(found: Findings, joint: Joint) -> list[dict[str, Any]]:
+def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
     """What jumps at a joint of the motion: an entry for each derivative."""
-    scale, unit = found.displacements
+    scale, unit = findings.displacements
     per = ("", "/rad", "/rad^2", "/rad^3")
     at_deg = math.degrees(joint.at)
     return [

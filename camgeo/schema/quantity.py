@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from fractions import Fraction
 
 from camgeo.schema.scalars import Complaint, read_number, within_range
 
-LENGTHS = {"mm": Fraction(1), "cm": Fraction(10), "in": Fraction(127, 5), "inch": Fraction(127, 5)}
-"""The units that a length may carry, in mm."""
-ANGLES = {"deg": Fraction(1)}
+LENGTHS = {"mm": 10, "cm": 100, "in": 254, "inch": 254}
+"""The units that a length may carry, in tenths of a millimetre."""
+ANGLES = {"deg": 1}
 """The units that an angle may carry, in degrees."""
 
 _QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)"
@@ -67,12 +66,13 @@ def read_quantity(text: str, own: str) -> float:
     if unit not in units_for(own):
         raise UnitComplaint(unit)
     known, same = _TAKEN[own]
-    ratio = known[unit] / known[same]
-    if value == 0.0 or ratio == 1:
+    if value == 0.0 or known[unit] == known[same]:
         return value
+    from fractions import Fraction
+
     exact = Fraction(number) if re.fullmatch(_RATIONAL, number) else Fraction(value)
     try:
-        return within_range(float(exact * ratio))
+        return within_range(float(exact * Fraction(known[unit], known[same])))
     except OverflowError:
         raise Complaint("too large") from None
 

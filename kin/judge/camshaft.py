@@ -1,8 +1,9 @@
 """The verdict on a camshaft: a solid of round stretches and lobes, each lobe judged in its own section, at its angle.
 
-Every stretch of the shaft between two meant faces is looked at in sections. A lobe's section is turned back by the
-angle at which the lobe is meant to stand and judged as a disc's contour is; so a lobe at another angle is one whose
-follower moves otherwise. By how much it is turned is told by `phase`, where its faces are by `position`.
+Every stretch of the shaft between two meant faces is looked at in the section midway: all others are the same, as no
+wall leans and no face lies between. A lobe's section is turned back by the angle at which the lobe is meant to stand
+and judged as a disc's contour is; so a lobe at another angle is one whose follower moves otherwise. By how much it is
+turned is told by `phase`, where its faces are by `position`.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.follower.deviation import deviation
 from kin.judge.bore import bore_check, round_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
+from kin.judge.layers import SAME, between_sections
 from kin.judge.limits import limit_of
 from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
@@ -35,10 +36,9 @@ if TYPE_CHECKING:
     from kin.read.files import AnySolid
     from kin.read.nesting import Chain
 
-NEAR_FACES = (0.02, 0.98)  # of a lobe's length, besides its middle: where its sections are looked at
 COARSE = 720  # shaft angles at which a lobe's phase is first looked for
 STEPS = 20  # of Newton's method
-SAME = 1e-9  # mm: heights this close are one
+MOST_NAMED = 5  # faults named in a message
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})
 
 
@@ -109,13 +109,13 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     Checks of a lobe are told by its name. Raises OSError as the file system does, ValueError for another suffix.
     """
     kind = kind_of(path)
-    stretches = [(part, _heights(low, high, part)) for low, high, part in intent.stretches]
+    stretches = [(part, 0.5 * (low + high)) for low, high, part in intent.stretches]
     try:
-        solid = read_solid(path, [z for _, heights in stretches for z in heights], units)
+        solid = read_solid(path, [middle for _, middle in stretches], units)
     except ReadError as error:
         unread = "readable" if error.reason in NOT_READ else "watertight"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
-    if len(solid.sections) < sum(len(heights) for _, heights in stretches):
+    if len(solid.sections) < len(stretches):
         text = "the solid has no section where the camshaft has a lobe or a journal"
         return Verdict(kind, (about(failed("readable", text), path.name),))
     sections = _Sections(solid, intent.mirrored)
@@ -124,7 +124,7 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     checks.append(_ends(solid, intent))
     surfaces: list[SurfaceVerdict] = []
     rounds: dict[str, list[Check]] = {"bore": []}
-    for part, (middle, *others) in stretches:
+    for part, middle in stretches:
         outline, *inner = sections.at(middle)
         bore = bore_check([chain.contour for chain in inner], intent.bore, intent.tolerance)
         rounds["bore"] += [] if bore is None else [bore]
@@ -133,7 +133,6 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
             rounds.setdefault(part.name, []).append(replace(checked, surface=part.name))
             continue
         surface, found = _lobe(outline, part, phi, solid.uneven)
-        found.append(_worst([_same(sections.at(z)[0], part, z) for z in others]))
         found.append(_position(solid, part))
         checks += [replace(check, surface=part.name) for check in found]
         surfaces.append(surface)
@@ -154,11 +153,6 @@ def outside_shaft(least: float, diameter: float) -> Check:
 def _worst(checks: Sequence[Check]) -> Check:
     """One of several checks alike: one that fails, or that with the greatest figure."""
     return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))
-
-
-def _heights(low: float, high: float, part: LobeIntent | BarIntent) -> list[float]:
-    shares = (0.5, *NEAR_FACES) if isinstance(part, LobeIntent) else (0.5,)
-    return [low + share * (high - low) for share in shares]
 
 
 def _lobe(outline: Chain, lobe: LobeIntent, phi: Array, uneven: float) -> tuple[SurfaceVerdict, list[Check]]:
@@ -210,19 +204,6 @@ def _best_turn(gauge: Follower, angle: Array, measured: Array) -> float:
     return turned
 
 
-def _same(outline: Chain, lobe: LobeIntent, z: float) -> Check:
-    """Check that a section near a face is the lobe's too."""
-    contour, tolerance = outline.contour.turned(-lobe.at), lobe.limits.tolerance
-    strayed = deviation(contour.as_arcs()[0], lobe.surface.gauge.envelope)
-    detail = f"the section at z = {z:.6g} mm"
-    if strayed.rounds != 1:
-        return failed(
-            "thickness", f"{detail} goes {strayed.rounds} times round the exact one", unit="mm", limit=tolerance
-        )
-    size = float(np.abs(contour.vertices).max())
-    return at_most("thickness", strayed.worst[0], tolerance, "mm", detail=detail, slack=1e-9 + ROUNDING * size)
-
-
 def _position(solid: AnySolid, lobe: LobeIntent) -> Check:
     """Check that a lobe has its faces where they are meant to be."""
     faces = np.array(solid.faces)
@@ -236,20 +217,16 @@ def _position(solid: AnySolid, lobe: LobeIntent) -> Check:
 
 
 def _ends(solid: AnySolid, intent: CamshaftIntent) -> Check:
-    """Check both ends of the shaft, and that there is no face where none is meant."""
+    """Check both ends of the shaft, and that sections differ nowhere but at the faces that are meant."""
     shaft, meant = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
     off = max(abs(solid.z_min - shaft.low), abs(solid.z_max - shaft.high))
     stray = [z for z in solid.faces if float(np.abs(meant - z).min()) > intent.tolerance + SAME]
     detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, {shaft.low:.9g} to {shaft.high:.9g} mm is expected"
-    if stray:
-        places = ", ".join(f"{z:.9g}" for z in stray[:5])
-        return failed(
-            "thickness",
-            f"a horizontal face at z = {places} mm, where none is expected; {detail}",
-            unit="mm",
-            limit=intent.tolerance,
-        )
-    return at_most("thickness", off, intent.tolerance, "mm", detail=detail, slack=SAME)
+    faults = [f"a horizontal face at z = {z:.9g} mm, where none is expected" for z in stray]
+    faults += [fault for _, fault in between_sections(solid, np.unique(meant).tolist(), (), intent.tolerance)]
+    if faults:
+        return failed("thickness", "; ".join([*faults[:MOST_NAMED], detail]), unit="mm", limit=intent.tolerance)
+    return less_sure(at_most("thickness", off, intent.tolerance, "mm", detail=detail, slack=SAME), solid.uneven)
 
 
 def _volume(solid: AnySolid, intent: CamshaftIntent, surfaces: Sequence[SurfaceVerdict]) -> Check:

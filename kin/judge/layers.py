@@ -6,7 +6,7 @@ runs along a radius through layers with an outline of their own.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
 
     from kin.judge.holes import Hole
     from kin.numeric.arrays import Array, Indices
+    from kin.read.files import AnySolid
 
 GAUSS = 48  # nodes for each smooth part of a cross hole
 AT_CHAMFER = (0.25, 0.75)  # of a layer that shrinks: where it is looked at
 ACROSS = (0.1, 0.5, -0.5)  # of a cross hole's radius
+SAME = 1e-9  # mm: heights this close are one
+MOST_NAMED = 3  # places where walls lean, in a message
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,18 @@ class CrossHole:
     def half_width(self, z: float) -> float:
         """Half its width in the section at a height; 0 beyond it."""
         return float(np.sqrt(max(0.25 * self.diameter**2 - (z - self.z) ** 2, 0.0)))
+
+
+class Lean(NamedTuple):
+    """Where walls are meant to lean, mm, and the check that reports them.
+
+    They do so evenly from `low` to `high`, or anyhow between these and within `reach` from the axis.
+    """
+
+    kind: str
+    low: float
+    high: float
+    reach: float | None = None
 
 
 def heights(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[tuple[float, Layer]]:
@@ -97,6 +112,53 @@ def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
         elif below.holes != above.holes:
             found.append(("mark", z))
     return found
+
+
+def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lean]:
+    """Where walls are meant to be anything but upright."""
+    found = []
+    for one in cross_holes:
+        outline = next(
+            layer.outline for layer in layers if layer.outline is not None and layer.low < one.z < layer.high
+        )
+        reach = float(np.hypot(*outline.contour.vertices.T).max())
+        found.append(Lean("set-screw", one.z - 0.5 * one.diameter, one.z + 0.5 * one.diameter, reach))
+    for layer in sorted(layers, key=lambda layer: layer.low):
+        if layer.inset != (0.0, 0.0):
+            low = found.pop().low if found and found[-1].high == layer.low else layer.low
+            found.append(Lean("chamfer", low, layer.high))
+    return found
+
+
+def between_sections(
+    solid: AnySolid, meant: Sequence[float], leaning: Sequence[Lean], tolerance: float
+) -> list[tuple[str, str]]:
+    """Tell, by the check that reports it, what makes sections differ of which one is seen between two faces `meant`.
+
+    All sections between two heights are the same if there is no face between them, and no wall leans. Where one face is
+    meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
+    from one height to another is told by two sections between them.
+    """
+    places, found = np.array(meant), np.array(solid.faces)
+    told, slack = [], tolerance + SAME
+    for z in meant:
+        here = found[(np.abs(found[:, None] - places).min(axis=1) == np.abs(found - z)) & (np.abs(found - z) <= slack)]
+        if here.size and float(np.ptp(here)) > SAME:
+            fault = f"faces at z = {here.min():.9g} and {here.max():.9g} mm, where one is expected"
+            told.append(("thickness", fault))
+    rows = solid.leaning
+    for lean in leaning:
+        low, high, reach = rows.T
+        if lean.reach is None:
+            meant_so = (np.abs(low - lean.low) <= slack) & (np.abs(high - lean.high) <= slack)
+        else:
+            meant_so = (low >= lean.low - slack) & (high <= lean.high + slack) & (reach <= lean.reach + slack)
+        rows = rows[~meant_so]
+    for low, high, _ in rows[:MOST_NAMED].tolist():
+        near = (lean.kind for lean in leaning if low < lean.high + slack and lean.low - slack < high)
+        fault = f"walls lean between z = {low:.9g} and {high:.9g} mm, where none should"
+        told.append((next(near, "thickness"), fault))
+    return told
 
 
 def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: float, perimeter: float) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from kin.follower.deviation import deviation
 from kin.judge.check import Check, less_sure
 from kin.judge.holes import FINE, Tallies, Tally, apart, tally
-from kin.judge.layers import faces, heights, slotted
+from kin.judge.layers import SAME, between_sections, faces, heights, leans, slotted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from kin.read.files import AnySolid
 
 ORDER = ("bore", "holes", "mark", "thickness", "hub", "chamfer", "set-screw")
-SAME = 1e-9  # mm: heights this close are one
 
 
 def drawn_checks(
@@ -53,8 +52,9 @@ def solid_checks(solid: AnySolid, sections: Sequence[Parted], part: PartIntent, 
     kinds += ["chamfer" for layer in layers if layer.inset != (0.0, 0.0)] + ["set-screw" for _ in cross_holes]
     tallies: Tallies = {kind: Tally() for kind in kinds}
     _faces(tallies, solid, layers, tolerance)
-    if len(layers) == 1 and not solid.prism:
-        tallies["thickness"].faults.append("the sections at different heights differ")
+    meant = [z for _, z in faces(layers)]
+    for kind, fault in between_sections(solid, meant, leans(layers, cross_holes), tolerance):
+        tallies[kind].faults.append(fault)
     for (z, layer), section in zip(heights(layers, cross_holes), sections, strict=True):
         _section(tallies, (z, layer), section, part, tolerance)
     return [less_sure(check, solid.uneven) for check in _told(tallies, tolerance)]

@@ -188,16 +188,16 @@ class _Search:
         error, t = self._shown(coefficients, best)
         return _Extremes(best, t, error)
 
-    def reference(self, found: _Extremes) -> _Extremes:
+    def reference(self, extremes: _Extremes) -> _Extremes:
         """The extremes that alternate round the half period, as many as there are unknowns if there are as many.
 
         Of neighbours alike in sign the greater stays, and of too many the least two neighbours go. Round the circle an
         odd number alternates, as the sign changes with t + delta.
         """
         delta = self.wanted.delta
-        halves = np.floor(found.t / delta)
-        folded, sign = found.t - halves * delta, np.where(halves % 2 == 0, 1.0, -1.0) * np.sign(found.error)
-        ring = [(int(i), float(sign[i]), float(abs(found.error[i]))) for i in np.argsort(folded, kind="stable")]
+        halves = np.floor(extremes.t / delta)
+        folded, sign = extremes.t - halves * delta, np.where(halves % 2 == 0, 1.0, -1.0) * np.sign(extremes.error)
+        ring = [(int(i), float(sign[i]), float(abs(extremes.error[i]))) for i in np.argsort(folded, kind="stable")]
         kept: list[tuple[int, float, float]] = []
         for row in ring:
             if kept and kept[-1][1] == row[1]:
@@ -211,7 +211,7 @@ class _Search:
             i = min(range(len(kept)), key=lambda k: max(kept[k][2], kept[k - 1][2]))
             for k in sorted({i, (i - 1) % len(kept)}, reverse=True):
                 del kept[k]
-        return found.taken(np.array([i for i, _, _ in kept]))
+        return extremes.taken(np.array([i for i, _, _ in kept]))
 
     def least(self, reference: _Extremes) -> float:
         """What no series falls below, by the errors at a reference; 0 by one of too few places."""

@@ -8,7 +8,6 @@ bound when the points are balls.
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 from functools import lru_cache
 from typing import TypeVar
 
@@ -110,9 +109,11 @@ def stack(rows: list[Row]) -> Row:
 
 
 @lru_cache(maxsize=256)
-def binomials(exponent: Fraction, order: int) -> tuple[float, ...]:
+def binomials(numerator: float, order: int, denominator: int = 1) -> tuple[float, ...]:
     """Binomial coefficients of a rational exponent, each the nearest double."""
-    value, found = Fraction(1), []
+    from fractions import Fraction
+
+    exponent, value, found = Fraction(numerator) / denominator, Fraction(1), []
     for k in range(order + 1):
         found.append(float(value))
         value = value * (exponent - k) / (k + 1)
@@ -130,14 +131,14 @@ def power_rows(x: Row, exponent: float, order: int) -> Row:
     rows = []
     if exponent < 0 or exponent == 0.5:
         value, inverse = np.sqrt(x) if exponent == 0.5 else x**exponent, 1.0 / x
-        for binomial in binomials(Fraction(exponent), order):
+        for binomial in binomials(exponent, order):
             rows.append(value * binomial)
             value = value * inverse
         return np.array(rows)
-    for k, binomial in enumerate(binomials(Fraction(exponent), order)):
+    for k, binomial in enumerate(binomials(exponent, order)):
         if binomial == 0:
             rows.append(x * 0.0)
-        elif Fraction(exponent - k) == Fraction(exponent) - k:
+        elif _exact(exponent, k):
             rows.append(x ** (exponent - k) * binomial)
         else:
             rows.append(x**exponent * x**-k * binomial)
@@ -147,10 +148,15 @@ def power_rows(x: Row, exponent: float, order: int) -> Row:
 @lru_cache(maxsize=256)
 def _power_columns(exponent: float, order: int) -> tuple[Array, Array | None, Array]:
     """Exponents, those of a second factor where one exponent would be rounded, and binomials: columns, down to a 0."""
-    factors = [factor for factor in binomials(Fraction(exponent), order) if factor]
+    factors = [factor for factor in binomials(exponent, order) if factor]
     left, k = np.full((len(factors), 1), float(exponent)), np.arange(len(factors), dtype=float)[:, None]
-    exact = all(Fraction(exponent - i) == Fraction(exponent) - i for i in range(len(factors)))
+    exact = all(_exact(exponent, i) for i in range(len(factors)))
     return (left - k, None, np.array(factors)[:, None]) if exact else (left, -k, np.array(factors)[:, None])
+
+
+def _exact(exponent: float, k: int) -> bool:
+    """Whether exponent - k is a double."""
+    return math.fsum((exponent, -k, k - exponent)) == 0.0
 
 
 def led(rows: Row, value: Row) -> Row:
@@ -185,7 +191,7 @@ def log_rows(x: Row, value: Row, order: int) -> Row:
 
 def cbrt_rows(x: Row, value: Row, order: int) -> Row:
     """Those of the cube root, from its value at x of either sign."""
-    factors = binomials(Fraction(1, 3), order)
+    factors = binomials(1.0, order, 3)
     return stack([value] + [value * x**-k * factors[k] for k in range(1, order + 1)])
 
 

@@ -75,6 +75,7 @@ def read_solid(
         volume=units**3 * found.volume,
         sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
         faces=tuple(units * z for z in found.faces),
+        leaning=units * found.leaning,
         uneven=units * found.uneven,
     )
 
@@ -112,4 +113,5 @@ def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySoli
         height=solid.height - level,
         sections=tuple(Section(one.chains, z) for z, one in zip(heights, solid.sections, strict=False)),
         faces=tuple(z - level for z in solid.faces),
+        leaning=solid.leaning - [level, level, 0.0],
     )

@@ -13,8 +13,8 @@ from camgeo.assembly.body import Plate, PrintBody
 from camgeo.assembly.build import assembly_of
 from camgeo.assembly.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
 from camgeo.assembly.shapes import bar
+from camgeo.files.errors import RegionError
 from camgeo.files.precision import DECIMALS, SINGLE
-from camgeo.files.triangulate import RegionError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
 from camgeo.output.job import Job

@@ -120,19 +120,92 @@ def test_balance_of_four_lobes(tmp_path: Path) -> None:
     assert balance["about_z"] == 52.0
 
 
-def test_lifts_of_a_machine_in_phase(tmp_path: Path) -> None:
-    """Case f24, cam C: zero at 310, its follower along +x."""
-    rows = "recipe: roller.yaml, at: 310, z: 30"
-    (folder := tmp_path / "m").mkdir()
-    path = shaft(folder, rows, files="[csv, svg]")
-    report = camgeo.export(path, folder / "out")
+MACHINE = {  # case f24: base radius, roller, offset, zero and the follower's direction, degrees
+    "a": (40, 10, 0, 0, 0),
+    "b": (36, 9, 6, 75, 90),
+    "c": (32, 8, 0, 310, -60),
+}
+MOTIONS = {
+    "a": "{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, "
+    "{dwell: 60}",
+    "b": "{rise: 24, over: 100, law: polynomial-4567}, {dwell: 40}, {return: 24, over: 140, law: polynomial-4567}, "
+    "{dwell: 80}",
+    "c": "{rise: 12, over: 60, law: modified-sine}, {dwell: 30}, {return: 12, over: 90, law: cycloidal}, {dwell: 180}",
+}
+MACHINE_LIFTS = {
+    0.0: [0, 0, 11.482835811],
+    40.0: [3.910022190, 0, 12],
+    130.0: [20, 14.598907125, 0],
+    350.0: [0, 0.001252930, 9.309969066],
+}
+
+
+@pytest.fixture(scope="module", params=["cw", "ccw"])
+def machine(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> tuple[str, camgeo.Report]:
+    """Three cams in phase, their followers in three directions about the shaft."""
+    folder = tmp_path_factory.mktemp(request.param)
+    for name, (base, roller, offset, *_) in MACHINE.items():
+        follower = f"{{kind: roller, radius: {roller}, offset: {offset}}}"
+        (folder / f"{name}.yaml").write_text(
+            f"cam: {{kind: disc, base_radius: {base}, follower: {follower}, motion: [{MOTIONS[name]}]}}\n"
+        )
+    rows = "\n".join(
+        f"recipe: {name}.yaml, at: {zero + direction}, direction: {direction}, z: {20 * (k + 1)}, length: 10"
+        for k, (name, (*_, zero, direction)) in enumerate(MACHINE.items())
+    )
+    path = shaft(folder, rows, files="[stl, csv, svg, html]", extra=f"rotation: {request.param}\n")
+    return request.param, camgeo.export(path, folder / "out")
+
+
+def test_lifts_of_a_machine_in_phase(machine: tuple[str, camgeo.Report]) -> None:
+    """Case f24: over the shaft's angle, wherever the followers stand."""
+    _, report = machine
+    assert report.ok
     assert report.path is not None
     table = list(csv.DictReader((report.path / "shaft.csv").read_text().splitlines()))
-    lift = {float(row["shaft_deg"]): float(row["roller_mm"]) for row in table}
-    assert lift[0.0] == pytest.approx(11.482835811, abs=1e-8)
-    assert [lift[40.0], lift[130.0]] == pytest.approx([12.0, 0.0], abs=1e-9)
-    assert lift[350.0] == pytest.approx(9.309969066, abs=1e-8)
+    lifts = {float(row["shaft_deg"]): [float(row[f"{name}_mm"]) for name in MACHINE] for row in table}
+    for angle, expected in MACHINE_LIFTS.items():
+        assert lifts[angle] == pytest.approx(expected, abs=2e-9)
+    lobes = dict(report)["camshaft"]["lobes"]
+    assert [lobe["at_deg"] for lobe in lobes] == pytest.approx([0, 165, 250])
+    assert [lobe["zero_deg"] for lobe in lobes] == pytest.approx([0, 75, 310])
     assert "lifts over the shaft" in (report.path / "shaft.svg").read_text()
+
+
+def test_rollers_on_the_metal_of_a_machine_lift_as_its_table_says(machine: tuple[str, camgeo.Report]) -> None:
+    """Case f24 by first contact: the solid is turned with the shaft, rollers come in along their directions."""
+    rotation, report = machine
+    assert report.path is not None
+    mesh = trimesh.load(report.path / "shaft.stl")
+    for k, (base, radius, offset, _, direction) in enumerate(MACHINE.values()):
+        section = mesh.section(plane_origin=[0, 0, 20 * (k + 1) + 5], plane_normal=[0, 0, 1])
+        edge = max(section.discrete, key=lambda points: np.ptp(points[:, 0])) @ np.array([1, 1j, 0])
+        if rotation == "ccw":
+            edge = edge.conj()
+        lowest = math.sqrt((base + radius) ** 2 - offset**2)
+        places = np.interp(np.arange(0, len(edge) - 1, 0.02), np.arange(len(edge)), edge)
+        for angle, lifts in MACHINE_LIFTS.items():
+            seen = places * np.exp(-1j * math.radians(angle + direction))  # along the stem, the shaft turns clockwise
+            aside = np.abs(seen.imag - offset)
+            high = seen.real[aside < radius] + np.sqrt(radius**2 - aside[aside < radius] ** 2)
+            assert high.max() - lowest == pytest.approx(lifts[k], abs=0.02)
+
+
+def test_the_direction_turns_an_engines_metal_and_no_event(tmp_path: Path, engine: camgeo.Report) -> None:
+    """A lobe that is placed by its valve follows its tappet; without the direction its file is judged out of phase."""
+    row = "recipe: intake.yaml, cylinder: 3, valve: intake, z: 30, direction: {}"
+    (straight := tmp_path / "straight").mkdir()
+    report = camgeo.export(path := shaft(tmp_path, row.format(-15), ENGINE), tmp_path / "out")
+    assert report.ok
+    assert report.path is not None
+    lobe = dict(report)["camshaft"]["lobes"][0]
+    first = dict(engine)["camshaft"]["lobes"][4]
+    assert lobe["at_deg"] == pytest.approx(310, abs=1e-9)
+    for event in ("zero_deg", "opens_deg", "closes_deg", "centre_deg"):
+        assert lobe[event] == pytest.approx(first[event], abs=1e-9)
+    file = report.path / "shaft.stl"
+    assert camgeo.verify(path, file).ok
+    assert "phase, cylinder 3 intake" in failing(camgeo.verify(shaft(straight, row.format(0), ENGINE), file))
 
 
 # --- the metal --------------------------------------------------------------------------------------------------------
@@ -172,7 +245,7 @@ def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> 
     assert re.search(r"position, roller", text)
 
 
-OF_A_LOBE = ("phase", "contour", "motion", "thickness")
+OF_A_LOBE = ("phase", "contour", "motion")
 PLANTED = {
     "crank for cam degrees": (TWO.replace("33.3", "66.6"), SHAFT, {f"{check}, intake" for check in OF_A_LOBE}),
     "a tenth of a degree": (TWO.replace("-120", "-119.9"), SHAFT, {f"{check}, roller" for check in OF_A_LOBE}),

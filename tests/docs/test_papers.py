@@ -89,6 +89,7 @@ def test_a_spoilt_motion_is_found_by_the_rows_of_its_equations(monkeypatch: pyte
     assert "1" not in failed  # the contour's own breadth is none of it
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("paper", EQUATIONS)
 def test_every_equation_and_every_figure_of_a_paper_has_a_row(paper: str) -> None:
     rows = measured("validation.md", paper)

@@ -13,9 +13,10 @@ from support.heavy import manifold3d, trimesh
 from support.outlines import bored
 
 from camgeo.files import stl
+from camgeo.files.errors import RegionError
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
-from camgeo.files.triangulate import RegionError, clipped, disc, ring, sides, star_shaped
+from camgeo.files.triangulate import clipped, disc, ring, sides, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 

@@ -108,6 +108,7 @@ def brute(inner, outer, radius, theta):
     return stopped[wide & (far.real > held)].min() - held
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("layers", [("GROOVE_INNER", "GROOVE_OUTER"), ("CUT", "CUT")])
 @pytest.mark.parametrize("blank", [None, 80.0])
 def test_a_sound_groove_is_found_by_layer_and_by_nesting(tmp_path, layers, blank):
@@ -186,20 +187,19 @@ def test_planted_faults_are_caught(tmp_path, fault, caught):
     assert failures(verify(path, groove(law_of(WAVY), bore=10.0), 90, LIMITS)) >= caught
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("by", [0.9, 1.1])
-def test_the_closure_has_two_sides(tmp_path, by):
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_the_closure_has_two_sides(tmp_path, by, sign):
     """Both flanks within their tolerance, and the groove wider or narrower by nearly twice that."""
-    for sign in (-1.0, 1.0):
-        off = sign * by * LIMITS.tolerance
-        path = drawn(
-            tmp_path / "groove.dxf", flank(wavy, -ROLLER - off), flank(wavy, ROLLER + CLEARANCE + off), bore=None
-        )
-        found = {check.name for check in verify(path, groove(law_of(WAVY)), 90, LIMITS).checks if not check.ok}
-        assert found == (set() if by < 1.0 else {"contour", "motion", "form-closure"})
-        strict = dataclasses.replace(LIMITS, play=1e-4)
-        assert "form-closure" in {
-            check.name for check in verify(path, groove(law_of(WAVY)), 90, strict).checks if not check.ok
-        }
+    off = sign * by * LIMITS.tolerance
+    path = drawn(tmp_path / "groove.dxf", flank(wavy, -ROLLER - off), flank(wavy, ROLLER + CLEARANCE + off), bore=None)
+    found = {check.name for check in verify(path, groove(law_of(WAVY)), 90, LIMITS).checks if not check.ok}
+    assert found == (set() if by < 1.0 else {"contour", "motion", "form-closure"})
+    strict = dataclasses.replace(LIMITS, play=1e-4)
+    assert "form-closure" in {
+        check.name for check in verify(path, groove(law_of(WAVY)), 90, strict).checks if not check.ok
+    }
 
 
 @pytest.mark.parametrize("missing", [0, 1])

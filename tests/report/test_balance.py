@@ -10,7 +10,7 @@ import trimesh
 
 from camgeo.cli.main import main
 from camgeo.curve.measures import moments_of_chain
-from camgeo.measures.balance import balances
+from camgeo.measures.balance import balances_of
 from camgeo.measures.limits import limit_checks
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
@@ -46,7 +46,7 @@ FEATURES = (
 
 def balance(text):
     recipe = load_text(text, "cam.yaml")
-    (found,) = balances(recipe, designed(recipe))
+    (found,) = balances_of(recipe, designed(recipe))
     return found
 
 

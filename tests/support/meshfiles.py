@@ -79,3 +79,40 @@ def _object(number: int, triangles: np.ndarray) -> str:
     name = "cam" if number == 1 else f"body {number}"
     mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles></mesh>"
     return f'<object id="{number}" name="{name}">{mesh}</object>'
+
+
+def triangles_in(path: Path) -> np.ndarray:
+    """Triangles (t, 3, 3) of a binary STL."""
+    return np.frombuffer(path.read_bytes(), RECORD, offset=84)["corners"].astype(float)
+
+
+def bumped(
+    triangles: np.ndarray, wall: tuple[float, float], span: tuple[float, float], *, angle: float, out: float
+) -> np.ndarray:
+    """Raise a pyramid by `out`, mm, on the outermost wall of two triangles from z to z in a direction, rad.
+
+    It covers four fifths of the wall's width and the heights `span`; the wall's own corners stay.
+    """
+    z = triangles[:, :, 2]
+    ray, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    middle = (triangles.min(axis=1) + triangles.max(axis=1))[:, :2] / 2.0
+    here = np.isclose(z.min(axis=1), wall[0], atol=1e-5) & np.isclose(z.max(axis=1), wall[1], atol=1e-5)
+    first = int(np.argmax(np.where(here, middle @ ray - 20.0 * np.abs(middle @ across), -np.inf)))
+    pair = np.flatnonzero(here & (np.abs(middle - middle[first]).max(axis=1) < 1e-9))
+    assert len(pair) == 2
+    a, b = np.unique(triangles[pair][:, :, :2].reshape(-1, 2), axis=0)
+    one, two, three = triangles[first]
+    facing = np.cross(two - one, three - one)[:2]
+    if float(np.array([(b - a)[1], (a - b)[0]]) @ facing) < 0.0:
+        a, b = b, a
+    low, high = float(z[first].min()), float(z[first].max())
+    outer = [(*a, low), (*b, low), (*b, high), (*a, high)]
+    left, right = a + 0.1 * (b - a), a + 0.9 * (b - a)
+    inner = [(*left, span[0]), (*right, span[0]), (*right, span[1]), (*left, span[1])]
+    normal = np.array([(b - a)[1], (a - b)[0]]) / np.hypot(*(b - a))
+    tip = (*(0.5 * (a + b) + out * normal), 0.5 * sum(span))
+    made = []
+    for k in range(4):
+        n = (k + 1) % 4
+        made += [(outer[k], outer[n], inner[n]), (outer[k], inner[n], inner[k]), (inner[k], inner[n], tip)]
+    return np.concatenate([np.delete(triangles, pair, axis=0), np.array(made)])

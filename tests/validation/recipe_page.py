@@ -45,11 +45,7 @@ def row(field, optional_together):
 
 def table(found):
     together = [name for name, _ in found.alternatives]
-    lines = [HEAD, *(row(field, together) for field in found.fields)]
-    later = [f"`{name}`" for name, _ in found.later]
-    if later:
-        lines += ["", f"Known and refused in this version: {', '.join(later)}."]
-    return "\n".join(lines)
+    return "\n".join([HEAD, *(row(field, together) for field in found.fields)])
 
 
 def below(found, path):
@@ -65,7 +61,7 @@ def below(found, path):
 
 
 def is_motion(field):
-    return field.form is not None and field.form.instead is not None
+    return field.table is not None and field.form is not None and field.form.instead is not None
 
 
 def motions(found):

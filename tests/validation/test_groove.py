@@ -100,6 +100,7 @@ def test_the_play_is_reported_and_limited(tmp_path):
     assert {check["name"] for check in tight.report["checks"] if not check["ok"]} == {"limit:backlash"}
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("clearance", [1.0, 0.03, 1e-6, 0.0])
 @pytest.mark.parametrize("held", ["stem", "trailing", "leading"])
 def test_brute_force_on_either_flank(held, clearance, tmp_path):
@@ -255,6 +256,7 @@ export: {tolerance: 0.002, files: [stl, 3mf]}
 """
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("kind", ["stl", "3mf", pytest.param("step", marks=kernel)])
 def test_a_solid_has_the_pocket(kind, tmp_path):
     """Its volume by closed forms; a groove that is 1e-3 mm too shallow, or too wide, is refused."""
@@ -278,6 +280,7 @@ def test_a_solid_has_the_pocket(kind, tmp_path):
 
 
 @kernel
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_solid_has_a_hub_below_and_a_mark(form, tmp_path):
     hub = "hub: {diameter: 25, height: 8, side: bottom}, mark: {as: engrave, width: 1, length: 4}"

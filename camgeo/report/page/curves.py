@@ -182,19 +182,19 @@ def along(recipe: Recipe, places: Mapping[str, Array]) -> Plot:
     return Plot("Contact on the face", unit, series, dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, made: SurfaceDesign, exact: Exact) -> Plot:
+def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exact: Exact) -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
     Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
-    found, surface = made.bent, made.surface
+    found, surface = surface_design.bent, surface_design.surface
     unit, radius = length_unit(recipe), surface.side * surface.radius
     margin, name = "", f", {surface.name}" if surface.name else ""
     if found.value is not None and math.isfinite(found.value) and radius >= 0.0:
         room = (found.value - radius) / recipe.mm
         margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
-        if made.contour is not None and is_sharp(made.contour):
+        if surface_design.contour is not None and is_sharp(surface_design.contour):
             margin = "radius 0 about sharp corners, as the recipe has them"
     if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm

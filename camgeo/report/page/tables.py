@@ -213,12 +213,12 @@ def forces(report: dict[str, Any]) -> str:
     return f"{head}<p>{told}</p>{_figures('Forces', rows)}</section>"
 
 
-def _figures(title: str, found: Sequence[_Row]) -> str:
+def _figures(title: str, figures: Sequence[_Row]) -> str:
     """Return a table of figures with their units and places."""
     rows = [
         f'<tr><th scope="row">{escape(name)}</th><td class="number">{number(value)}</td><td>{escape(unit)}</td>'
         f"<td>{_place(at, 'shaft')}</td></tr>"
-        for name, value, unit, at in found
+        for name, value, unit, at in figures
     ]
     return _table(title, ("figure", "value", "unit", "at"), rows)
 

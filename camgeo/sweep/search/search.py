@@ -188,7 +188,7 @@ def _far(ask: Ask, values: Floats, start: Floats) -> NDArray[np.bool_]:
     return far
 
 
-def _certified(ask: Ask, found: Gathered, how: How, listener: Listener | None) -> Gathered:
+def _certified(ask: Ask, gathered: Gathered, how: How, listener: Listener | None) -> Gathered:
     """The table with the designs that hold exactly in front; starts of polishing lie apart."""
     started = time.perf_counter()
 
@@ -199,7 +199,7 @@ def _certified(ask: Ask, found: Gathered, how: How, listener: Listener | None) -
         if listener is not None:
             listener("designs worked out", count, ask.sweep.keep, time.perf_counter() - started)
 
-    return certified(ask, found, partial(spread, count=how.processes), apart, tell)
+    return certified(ask, gathered, partial(spread, count=how.processes), apart, tell)
 
 
 def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: Listener | None) -> list[Best]:

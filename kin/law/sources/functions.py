@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -80,6 +79,8 @@ class TwoPoint:
 
 def _over_power(derivatives: Sequence[float]) -> tuple[float, ...]:
     """Taylor coefficients to order m of f(u)/(1 - u)**(m + 1), from the derivatives of f at 0."""
+    from fractions import Fraction
+
     m = len(derivatives) - 1
     taylor, factorial = [], 1
     for k, value in enumerate(derivatives):
@@ -104,6 +105,8 @@ class Flank:
         (foot - top + slope) l_k(0) - slope l_k(1): so the sums of C_k, k C_k, k (k - 1) C_k ... are as those at u = 1
         must be. The division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
         """
+        from fractions import Fraction
+
         above, rate = Fraction(top) - Fraction(foot), Fraction(slope)
         full = [Fraction(0)] * (powers[-1] + 1)
         full[0], full[1] = above - rate, rate

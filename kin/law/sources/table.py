@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 _LEAST_ROWS = 8
+_LEAST_LOADS = 2
 _GAP = 1.5  # of the median of the five steps about it
 _LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
 _FOOT, _ANKLE = 3.0, 60.0  # readings above a dwell between which the motion's foot is looked for
@@ -126,10 +127,33 @@ def _shortened(dwells: Sequence[Dwelling], count: int, around: int | None) -> li
     return shorter
 
 
-def _demand_rows(rows: Samples, total: float, field: str) -> None:
-    if len(rows.theta) < _LEAST_ROWS:
-        raise IntentError(f"a table has at least {_LEAST_ROWS} rows, not {len(rows.theta)}", field)
-    for column, what in ((rows.theta, "the angle"), (rows.s, "the displacement")):
+def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
+    """Rows of a load that repeats itself after `total` rad, without one that closes it; `unit` is for messages.
+
+    TableError, with the line, for angles that do not rise, for a last row a turn later that is not the first one's
+    again, and where more is left out behind the last row than between any two, and the ends differ.
+    """
+    _demand_rows(rows, total, field, _LEAST_LOADS, "load")
+    over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
+    first, last = float(rows.s[0]), float(rows.s[-1])
+    closed = over > total - SAME_ANGLE
+    if first != last and closed:
+        what = f"the load does not close: {last:.6g} {unit} here, {first:.6g} {unit} in the first row, a turn earlier"
+        raise TableError(f"{what}; give this row the load of the first one", field, line)
+    if first != last and total - over > _GAP * float(np.diff(rows.theta).max()):
+        what = (
+            f"the table ends after {math.degrees(over):.6g} degrees with {last:.6g} {unit}, and begins with {first:.6g}"
+        )
+        raise TableError(f"{what} {unit}; add the rows of the rest of the turn", field, line)
+    return rows.part(slice(None, -1)) if closed else rows
+
+
+def _demand_rows(
+    rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
+) -> None:
+    if len(rows.theta) < least:
+        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
+    for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
             raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))

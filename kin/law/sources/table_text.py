@@ -22,10 +22,12 @@ def read_table(
     text: str,
     *,
     angles: Literal["cam", "crank"] = "cam",
-    unit: Literal["mm", "inch", "thou", "degrees"] = "mm",
+    unit: Literal["mm", "inch", "thou", "degrees", "N"] = "mm",
     field: str = "motion.table",
 ) -> tuple[Samples, float]:
     """Read rows `angle, displacement`: angles become radians of the cam, displacements mm (degrees: radians).
+
+    With the unit N the rows are loads and stay as they are.
 
     Also returns the unit of the last place that any displacement shows. Columns are parted by semicolons, tabs or
     blanks (a comma is then the decimal mark where it is one), or else by commas. Empty lines, lines that start with #
@@ -43,11 +45,11 @@ def read_table(
     for row, (i, line) in enumerate(kept):
         cells = _numbers(line, separator)
         if not cells:
-            raise _unread(line, separator, i, field)
+            raise _unread(line, separator, i, field, "load" if unit == "N" else "displacement")
         theta[row], s[row] = float(cells[0]), float(cells[1])
         places = max(places, _places(cells[1]))
     theta *= math.pi / 180 / (2 if angles == "crank" else 1)
-    scale = {"mm": 1.0, "inch": MM_PER_INCH, "thou": MM_PER_INCH / 1000, "degrees": math.pi / 180}[unit]
+    scale = {"mm": 1.0, "inch": MM_PER_INCH, "thou": MM_PER_INCH / 1000, "degrees": math.pi / 180, "N": 1.0}[unit]
     return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp), scale), scale * 10.0**-places
 
 
@@ -74,9 +76,9 @@ def _numbers(line: str, separator: str) -> tuple[str, str] | None:
     return (first, second) if _NUMBER.fullmatch(first) and _NUMBER.fullmatch(second) else None
 
 
-def _unread(line: str, separator: str, number: int, field: str) -> TableError:
+def _unread(line: str, separator: str, number: int, field: str, quantity: str) -> TableError:
     shown = line if len(line) <= 40 else f"{line[:37]}..."
-    hint = "an angle and a displacement are expected"
+    hint = f"an angle and a {quantity} are expected"
     if separator == "," and line.count(",") > 1:
         hint += ": with decimal commas, separate the columns by semicolons"
     return TableError(f"{shown!r} is not a row separated by {_SEPARATORS[separator]}: {hint}", field, number)

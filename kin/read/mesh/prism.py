@@ -1,4 +1,4 @@
-"""Whether a mesh is a prism: to the bit, or to the rounding of the numbers that the file holds."""
+"""Whether walls of a mesh stand upright: to the bit, or to the rounding of the numbers that the file holds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Corners = NDArray[np.float32] | NDArray[np.float64]
 
-__all__ = ["Evened", "Outline", "Upright", "evened", "rounding", "upright"]
+__all__ = ["Evened", "Outline", "Upright", "Walls", "evened", "rounding", "upright", "walls"]
 
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53  # greatest relative error of a number rounded to either precision
 FEW_DIGITS = 9  # tell any number of single precision; more are written of doubles
@@ -46,6 +46,33 @@ class Evened(NamedTuple):
 
     corners: Array
     by: float
+
+
+class Walls(NamedTuple):
+    """Triangles that lean (k, 3): least and greatest height, distance from the axis, mm; by how much others may."""
+
+    leaning: Array
+    by: float
+
+
+def walls(mesh: Mesh, apart: float) -> Walls:
+    """Tell the triangles that are neither level nor upright within `apart`, mm, to which rounding explains.
+
+    A place where two sections differ lies, as seen from above, within a triangle between them that is not upright. So
+    where none leans the sections are the same but for slivers no wider than `apart`, whose area in all is no more than
+    `apart` along the mean section: should there be so many that it is, each is one that leans.
+    """
+    x, y, z = (np.abs(part) for part in mesh.area_vectors)
+    corners = mesh.points[mesh.corners]
+    low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
+    side = np.roll(corners, -1, axis=1)[:, :, :2] - corners[:, :, :2]
+    width = z / np.maximum(np.hypot(side[:, :, 0], side[:, :, 1]).max(axis=1), np.finfo(float).tiny)
+    lean = (low < high) & (z > 0.0)
+    sliver = lean & (width <= apart)
+    if float(z[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(np.hypot(x, y).sum()):
+        sliver[:] = False
+    reach = np.hypot(corners[:, :, 0], corners[:, :, 1]).max(axis=1)
+    return Walls(np.column_stack([low, high, reach])[lean & ~sliver], float(width[sliver].max(initial=0.0)))
 
 
 def upright(corners: Corners) -> Upright:

@@ -12,10 +12,10 @@ from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, field
 from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
-from kin.read.mesh.prism import Outline, evened, upright
+from kin.read.mesh.prism import Outline, evened, rounding, upright, walls
 from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
 from kin.read.size import contents
 
@@ -49,6 +49,11 @@ MOST_STEPS = 8
 NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
+def nothing_leans() -> Array:
+    """No rows of `Solid.leaning`."""
+    return np.empty((0, 3))
+
+
 @dataclass(frozen=True, eq=False)
 class Section(Nest):
     """A section at a height, mm."""
@@ -64,8 +69,11 @@ class Solid(Nest):
     z_min, z_max        least and greatest height
     height              at which the section was taken
     prism               the walls stand upright and every section is the same, to the file's rounding
-    (`kin.read.mesh.prism`) uneven              by how much at most a point of the mesh is off that prism, mm; 0 for
-    one to the bit volume              mm^3, negative if the triangles face inward
+                        (`kin.read.mesh.prism`)
+    leaning             triangles neither level nor upright, to that rounding (k, 3): least and greatest height, reach
+                        from the axis
+    uneven              by how much at most a point of the mesh is off such a prism or such walls, mm; 0 to the bit
+    volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
     degenerate          triangles without area
@@ -88,6 +96,7 @@ class Solid(Nest):
     form: Form
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
+    leaning: Array = field(default_factory=nothing_leans)
     uneven: float = 0.0
     units_mm: float | None = None
 
@@ -146,9 +155,10 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         again = None if moved is None else upright(moved.corners)
         if moved is not None and again is not None and again.prism:
             corners, uneven, found = moved.corners, moved.by, again
-    mesh, outline = found.mesh, found.outline
+    mesh, outline, leaning = found.mesh, found.outline, nothing_leans()
     if not found.prism:
         _refuse_apart(read, path, deepest)
+        leaning, uneven = walls(mesh, 2.0 * rounding(corners))
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
@@ -180,6 +190,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         form=form,
         sections=tuple(sections),
         faces=tuple(levels.tolist()),
+        leaning=leaning,
         uneven=uneven,
     )
 

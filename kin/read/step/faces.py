@@ -160,6 +160,16 @@ class Face:
         return float(z.min()), float(z.max())
 
     @property
+    def leans(self) -> bool:
+        """Whether it is neither horizontal nor upright."""
+        return not (self.surface.level or self.surface.upright)
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance of its edges from the axis z, mm."""
+        return max(float(np.hypot(*edge.samples[:, :2].T).max()) for edge, _ in self.uses)
+
+    @property
     def misfit(self) -> float:
         """Farthest that its edges lie off its surface, mm."""
         return float(self.surface.off(np.concatenate([edge.samples for edge, _ in self.uses])).max())

@@ -57,6 +57,7 @@ class StepSolid(Nest):
     volume              mm^3, from sections
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
+    leaning             faces neither horizontal nor upright (k, 3): least and greatest height, reach from the axis
     faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
                         into the solid
     misfit              farthest that an edge lies off its faces or its ends off itself
@@ -71,6 +72,7 @@ class StepSolid(Nest):
     volume: float
     sections: tuple[Section, ...]
     faces: tuple[float, ...]
+    leaning: Array
     faults: tuple[str, ...]
     misfit: float
     schema: str
@@ -124,6 +126,7 @@ def _solid(body: _Body, sought: Sought) -> StepSolid:
         volume=body.volume,
         sections=tuple(sections) if len(heights) else (),
         faces=tuple(distinct(np.array([face.heights[0] for face in body.lids])).tolist()),
+        leaning=np.array([(*face.heights, face.reach) for face in body.faces if face.leans]).reshape(-1, 3),
         faults=tuple(body.faults),
         misfit=misfit,
         schema=body.space.file.schema,

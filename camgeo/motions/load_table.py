@@ -1,0 +1,101 @@
+"""Loads over the turn from a table, whose file is read with the recipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.motions.lift_table import FILE, read_rows
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping, join
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.motions.lift_table import Angles
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
+    from kin.numeric.arrays import Array
+
+MOST_LOAD = MOST**2
+
+
+@dataclass(frozen=True)
+class LoadTable:
+    """A load, N or N m, over the turn: straight between rows, and from the last one on to the first, a turn later.
+
+    `theta` rises, rad, over less than a turn.
+    """
+
+    file: str
+    theta: tuple[float, ...]
+    load: tuple[float, ...]
+
+    def __call__(self, phi: Array) -> Array:
+        """The load at shaft angles (n,)."""
+        import numpy as np
+
+        found: Array = np.interp(phi, self.theta, self.load, period=TURN)
+        return found
+
+    @property
+    def corners(self) -> Array:
+        """Shaft angles, rad from 0 on, at which it has a corner (n,)."""
+        import numpy as np
+
+        found: Array = np.mod(self.theta, TURN)
+        return found
+
+
+LOADS = Table(
+    (
+        Field(
+            "table",
+            Kind.OWN,
+            "file with a row for each angle, its path as seen from the recipe; loads in N, or N m",
+            required=True,
+            form=FILE,
+        ),
+        Field("angle", Kind.CHOICE, "whose angle the table has", default="cam", choices=("cam", "crank")),
+    )
+)
+
+
+def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTable | None:
+    """Read a formula, or a mapping with a table."""
+    if not isinstance(node, Mapping):
+        found: str | None = reader.readers[Kind.FORMULA](reader, field, node, path)
+        return found
+    values = reader.table(LOADS, node, path)
+    return (
+        _table(reader, values["table"], values.get("angle", "cam"), join(path, "table")) if "table" in values else None
+    )
+
+
+def _table(reader: Reader, file: str, angles: Angles, path: str) -> LoadTable | None:
+    from kin.law.programme import IntentError
+    from kin.law.sources.table import periodic
+
+    if (found := read_rows(reader, file, path, angles=angles, unit="N")) is None:
+        return None
+    try:
+        rows = periodic(found[0].samples(), TURN, path, "N m" if Kind.STROKE in reader.angular else "N")
+    except IntentError as error:
+        reader.fault_at(path, f"{file}, {error.message}")
+        return None
+    largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True))
+    if largest > MOST_LOAD:
+        reader.fault_at(
+            path, f"{file}, line {line}: a load above {MOST_LOAD:.0f}", None, "give a table of smaller ones"
+        )
+        return None
+    return LoadTable(file, tuple(rows.theta.tolist()), tuple(rows.s.tolist()))
+
+
+LOAD = Form(
+    "a formula, or a mapping with a table",
+    "a formula in t, or {table: load.csv}",
+    _read,
+    lambda _: {"anyOf": [{"type": ["string", "number"]}, table_schema(LOADS)]},
+    instead=LOADS,
+)

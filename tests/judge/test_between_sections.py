@@ -1,0 +1,233 @@
+"""Metal between the sections that are looked at: bumps, dents, fins and barrels pass no check of any solid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from support.heavy import trimesh
+from support.kernel import kernel
+from support.meshfiles import binary, bumped, ring, triangles_in
+
+import camgeo
+from kin.judge.layers import Lean, between_sections
+from kin.read.mesh.mesh import welded
+from kin.read.mesh.prism import walls
+from kin.read.mesh.stl import read_stl
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+DISC = """\
+cam:
+  kind: disc
+  base_radius: 40
+  follower: {kind: roller, radius: 10}
+TRACK  motion: [{rise: 12, over: 60, law: cycloidal}, {dwell: 30}, {return: 12, over: 90, law: cycloidal}, {dwell: 180}]
+part: {PART}
+export: {tolerance: 0.01, files: [FILES]}
+verify: {angles: 90}
+"""
+PARTS = {
+    "plain": ("thickness: 10, bore: 12", ""),
+    "hub": ("thickness: 10, bore: 12, hub: {diameter: 30, height: 8}", ""),
+    "chamfer": ("thickness: 10, bore: 12, chamfer: 0.5", ""),
+    "screw": (
+        "thickness: 10, bore: 12, hub: {diameter: 30, height: 8}, set_screw: {diameter: 3.4, at: 90}, chamfer: 0.5",
+        "",
+    ),
+    "groove": ("thickness: 14, bore: 12, outer: 160", "  track: {groove: {clearance: 0.03, depth: 8}}\n"),
+    "camshaft": ("thickness: 10", ""),
+}
+WALLS = {
+    "plain": (0.0, 10.0),
+    "hub": (0.0, 10.0),
+    "chamfer": (0.5, 9.5),
+    "screw": (0.5, 9.5),
+    "groove": (6.0, 14.0),
+    "camshaft": (20.0, 30.0),
+}
+
+
+def exported(kind: str, folder: Path, files: str = "stl") -> tuple[Path, Path]:
+    """A recipe of that kind of part, and the solid that camgeo makes of it."""
+    part, track = PARTS[kind]
+    text = DISC.replace("PART", part).replace("TRACK", track).replace("FILES", files)
+    recipe = folder / "part.yaml"
+    recipe.write_text(text)
+    if kind == "camshaft":
+        recipe = folder / "shaft.yaml"
+        lobes = "camshaft:\n  shaft: {diameter: 30, to: 60, bore: 8}\n  lobes: [{recipe: part.yaml, at: 20, z: 20}]\n"
+        recipe.write_text(f"{lobes}export: {{tolerance: 0.01, files: [{files}]}}\nverify: {{angles: 90}}\n")
+    report = camgeo.export(recipe, folder / "out")
+    assert report.ok
+    assert report.path is not None
+    return recipe, report.path / f"{recipe.stem}.{files}"
+
+
+@pytest.fixture(scope="module", params=PARTS)
+def solid(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, Path]:
+    return (request.param, *exported(request.param, tmp_path_factory.mktemp(request.param)))
+
+
+def failing(recipe: Path, path: Path) -> dict[str, str]:
+    report = camgeo.verify(recipe, path)
+    return {check.name: check.detail for check in report.checks if not check.ok}
+
+
+@pytest.mark.parametrize("out", [2.0, 0.2, -0.2])
+@pytest.mark.parametrize("share", [(0.06, 0.44), (0.56, 0.94)])
+def test_a_bump_or_a_dent_between_sections(
+    solid: tuple[str, Path, Path], tmp_path: Path, out: float, share: tuple[float, float]
+) -> None:
+    """Half a cubic millimetre of metal, which no volume tells, where no section is looked at."""
+    kind, recipe, path = solid
+    low, high = WALLS[kind]
+    span = (low + share[0] * (high - low), low + share[1] * (high - low))
+    triangles = bumped(triangles_in(path), (low, high), span, angle=4.2, out=out)
+    mesh = trimesh.Trimesh(*trimesh.triangles.to_kwargs(triangles).values())
+    mesh.merge_vertices()
+    assert mesh.is_watertight
+    found = failing(recipe, binary(tmp_path / "part.stl", triangles))
+    assert "thickness" in found
+    assert "volume" not in found
+    assert "lean" in found["thickness"] or "sections at different heights differ" in found["thickness"]
+
+
+@pytest.mark.parametrize("kind", ["hub", "groove", "camshaft"])
+def test_a_fin_thinner_than_the_tolerance(tmp_path: Path, kind: str) -> None:
+    """A sheet of 8 micrometres round the top of the wall, 4 mm wide: its faces are where they may be."""
+    recipe, path = exported(kind, tmp_path)
+    high = WALLS[kind][1]
+    body = trimesh.load(path)
+    sheet = trimesh.creation.cylinder(75.0, 0.008, sections=64)
+    if kind == "groove":
+        sheet = trimesh.creation.cylinder(5.0, 0.008, sections=64)
+        sheet.apply_translation([0.0, -40.0, 0.0])
+    sheet.apply_translation([0.0, 0.0, high - 0.004])
+    hole = trimesh.creation.cylinder(10.0, 1.0, sections=64)
+    hole.apply_translation([0.0, 0.0, high])
+    if kind != "groove":
+        sheet = trimesh.boolean.difference([sheet, hole])
+    spoilt = tmp_path / f"{path.stem}.stl"
+    trimesh.boolean.union([body, sheet]).export(spoilt)
+    found = failing(recipe, spoilt)
+    assert "where one is expected" in found["thickness"]
+
+
+@kernel
+@pytest.mark.parametrize(("kind", "form"), [("hub", "cone"), ("camshaft", "cone"), ("camshaft", "box")])
+def test_a_bump_on_a_step_file(tmp_path: Path, kind: str, form: str) -> None:
+    """A small cone or box joined to the wall by Open CASCADE, between the sections."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+
+    recipe, path = exported(kind, tmp_path, "step")
+    assert not failing(recipe, path)
+    low, high = WALLS[kind]
+    reader = STEPControl_Reader()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    foot = low + 0.06 * (high - low)
+    if form == "cone":
+        axis = gp_Ax2(gp_Pnt(-40.0, 0.5, foot), gp_Dir(0, 0, 1))
+        bump = BRepPrimAPI_MakeCone(axis, 1.0, 0.5, 0.3 * (high - low)).Shape()
+    else:
+        bump = BRepPrimAPI_MakeBox(gp_Pnt(0.5, -39.5, foot), gp_Pnt(1.0, -40.5, low + 0.4 * (high - low))).Shape()
+    writer = STEPControl_Writer()
+    writer.Transfer(BRepAlgoAPI_Fuse(reader.OneShape(), bump).Shape(), STEPControl_AsIs)
+    spoilt = tmp_path / f"spoilt{path.suffix}"
+    writer.Write(str(spoilt))
+    found = failing(recipe, spoilt)
+    assert set(found) == {"thickness"}
+    assert ("lean" if form == "cone" else "where none is expected") in found["thickness"]
+
+
+def stepped(path: Path, turn: float = 0.0) -> Path:
+    """A ring with a smaller one on it; the upper one's top turned by `turn`, rad, against its foot."""
+    outer, inner, bore = (radius * np.array(_circle()) for radius in (20.0, 12.0, 5.0))
+    whole = trimesh.boolean.union(
+        [trimesh.Trimesh(*_kwargs(ring(outer, bore, 0.0, 4.0))), trimesh.Trimesh(*_kwargs(ring(inner, bore, 2.0, 9.0)))]
+    )
+    points = whole.vertices.copy()
+    c, s = np.cos(turn), np.sin(turn)
+    top = points[:, 2] == 9.0
+    points[top, :2] = points[top, :2] @ np.array([[c, s], [-s, c]])
+    whole.vertices = points
+    whole.export(path)
+    return path
+
+
+def _circle(count: int = 90) -> list[tuple[float, float]]:
+    return [(float(np.cos(t)), float(np.sin(t))) for t in np.arange(count) * 2.0 * np.pi / count]
+
+
+def _kwargs(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles))
+    mesh.merge_vertices()
+    return mesh.vertices, mesh.faces
+
+
+def test_slivers_that_rounding_explains_stand_upright(tmp_path: Path) -> None:
+    """A wall whose corners are off by less than the numbers' rounding counts as upright, by as much less sure."""
+    little = read_stl(stepped(tmp_path / "b.stl", 2e-7))
+    assert little.faces == (0.0, 4.0, 9.0)
+    assert not len(little.leaning)
+    assert 0.0 < little.uneven < 1e-6
+    turned = read_stl(stepped(tmp_path / "c.stl", 1e-4))
+    assert [4.0, 9.0] in turned.leaning[:, :2].tolist()
+
+
+@pytest.mark.parametrize(("needles", "leans"), [(1, True), (2, False), (200, True)])
+def test_slivers_side_by_side_lean_together(needles: int, leans: bool) -> None:
+    """A millimetre of wall that leans by a millimetre, of needles so narrow that each alone might be rounding."""
+    wide = 1.0 if needles == 1 else 0.005 * needles
+    foot = np.linspace(0.0, wide, needles + 1)
+    feet = np.column_stack([foot, np.zeros_like(foot), np.zeros_like(foot)])
+    tip = np.broadcast_to([0.5 * wide, 1.0, 10.0], (needles, 3))
+    fan = np.stack([feet[:-1], feet[1:], tip], axis=1)
+    upright = np.array([[[0.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, 0.0, 10.0]]])
+    found = walls(welded(np.concatenate([fan, upright])), 0.006)
+    assert np.unique(found.leaning[:, :2], axis=0).tolist() == ([[0.0, 10.0]] if leans else [])
+    assert (0.004 < found.by < 0.006) is not leans
+
+
+class _Solid:
+    faces: tuple[float, ...] = (0.0, 4.0, 9.0)
+    leaning = np.array([[4.0, 9.0, 20.0]])
+
+
+@pytest.mark.parametrize(
+    ("lean", "named"),
+    [
+        (Lean("chamfer", 4.0, 9.0), None),
+        (Lean("chamfer", 4.009, 8.991), None),
+        (Lean("chamfer", 4.02, 9.0), "chamfer"),
+        (Lean("chamfer", 3.98, 9.0), "chamfer"),  # a part of it is no even lean
+        (Lean("chamfer", 0.0, 3.9), "thickness"),
+        (Lean("set-screw", 3.0, 9.5, 20.0), None),
+        (Lean("set-screw", 3.0, 9.5, 19.98), "set-screw"),
+        (Lean("set-screw", 4.02, 9.5, 30.0), "set-screw"),
+    ],
+)
+def test_what_may_lean_and_what_may_not(lean: Lean, named: str | None) -> None:
+    """Evenly from end to end, or within heights and reach; each within the tolerance."""
+    told = between_sections(_Solid, [0.0, 4.0, 9.0], [lean], 0.01)
+    assert [kind for kind, _ in told] == ([] if named is None else [named])
+    assert named is None or "between z = 4 and 9 mm" in told[0][1]
+
+
+@pytest.mark.parametrize(
+    ("faces", "double"), [((0.0, 9.0), False), ((0.0, 8.991, 9.0), True), ((0.0, 8.9, 9.0), False)]
+)
+def test_one_face_where_one_is_meant(faces: tuple[float, ...], double: bool) -> None:
+    """Two within the tolerance are a fin; what is farther off is told by the checks on faces."""
+
+    class Faced(_Solid):
+        leaning = np.empty((0, 3))
+
+    Faced.faces = faces
+    assert bool(between_sections(Faced, [0.0, 9.0], [], 0.01)) is double
