@@ -37,7 +37,7 @@ from camgeo.output.job import Job
 from camgeo.output.pipeline import export
 from camgeo.recipe.part import Part
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended, permitted
+from camgeo.synthesis.intent import intended, intents, permitted
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
 from kin.read.nesting import Chain
@@ -240,7 +240,8 @@ def in_memory(recipe: Recipe) -> None:
     """Design, arcs at 0.001 mm, verdict at 3600 angles."""
     design = designed(recipe)
     phi, limits = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False), permitted(recipe, MICROMETRE)
-    for fit, surface in zip(Job.of(recipe, design).fits, intended(recipe, design).surfaces, strict=True):
+    surfaces = (surface for intent in intents(recipe, design) for surface in intent.surfaces)
+    for fit, surface in zip(Job.of(recipe, design).fits, surfaces, strict=True):
         arcs = fit.within("arcs", MICROMETRE)
         judge_contour(Chain(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
 

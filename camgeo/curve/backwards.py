@@ -82,7 +82,7 @@ def backwards(curve: Curve) -> Curve:
     """A curve run through the other way; what lies outside its base is then inside, as a roller's contour is."""
     shape = curve.shape
     turned = Parallel(Backwards(shape.base), -shape.distance) if isinstance(shape, Parallel) else Backwards(shape)
-    return Curve(turned, runs_backwards(curve.runs))
+    return Curve(turned, runs_backwards(curve.runs), curve)
 
 
 def runs_backwards(runs: Sequence[Run]) -> tuple[Run, ...]:

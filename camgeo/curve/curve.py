@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.numeric.errors import KinError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -196,11 +196,13 @@ class Curve:
     """A closed counter-clockwise curve: a shape, and the runs of it that are kept.
 
     One closed run is the ordinary case. Several open runs are a contour trimmed where it would undercut: they meet in
-    corners, the end of each run in the beginning of the next.
+    corners, the end of each run in the beginning of the next. `mirror` is the same curve run through the other way,
+    whose bounds are its own, of one that was made of it.
     """
 
     shape: Shape
     runs: tuple[Run, ...]
+    mirror: Curve | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
     def whole(shape: Shape) -> Curve:
@@ -244,7 +246,7 @@ class Curve:
     @cached_property
     def cells(self) -> Cells:
         """Proved bounds over the whole curve, computed when first asked for."""
-        return Cells.of(self)
+        return Cells.of(self) if self.mirror is None else self.mirror.cells.backwards()
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,); see `Shape.sample`."""
@@ -312,6 +314,12 @@ class Cells:
                 first = _sharpened(curve, part, 2 * CELLS_PER_TURN / period, MOST_CELLS // repeats)
                 return _repeated(first, np.array(stretches).reshape(repeats, -1, 2))
         return _sharpened(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
+
+    def backwards(self) -> Cells:
+        """The same of the curve run through the other way, its parameter negated and its turn too."""
+        order = [0, 1, 3, 2, 4, 5, 6, 7]  # of `Bounds`: the lower bound of the turn is the upper one of its negative
+        rows = self.rows[order, ::-1] * np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])[:, None]
+        return Cells(-self.high[::-1], -self.low[::-1], rows)
 
     def over(self, low: Array, high: Array) -> Bounds:
         """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""

@@ -18,10 +18,10 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from camgeo.curve.rates import Series
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 CELLS = 16  # of each stretch, at first
-PARTS = 4  # into which an undecided interval is divided
+PARTS, TOGETHER = 4, 64  # into which an undecided interval is divided, or so many of all intervals if they are few
 LEVELS = 24
 MOST = 20_000  # undecided intervals; then the rest is given as room
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
@@ -55,14 +55,14 @@ class Extreme:
 
 def least(figure: ShaftFigure, stretches: Array) -> Extreme:
     """Least value of a figure over stretches (m, 2), none of which spans a break."""
-    return both(figure, stretches)[0]
+    (lowest,) = _highest(figure, stretches, -1)
+    return Extreme(-lowest.value, lowest.at, lowest.room)
 
 
 def both(figure: ShaftFigure, stretches: Array) -> tuple[Extreme, Extreme]:
     """Least and greatest value of a figure over stretches (m, 2), none of which spans a break."""
-    seen = _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS))
-    lowest = _greatest(lambda tau, side=1: -figure(tau, side), seen.negative())
-    return Extreme(-lowest.value, lowest.at, lowest.room), _greatest(figure, seen)
+    lowest, highest = _highest(figure, stretches, -1, 1)
+    return Extreme(-lowest.value, lowest.at, lowest.room), highest
 
 
 def surely_positive(figure: ShaftFigure, stretches: Array) -> bool:
@@ -78,48 +78,69 @@ def surely_positive(figure: ShaftFigure, stretches: Array) -> bool:
 
 def greatest(figure: ShaftFigure, stretches: Array) -> Extreme:
     """Greatest value of a figure over stretches (m, 2), none of which spans a break; limits at breaks count."""
-    return _greatest(figure, _Seen.of(figure, *divided(stretches[:, 0], stretches[:, 1], CELLS)))
+    return _highest(figure, stretches, 1)[0]
 
 
 class _Seen(NamedTuple):
-    """Intervals (n,), the figure's derivatives (order + 1, 2 n) at their low and high ends, bounds over them."""
+    """Intervals (n,), the figure's derivatives (order + 1, 2, n) at their low and high ends, bounds over them.
+
+    All are of the figure times `sense` (n,), 1 or -1.
+    """
 
     low: Array
     high: Array
+    sense: Array
     rows: Array
     below: Array
     above: Array
 
     @staticmethod
-    def of(figure: ShaftFigure, low: Array, high: Array) -> _Seen:
+    def of(figure: ShaftFigure, low: Array, high: Array, sense: Array) -> _Seen:
         """Look at the ends, and bound."""
         rows = figure(Jet.variable(np.concatenate([low, high]), ORDER), np.repeat([1, -1], low.size)).derivatives()
-        return _Seen(low, high, rows, *figure(BallJet.variable(low, high, ORDER)).bounds())
+        below, above = figure(BallJet.variable(low, high, ORDER)).bounds()
+        rows = rows.reshape(-1, 2, low.size) * sense
+        return _Seen(low, high, sense, rows, np.where(sense > 0, below, -above), np.where(sense > 0, above, -below))
 
-    def negative(self) -> _Seen:
-        """The same of the negative figure."""
-        return _Seen(self.low, self.high, -self.rows, -self.above, -self.below)
+    def times(self, sense: int) -> _Seen:
+        """The same of the figure times a sense."""
+        if sense > 0:
+            return self
+        return _Seen(self.low, self.high, -self.sense, -self.rows, -self.above, -self.below)
 
 
-def _greatest(figure: ShaftFigure, samples: _Seen) -> Extreme:
-    best, at, size = -np.inf, float(samples.low[0]), 0.0
-    for _ in range(LEVELS):
-        low, high = samples.low, samples.high
-        size = max(size, float(np.abs(samples.rows[0]).max()))
-        tops, rows = _with_tops(figure, low, high, samples.rows)
-        places, values = np.concatenate([low, high, tops]), rows[0].ravel()
-        top = int(np.argmax(values))
-        if values[top] > best:
-            best, at = float(values[top]), float(places[top])
-        reach = _most(samples, rows)
-        open_ = ~(reach <= best + SHARPNESS * size)
+def _highest(figure: ShaftFigure, stretches: Array, *senses: int) -> list[Extreme]:
+    """Greatest value of the figure times each of the senses, looked for together: what costs is to evaluate at all."""
+    low, high = divided(stretches[:, 0], stretches[:, 1], CELLS)
+    first = _Seen.of(figure, low, high, np.ones(low.size))
+    seen = _Seen(*(np.concatenate(each, axis=-1) for each in zip(*map(first.times, senses), strict=True)))
+    best, at, size = dict.fromkeys(senses, -np.inf), dict.fromkeys(senses, float(low[0])), dict.fromkeys(senses, 0.0)
+    found: dict[int, Extreme] = {}
+    for level in range(LEVELS):
+        tops, rows = _with_tops(figure, seen)
+        reach = _most(seen, rows)
+        open_ = np.zeros(seen.low.size, dtype=bool)
+        for sense in senses:
+            own = np.flatnonzero(seen.sense == sense)
+            if not own.size:
+                continue
+            size[sense] = max(size[sense], float(np.abs(seen.rows[0][:, own]).max()))
+            places, values = np.concatenate([seen.low[own], seen.high[own], tops[own]]), rows[0][:, own].ravel()
+            top = int(np.argmax(values))
+            if values[top] > best[sense]:
+                best[sense], at[sense] = float(values[top]), float(places[top])
+            left = own[~(reach[own] <= best[sense] + SHARPNESS * size[sense])]
+            if not left.size:
+                found[sense] = Extreme(best[sense], at[sense], SHARPNESS * size[sense])
+            elif left.size > MOST or level == LEVELS - 1:
+                found[sense] = Extreme(best[sense], at[sense], float(reach[left].max()) - best[sense])
+            else:
+                open_[left] = True
         if not open_.any():
-            return Extreme(best, at, SHARPNESS * size)
-        low, high, reach = low[open_], high[open_], reach[open_]
-        if low.size > MOST:
             break
-        samples = _Seen.of(figure, *divided(low, high, PARTS))
-    return Extreme(best, at, float(reach.max()) - best)
+        low, high, owner = divided_anew(seen.low[open_], seen.high[open_])
+        seen = _Seen.of(figure, low, high, seen.sense[open_][owner])
+    return [found[sense] for sense in senses]
 
 
 def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
@@ -129,31 +150,40 @@ def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
     return knots[:, :-1].ravel(), knots[:, 1:].ravel()
 
 
-def _with_tops(figure: ShaftFigure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
+def divided_anew(low: Array, high: Array) -> tuple[Array, Array, Indices]:
+    """Undecided intervals (n,) in the parts that cost least in all, and the interval that each part is of."""
+    parts = max(PARTS, TOGETHER // low.size)
+    return *divided(low, high, parts), np.repeat(np.arange(low.size), parts)
+
+
+def _with_tops(figure: ShaftFigure, seen: _Seen) -> tuple[Array, Array]:
     """Tops (n,) that Newton's method finds inside the intervals; value and slope at low end, high end, top: (2, 3, n).
 
     Of an interval between whose ends the slope does not fall through 0 the low end stands for the top.
     """
-    at_ends = rows[:2].reshape(2, 2, low.size)
-    tops, values = low.copy(), np.concatenate([at_ends, at_ends[:, :1]], axis=1)
+    at_ends = seen.rows[:2]
+    tops, values = seen.low.copy(), np.concatenate([at_ends, at_ends[:, :1]], axis=1)
     near = np.flatnonzero((at_ends[1, 0] > 0.0) & (at_ends[1, 1] < 0.0))
     if near.size:
-        a, b = low[near], high[near]
+        a, b, sense = seen.low[near], seen.high[near], seen.sense[near]
         x = 0.5 * (a + b)
         for _ in range(NEWTON):
-            _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3]
+            before = x
+            _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3] * sense
             step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
             x = np.minimum(np.maximum(x - step, a), b)
+            if (x == before).all():
+                break
         tops[near] = x
-        values[:, 2, near] = figure(Jet.variable(x, ORDER)).derivatives()[:2]
+        values[:, 2, near] = figure(Jet.variable(x, ORDER)).derivatives()[:2] * sense
     return tops, values
 
 
-def _most(samples: _Seen, rows: Array) -> Array:
+def _most(seen: _Seen, rows: Array) -> Array:
     """Upper bound of the figure over each interval (n,), of value and slope at three places (2, 3, n)."""
-    below, above = samples.below, samples.above
+    below, above = seen.below, seen.above
     top = rows[0, :2].max(axis=0)
-    width = samples.high - samples.low
+    width = seen.high - seen.low
     dip = np.where((below[1] >= 0.0) | (above[1] <= 0.0), 0.0, np.maximum(-below[2], 0.0) * width**2 / 8.0)
     reach: Array = np.fmin(top + dip, above[0])
     slope = np.abs(rows[1]) + ROUNDING * np.abs(rows).max(axis=(0, 1))

@@ -18,7 +18,7 @@ import numpy as np
 
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
-from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
+from camgeo.curve.extremes import LEVELS, MOST, SHARPNESS, Extreme, divided_anew
 from camgeo.curve.support import is_sharp
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
@@ -38,6 +38,7 @@ ROUNDING = 1e-14  # of an integral: what its sum may be off
 STEP = 0.05  # rad of polar angle at most between two places among which others are sought
 PLACES = 2048  # of each run
 CLOSE = 1e-15  # of such a step
+NOISE = 0.05  # of what a distance is proved to: by less nothing surpasses it but rounding
 
 
 @dataclass(frozen=True)
@@ -205,9 +206,9 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         values = np.stack([value(one) for one in ends])
         g = np.stack([np.sum(one.point * one.tangent, axis=1) for one in ends])
         top = int(np.argmax(values))
-        if values.flat[top] > best:
-            best, at = float(values.flat[top]), float(np.concatenate([low, high])[top])
         tolerance = max(tolerance, SHARPNESS * float(np.abs(values).max()))
+        if values.flat[top] > best + NOISE * tolerance:  # on a circle the first place, not where rounding is greatest
+            best, at = float(values.flat[top]), float(np.concatenate([low, high])[top])
         bounds, width = cells.over(low, high), high - low
         turn = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
         bend = 0.125 * width**2
@@ -223,7 +224,7 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        low, high = divided(low, high, PARTS)
+        low, high, _ = divided_anew(low, high)
     return Extreme(best, at, float(reach.max()) - best)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -89,7 +90,7 @@ class OfLaw(ABC, Generic[SourceT]):
         """Equal parts of the motion: so has the curve, but for a turn."""
         return self.law.repeats
 
-    @property
+    @cached_property
     def steady(self) -> Array:
         """Speed and turn (m, 2) on the stretches where they are constant, as at dwells; nan on the others."""
         rests = self.law.steady

@@ -238,9 +238,10 @@ def _face_width(_: Recipe, design: Design) -> Measured:
 
 
 def _jam_margin(recipe: Recipe, design: Design) -> Measured:
-    value, at = jam_angle(design.exact)
-    guide = None if recipe.dynamics is None else recipe.dynamics.guide
-    return Measured(None if guide is None else math.degrees(guide.jam) - value, "deg", at)
+    if recipe.dynamics is None or recipe.dynamics.guide is None:
+        return Measured(None, "deg")
+    value, limit, at = jam_angle(design.exact, recipe.dynamics.guide)
+    return Measured(limit - value, "deg", at)
 
 
 def _base_radius(recipe: Recipe, _: Design) -> Measured:

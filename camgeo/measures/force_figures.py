@@ -107,6 +107,8 @@ def found_forces(recipe: Recipe, design: Design) -> Forces | None:
     if running is None:
         return None
     try:
+        if running.jam_deg is not None:  # which a check tells
+            return Forces({"rpm": running.train.rpm, "jams_at_deg": running.jam_deg}, ())
         found = extremes_of(running)
     except RoughError as error:
         raise recipe.error("dynamics", f"{ABRUPT}: {error}") from error
@@ -136,6 +138,8 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     if running is None:
         return {}
     try:
+        if running.jam_deg is not None:
+            return dict.fromkeys(FORCES, Measured(None, "N", running.jam_deg, detail="the stem jams in its guide"))
         found = extremes_of(running)
     except RoughError:
         return dict.fromkeys(FORCES, Measured(None, "N", detail=ABRUPT))

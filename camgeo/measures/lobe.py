@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
+    from kin.numeric.monotone import Pieces
 
 CRANK = 2.0  # turns of the crank for one of the cam
 NODES, WEIGHTS = gauss(12)
@@ -58,11 +59,8 @@ class EventError(KinError, ValueError):
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> Event:
     """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
-    position = exact.motion
     try:
-        made = pieces(
-            cells(lambda t: position.by_parameter(t, 0), between(0.0, TURN, exact.breaks.tolist()), share=SHARE)
-        )
+        made = _pieces(exact)
     except RoughError as error:
         raise EventError("the motion changes too abruptly to be resolved") from error
     datum, _ = made.least()
@@ -70,8 +68,15 @@ def event_of(exact: ExactCam, lift: float) -> Event:
     if len(crossings) != 2:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
     first, last = crossings.tolist()
-    above = float(position.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
+    above = float(exact.motion.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
     return Event(lift, first, last) if above else Event(lift, last, first + TURN)
+
+
+@lru_cache(maxsize=16)
+def _pieces(exact: ExactCam) -> Pieces:
+    """The follower's position over a turn; raises RoughError."""
+    position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
+    return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
 
 
 def _duration(event: Event, _: ExactCam) -> Measured:

@@ -85,6 +85,11 @@ class Running(ABC):
     def own_section(self) -> dict[str, object]:
         """What the report's section has besides extremes."""
 
+    @property
+    def jam_deg(self) -> float | None:
+        """Shaft angle in degrees at which a stem jams in its guide, None where none does."""
+        return None
+
     def mean_force(self, index: int) -> tuple[float, float] | None:  # noqa: ARG002
         """Mean force that the roller of a contact bears over its own turns, N, and its turns per turn of the shaft."""
         return None

@@ -70,9 +70,7 @@ class FollowerRunning(Running):
         lines = self.turn.lines(rows)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
-        pushes = [sense * self.senses[0] for sense in self.senses]
-        levers = [self._lever(line, y, push) for line, push in zip(lines, pushes, strict=True)]
-        normal = np.array([force / levers[0]]) if len(lines) == 1 else self._pair(force, rows) / np.array(levers)
+        normal = (force if len(lines) == 1 else self._pair(force, rows)) / self._levers(lines, y)
         shaft = np.array([side * line.shaft for side, line in zip(self.sides, lines, strict=True)])
         torque: Array = PER_MM * np.sum(normal * shaft, axis=0)
         pressure, speeds = self._pressure(normal, lines), self._roller_rpm(lines)
@@ -86,31 +84,63 @@ class FollowerRunning(Running):
             return elastic(self.turn, given, rows).split(force / scale) * scale
         return np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
 
-    def _lever(self, line: ContactLine, y: Array, push: int) -> Array:
-        """Lever of a contact's normal force along the travel, 1 or m; of a stem less the friction of its guide."""
-        guide = self.train.guide
-        if guide is None:
-            return line.lever * (PER_MM if self.turn.swings else 1.0)
-        ahead, length = self._overhang(y), guide.length
-        drag = push * np.sign(y[1]) * guide.friction * (2.0 * ahead + length) / length
-        lever: Array = line.lever - drag * np.abs(line.normal[:, 1])
-        return lever
+    def _levers(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """Lever of each contact's normal force along the travel, 1 or m (m, n); on a stem less its guide's friction.
 
-    def _overhang(self, y: Array) -> Array:
-        guide = self.train.guide
-        ahead = 0.0 if guide is None else guide.overhang
-        overhang: Array = ahead - (y[0] - self.lowest) / self.unit
-        return overhang
+        Not a number where that leaves nothing: the stem jams.
+        """
+        levers = np.array([line.lever for line in lines]) * (PER_MM if self.turn.swings else 1.0)
+        if self.train.guide is None:
+            return levers
+        levers = self._free(lines, y)
+        return np.where(levers > 0.0, levers, np.nan)
+
+    def _free(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """What the friction of a guide leaves of each contact's lever, (m, n)."""
+        friction = 0.0 if self.train.guide is None else self.train.guide.friction
+        rubbing = np.abs(self._at_ends(lines, y)).sum(axis=1)
+        pushes = np.array(self.senses)[:, None] * self.senses[0]
+        found: Array = np.array([line.lever for line in lines]) - pushes * np.sign(y[1]) * friction * rubbing
+        return found
+
+    def _at_ends(self, lines: Sequence[ContactLine], y: Array) -> Array:
+        """What each contact's normal force of 1 bears on the guide's near end and far one, across the stem: (m, 2, n).
+
+        A force across the stem bears by its overhang, one along it by its distance from the stem's axis. The axes of a
+        contact that is turned see the stem from beyond the shaft.
+        """
+        guide, contacts = self.train.guide, self.design.follower.contacts
+        if guide is None:
+            return np.zeros((len(lines), 2, y.shape[1]))
+        offset, risen = self.design.follower.offset, (y[0] - self.lowest) / self.unit
+        found = []
+        for line, contact in zip(lines, contacts, strict=True):
+            beyond = contacts[0].zero + contact.zero if contact.turned else 0.0
+            ahead, way = guide.overhang + beyond - risen, math.cos(contact.turned)
+            across, couple = way * line.normal[:, 1], line.normal[:, 0] * (line.centre[:, 1] - way * offset)
+            found.append([across * (ahead + guide.length) + couple, across * ahead + couple])
+        return np.array(found) / guide.length
+
+    @cached_property
+    def jam_deg(self) -> float | None:
+        """Shaft angle in degrees at which the stem jams in its guide, None where it does not."""
+        if self.train.guide is None:
+            return None
+
+        def free(phi: Array) -> Array:
+            rows = self.turn.rows(phi)
+            return self._free(self.turn.lines(rows), self.position(rows))
+
+        least = min((one for one, _ in self.turn.extremes(free)), key=lambda one: one.value)
+        return least.at_deg if least.value <= 0.0 else None
 
     def _guide_forces(self, y: Array, normal: Array, lines: Sequence[ContactLine]) -> dict[str, Array]:
         """Reactions of the guide at its near end and its far one, N (n,), across the stem; none without."""
-        guide = self.train.guide
-        if guide is None:
+        if self.train.guide is None:
             return {}
-        each = zip(self.sides, normal, lines, strict=True)
-        side = np.sum([side * one * line.normal[:, 1] for side, one, line in each], axis=0)
-        ahead = self._overhang(y)
-        return {"guide_a": side * (ahead + guide.length) / guide.length, "guide_b": side * ahead / guide.length}
+        pushed = np.array(self.sides)[:, None] * normal
+        near, far = np.sum(pushed[:, None] * self._at_ends(lines, y), axis=0)
+        return {"guide_a": near, "guide_b": far}
 
     def _pressure(self, normal: Array, lines: Sequence[ContactLine]) -> Array | None:
         found = []

@@ -113,6 +113,5 @@ _STAGES = {
     "trace": "trace",
     "forces": "forces",
 }
-_GAPS = frozenset(
-    {"contacts", "inspection", "trace"}
-)  # nothing is touched there, nothing is to be reported, nothing moves
+# nothing is touched there, nothing is to be reported, nothing moves, and a stem that jams has no force
+_GAPS = frozenset({"contacts", "inspection", "trace", "forces"})

@@ -20,16 +20,20 @@ MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
 @dataclass(frozen=True)
 class StemGuide:
-    """The guide of a stem, mm: how far the contact stands out before it, its length, and its friction."""
+    """The guide of a stem, mm: how far the contact stands out before it, its length B, and its friction mu."""
 
     overhang: float
     length: float
     friction: float
 
+    def jam(self, beyond: float = 0.0) -> float:
+        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B)), A more by `beyond`."""
+        return math.atan2(self.length, self.friction * (2.0 * (self.overhang + beyond) + self.length))
+
     @property
-    def jam(self) -> float:
-        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B))."""
-        return math.atan2(self.length, self.friction * (2.0 * self.overhang + self.length))
+    def reach(self) -> float:
+        """Distance of a flat face's contact from the stem's axis, mm, at which no force moves the stem: B/(2 mu)."""
+        return self.length / (2.0 * self.friction)
 
 
 @dataclass(frozen=True)
@@ -155,7 +159,11 @@ DYNAMICS = Table(
         mapping(
             "guide",
             "guide of the stem, in which it must not jam",
-            length("overhang", "how far the roller's centre stands out before the guide, at its lowest", required=True),
+            length(
+                "overhang",
+                "how far the roller's centre, or the flat face, stands out before the guide, at its lowest",
+                required=True,
+            ),
             length("length", "length of the guide", required=True),
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
@@ -187,9 +195,6 @@ DYNAMICS = Table(
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
     _check_spring(train, reader)
-    if "guide" in train and "stem" not in reader.offers:
-        remedy = "leave it out, or give a cam of kind disc whose follower is round and has no arm"
-        reader.fault_at("dynamics.guide", "the follower has no stem that a roller drives", None, remedy)
     _check_coupler(train, reader)
     if "backlash" in train and "rate" in train:
         key = reader.written("dynamics.backlash").removeprefix("dynamics.")
@@ -204,6 +209,19 @@ def check_train(train: Values, reader: Reader) -> None:
             most = train["damping"] * MOST_DAMPING / ratio
             remedy = f"give less than {downward(most)}"
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
+
+
+def check_guide(values: Values, reader: Reader) -> None:
+    """Note a guide that is not found for the follower of a cam."""
+    if "dynamics.guide" not in reader.marks:
+        return
+    if reader.offers.isdisjoint({"stem", "stem-face"}):
+        remedy = "leave it out, or give a cam of kind disc whose follower has no arm"
+        reader.fault_at("dynamics.guide", "the follower has no stem of its own", None, remedy)
+    elif values.get("cam", {}).get("follower", {}).get("tilt"):
+        reader.fault_at(
+            "dynamics.guide", "the friction of a tilted face is not found", None, "leave it out, or the tilt"
+        )
 
 
 def _check_coupler(train: Values, reader: Reader) -> None:

@@ -80,7 +80,7 @@ NEEDS: dict[Needs, str] = {
     "arm": "an arm that a cam of kind disc works",
     "stem": "a stem that a cam of kind disc works",
     "stem-face": "a flat face on a stem",
-    "guide": "dynamics.guide",
+    "guide": "dynamics.guide of a round follower",
     "wanted": "cam.delta.law",
     "speed": "a follower without a linkage, and dynamics.rpm",
     "stiff": "cam.preload.stiffness",
@@ -356,7 +356,9 @@ def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]
             return "linkage" not in paths
         case "speed":
             return "linkage" not in paths and "dynamics.rpm" in paths
-        case "guide" | "wanted" | "stiff":
+        case "guide":
+            return "dynamics.guide" in paths and "stem" in offers
+        case "wanted" | "stiff":
             return NEEDS[needs] in paths
         case "density":
             return "part.density" in paths

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam, Proof
     from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
+    from camgeo.recipe.dynamics import StemGuide
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
@@ -99,26 +100,43 @@ def needed_width(surface: Surface) -> tuple[float, float]:
     return 2.0 * (abs(worst.value) + worst.slack), degrees(worst.at)
 
 
-def jam_angle(exact: ExactCam) -> tuple[float, float]:
-    """Greatest pressure angle at which the stem is pushed on, degrees, and its shaft angle.
+def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
+    """Pressure angle with which the stem is pushed on, the one at which it jams, degrees, and the shaft angle.
 
-    On the rise that is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot.
+    On the rise the former is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot. Of
+    two contacts it is the one that is nearer to jamming; the second stands beyond the shaft.
     """
-    proved = [slope[1] for surface in exact.surfaces if (slope := surface.extremes("slope")) is not None]
-    if not proved:
+    first, found = exact.follower.contacts[0], []
+    for surface in exact.surfaces:
+        if (slope := surface.extremes("slope")) is not None:
+            contact = next(one for one in exact.follower.contacts if one.surface == surface.name)
+            beyond = first.zero + contact.zero if contact.turned else 0.0
+            steepest = max(slope[1].value + slope[1].slack, exact.follower.lean)
+            found.append((math.degrees(math.atan(steepest)), math.degrees(guide.jam(beyond)), degrees(slope[1].at)))
+    if not found:
         raise TypeError("no stem is led in a guide")
+    return max(found, key=lambda one: one[0] - one[1])
+
+
+def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | None:
+    """The same of a face without tilt, by how far from its stem's axis it is pushed, mm; None of other touches.
+
+    The contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins.
+    """
+    proved = [place[1] for surface in exact.surfaces if (place := surface.extremes("contact")) is not None]
+    if not proved:
+        return None
     most = max(proved, key=lambda one: one.value + one.slack)
-    steepest = max(most.value + most.slack, exact.follower.lean)
-    return math.degrees(math.atan(steepest)), degrees(most.at)
+    return max(most.value + most.slack, abs(exact.follower.offset)), guide.reach, degrees(most.at)
 
 
 def guide_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
     """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
     found, train, wheel = [], recipe.dynamics, recipe.wheel
     if train is not None and train.guide is not None:
-        value, at = jam_angle(exact)
-        limit = math.degrees(train.guide.jam)
-        found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
+        aside = _aside(exact, train.guide)
+        value, limit, at = aside or jam_angle(exact, train.guide)
+        found.append(Check(JAM.name, value < limit, value, limit, "mm" if aside else "deg", at))
     if wheel is None:
         return found
     for surface, contour in contours:

@@ -340,11 +340,13 @@ def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[
     """The disc with its body, and the checks of its walls; without its least walls there is no part to draw."""
     if not disc.contours:
         return disc, []
-    from camgeo.synthesis.part.body import body_of
+    from camgeo.synthesis.part.body import Body, body_of
     from camgeo.synthesis.part.checks import bore_check, part_checks
     from camgeo.synthesis.part.walls import Looks
 
     part, shaft_deg = recipe.part, exact.motion.shaft_deg
+    if part.plain and part.bore is None:
+        return replace(disc, body=Body(part.thickness, (), pocket=disc.surfaces[0].surface.depth)), []
     looks = [Looks.of(contour, surface.side, surface.name) for surface, contour in disc.contours]
     body = body_of(part, looks[0], disc.surfaces[0].surface.depth)
     if not part.plain:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 RUN = 8  # pieces under one chord, chords under the next
 BLOCK = 1024  # points at a time
+FEW_PAIRS = 1024  # of a point and a piece: each is looked at
 MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
 ROUNDING = (
     1e-13  # of the greatest coordinate: by which bounds are widened, so that every piece equally near is looked at
@@ -32,6 +33,19 @@ def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
     Of pieces equally near it is the first. `arcs` is best in the order of a chain, where neighbours lie together. Cost
     grows as m log n.
     """
+    piece, _, distance = _foot(arcs, points)
+    return piece, distance
+
+
+def _foot(arcs: Arcs, points: Array) -> tuple[Indices, Array, Array]:
+    """The piece nearest to each of the points (m, 2), the foot's arc length on it, and the distance, (m,) each."""
+    if len(arcs) * len(points) <= FEW_PAIRS:
+        shape = len(points), len(arcs)
+        every = arcs.take(np.tile(np.arange(shape[1]), shape[0]))
+        s, distance = (row.reshape(shape) for row in nearest_on(every, np.repeat(points, shape[1], axis=0)))
+        piece = distance.argmin(axis=1)
+        each = np.arange(shape[0]), piece
+        return piece, s[each], distance[each]
     if arcs not in _CHORDS:
         _CHORDS[arcs] = _levels(arcs)
     levels = _CHORDS[arcs]
@@ -41,7 +55,7 @@ def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
     return _joined(blocks)
 
 
-def _nearest(arcs: Arcs, levels: list[_Chords], points: Array, slack: float) -> tuple[Indices, Array]:
+def _nearest(arcs: Arcs, levels: list[_Chords], points: Array, slack: float) -> tuple[Indices, Array, Array]:
     count = len(levels[-1].start)
     query, run = np.repeat(np.arange(len(points)), count), np.tile(np.arange(count), len(points))
     place, best = _places(points), np.full(len(points), np.inf)
@@ -58,15 +72,18 @@ def _nearest(arcs: Arcs, levels: list[_Chords], points: Array, slack: float) -> 
             query = np.repeat(query, RUN)
             real = run < len(levels[depth - 1].start)
             query, run = query[real], run[real]
-    _, distance = nearest_on(arcs.take(run), points[query])
+    s, distance = nearest_on(arcs.take(run), points[query])
     best = np.minimum.reduceat(distance, _first_of_each(query))
     chosen = np.flatnonzero(distance == best[query])
     chosen = chosen[_first_of_each(query[chosen])]
-    return run[chosen], distance[chosen]
+    return run[chosen], s[chosen], distance[chosen]
 
 
-def _joined(blocks: list[tuple[Indices, Array]]) -> tuple[Indices, Array]:
-    return np.concatenate([piece for piece, _ in blocks]), np.concatenate([distance for _, distance in blocks])
+def _joined(blocks: list[tuple[Indices, Array, Array]]) -> tuple[Indices, Array, Array]:
+    if len(blocks) == 1:
+        return blocks[0]
+    piece, s, distance = zip(*blocks, strict=True)
+    return np.concatenate(piece), np.concatenate(s), np.concatenate(distance)
 
 
 def signed_distance(chain: Arcs, points: Array) -> Array:
@@ -76,17 +93,15 @@ def signed_distance(chain: Arcs, points: Array) -> Array:
 
 def feet(chain: Arcs, points: Array) -> tuple[Array, Array]:
     """Signed distance of points (m, 2) as `signed_distance` gives it, and the nearest points of the chain (m, 2)."""
-    piece, distance = nearest(chain, points)
+    piece, s, distance = _foot(chain, points)
     here = chain.take(piece)
-    s, _ = nearest_on(here, points)
     side = radial(here, points)
     at_start, at_end = s <= 0.0, s >= here.length
-    # At a corner the side of one piece may mislead; the two normals together do not.
-    before = chain.take(np.where(at_start, piece - 1, piece))
-    after = chain.take(np.where(at_end, (piece + 1) % len(chain), piece))
-    corner = at_start | at_end
-    bisector = right(before.end_tangents) + right(after.tangent)
-    side = np.where(corner, dot(points - after.start, bisector), side)
+    corner = np.flatnonzero(at_start | at_end)
+    if corner.size:  # there the side of one piece may mislead; the two normals together do not
+        before = chain.take((piece - at_start)[corner])
+        after = chain.take(((piece + at_end) % len(chain))[corner])
+        side[corner] = dot(points[corner] - after.start, right(before.end_tangents) + right(after.tangent))
     return np.copysign(distance, side), here.points(s)
 
 

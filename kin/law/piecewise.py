@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.segment import Affine, Constant, Power, Round
+from kin.law.segment import Affine, Alike, Constant, Round
 from kin.numeric.arrays import Array, Indices
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
 from kin.numeric.interval import Ball, hull
-from kin.numeric.jet import finite, horner
+from kin.numeric.jet import finite
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -43,13 +43,6 @@ class _Group:
     function: Stretch
     ways: Array | None
 
-    @staticmethod
-    def of(function: Stretch, members: list[Stretch], places: list[int], count: int) -> _Group:
-        """Group stretches that share a function, at `places` among `count`."""
-        if not any(isinstance(member, Affine) for member in members):
-            return _Group(function, None)
-        return _Group(function, _ways(members, places, count))
-
     def __call__(self, t: Series, index: Indices) -> Series:
         """Apply the function to points or intervals t (n,), each in its stretch (n,)."""
         if self.ways is None:
@@ -61,26 +54,16 @@ _AS_IS = (0.0, 1.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
-class _Powers:
-    """Stretches that are polynomials of one length, each moved its own way; `coefficients` is (k, m), lowest first."""
+class _Alike:
+    """Stretches of one kind, each with its column of numbers (k, m) and moved its own way."""
 
-    coefficients: Array
+    first: Alike
+    numbers: Array
     ways: Array
 
     def __call__(self, t: Series, index: Indices) -> Series:
-        """Apply each stretch's polynomial to its points or intervals t (n,), in stretches (n,)."""
-        return _moved(_Horner(self.coefficients[:, index]), self.ways[:, index], t)
-
-
-@dataclass(frozen=True, eq=False)
-class _Horner:
-    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
-
-    rows: Array
-
-    def __call__(self, u: Series, /) -> Series:
-        """Give each polynomial."""
-        return horner(self.rows, u)
+        """Apply to each of the points or intervals t (n,) the function of its stretch (n,)."""
+        return _moved(self.first.together(self.numbers[:, index]), self.ways[:, index], t)
 
 
 def _moved(function: Stretch, ways: Array, t: Series) -> Series:
@@ -295,9 +278,9 @@ class Piecewise:
         return index, np.where(on_knot, knots[near], x), turns
 
     @cached_property
-    def _groups(self) -> tuple[Indices, tuple[_Group | _Powers | _Round, ...]]:
-        """For each stretch its group, and the groups: stretches that are one function moved in several ways."""
-        found: dict[Stretch | int, list[int]] = {}  # polynomials by their length
+    def _groups(self) -> tuple[Indices, tuple[_Group | _Alike | _Round, ...]]:
+        """For each stretch its group, and the groups: stretches of a kind, or one function moved in several ways."""
+        found: dict[Stretch | tuple[str, int], list[int]] = {}
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
         for i, function in enumerate(self.functions):
@@ -306,18 +289,21 @@ class Piecewise:
                 arcs.append(i)
             else:
                 bare = _bare(function)
-                key = len(bare.coefficients) if isinstance(bare, Power) else bare
-                found.setdefault(key, []).append(i)
-        groups: list[_Group | _Powers | _Round] = []
-        for number, (shared, members) in enumerate(found.items()):
+                found.setdefault(bare.kind if isinstance(bare, Alike) else bare, []).append(i)
+        groups: list[_Group | _Alike | _Round] = []
+        for number, members in enumerate(found.values()):
             owner[members] = number
             stretches = [self.functions[i] for i in members]
-            if isinstance(shared, int):
-                rows = np.zeros((shared, owner.size))
-                rows[:, members] = np.transpose([_bare(f).coefficients for f in stretches])  # type: ignore[attr-defined]
-                groups.append(_Powers(rows, _ways(stretches, members, owner.size)))
+            first, ways = _bare(stretches[0]), _ways(stretches, members, owner.size)
+            if isinstance(first, Alike):
+                rows = np.zeros((len(first.numbers), owner.size))
+                rows[:, members] = np.transpose(
+                    [bare.numbers for f in stretches if isinstance(bare := _bare(f), Alike)]
+                )
+                groups.append(_Alike(first, rows, ways))
             else:
-                groups.append(_Group.of(shared, stretches, members, owner.size))
+                as_is = not any(isinstance(member, Affine) for member in stretches)
+                groups.append(_Group(first, None if as_is else ways))
         if arcs:
             owner[arcs] = len(groups)
             groups.append(_Round(parts))

@@ -7,12 +7,16 @@ One function object serves points (`kin.numeric.elementary.Jet`: exact derivativ
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
 from kin.numeric.elementary import BallJet, Jet, cos, sin
+from kin.numeric.jet import horner
 from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
 
 Series = TypeVar("Series", Jet, BallJet)
 _MANY = 4  # harmonics: of more the terms are enclosed together
@@ -32,6 +36,24 @@ class Round(ABC):
     @abstractmethod
     def first_harmonic(self) -> tuple[float, float, float]:
         """Mean, x and y."""
+
+
+class Alike(ABC):
+    """A stretch that is told by a few numbers; all of a kind are worked out together."""
+
+    @property
+    @abstractmethod
+    def kind(self) -> tuple[str, int]:
+        """What the stretches that are worked out together have in common."""
+
+    @property
+    @abstractmethod
+    def numbers(self) -> tuple[float, ...]:
+        """The numbers."""
+
+    @abstractmethod
+    def together(self, rows: Array) -> Stretch:
+        """What applies to each of n points or intervals the stretch of this kind with its column of numbers (k, n)."""
 
 
 @dataclass(frozen=True)
@@ -87,17 +109,39 @@ class Affine:
 
 
 @dataclass(frozen=True)
-class Power:
-    """Sum of coefficient[k] u**k by Horner's scheme; polynomials of one length are worked out together."""
+class Power(Alike):
+    """Sum of coefficient[k] u**k by Horner's scheme."""
 
     coefficients: tuple[float, ...]
 
+    @property
+    def kind(self) -> tuple[str, int]:
+        """Polynomials of one length."""
+        return "power", len(self.coefficients)
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """The coefficients."""
+        return self.coefficients
+
+    def together(self, rows: Array) -> Stretch:
+        """Polynomials by their coefficients."""
+        return _Horner(rows)
+
     def __call__(self, u: Series, /) -> Series:
         """Give the polynomial."""
-        total = u.constant(self.coefficients[-1])
-        for coefficient in self.coefficients[-2::-1]:
-            total = total * u + coefficient
-        return total
+        return horner(self.coefficients, u)
+
+
+@dataclass(frozen=True, eq=False)
+class _Horner:
+    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
+
+    rows: Array
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give each polynomial."""
+        return horner(self.rows, u)
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from __future__ import annotations
 import dataclasses
 import sys
 from dataclasses import KW_ONLY, MISSING, Field, FrozenInstanceError, field, fields, replace
-from functools import cached_property
+from functools import cache, cached_property
 from operator import attrgetter
 from reprlib import recursive_repr
 from threading import RLock
-from types import ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import TYPE_CHECKING, ClassVar, NoReturn, TypeVar
 
 if TYPE_CHECKING:
@@ -70,24 +70,34 @@ class _Shape:
     def compile(self) -> None:
         """Make `__init__`; what a factory makes is MISSING where it is not given."""
         placed, named, body = ["self"], ["*"], ["pass"]
-        for name, entry in self.fields.items():
-            value, required = name, entry.default is MISSING
-            if entry.default_factory is not MISSING:
-                value, required = f"fields[{name!r}].default_factory()", False
-                value += f" if {name} is MISSING else {name}" if entry.init else ""
+        by_place: list[object] = []
+        by_key: dict[str, object] = {}
+        for number, (name, entry) in enumerate(self.fields.items()):
+            value, factory = f"_{number}", entry.default_factory is not MISSING
             if entry.init:
-                (named if entry.kw_only else placed).append(name if required else f"{name}=fields[{name!r}].default")
-            if entry.init or value != name:
-                body.append(f"put(self, {name!r}, {value})")
+                (named if entry.kw_only else placed).append(value)
+                if (factory or entry.default is not MISSING) and entry.kw_only:
+                    by_key[name] = entry.default
+                elif factory or entry.default is not MISSING:
+                    by_place.append(entry.default)
+            if factory:
+                value = f"fields[{value!r}].default_factory()" + f" if {value} is MISSING else {value}" * entry.init
+            if entry.init or factory:
+                body.append(f"put(self, '_{number}', {value})")
         if hasattr(self.kind, "__post_init__"):
             body.append("self.__post_init__()")
         parameters = ", ".join(placed + (named if len(named) > 1 else []))
-        names: dict[str, Callable[..., None]] = {}
+        code = _compiled(f"def __init__({parameters}):\n " + "\n ".join(body))
+        names = {f"_{number}": name for number, name in enumerate(self.fields)}
+        code = code.replace(
+            co_varnames=tuple(names.get(name, name) for name in code.co_varnames),
+            co_consts=tuple(names.get(value, value) for value in code.co_consts),
+        )
         scope = {"put": object.__setattr__, "MISSING": MISSING, "fields": self.fields}
-        text = f"def __init__({parameters}):\n " + "\n ".join(body)
-        exec(text, scope, names)  # noqa: S102 - of the fields' names alone, as the standard library does
-        names["__init__"].__qualname__ = f"{self.kind.__qualname__}.__init__"
-        type.__setattr__(self.kind, "__init__", names["__init__"])
+        function = FunctionType(code, scope, "__init__", tuple(by_place))
+        function.__kwdefaults__ = by_key
+        function.__qualname__ = f"{self.kind.__qualname__}.__init__"
+        type.__setattr__(self.kind, "__init__", function)
 
     def standardise(self) -> None:
         """Let the standard library see the class; it looks into the class's module, which may be unloaded by then."""
@@ -105,6 +115,14 @@ class _Shape:
         finally:
             if unloaded:
                 del sys.modules[module]
+
+
+@cache
+def _compiled(text: str) -> CodeType:
+    """Code of a function; that of records with as many fields is compiled once."""
+    names: dict[str, FunctionType] = {}
+    exec(text, names)  # noqa: S102 - of numbers alone
+    return names["__init__"].__code__
 
 
 class _Later:

@@ -16,11 +16,11 @@ from support.discs import CONTOURS, DEGREE, TURN, displaced, inline, offset, seg
 from support.places import RECIPES
 
 from camgeo.cams.least_size import least_prime, least_stem
-from camgeo.curve.backwards import Backwards, least_hollow
+from camgeo.curve.backwards import Backwards, backwards, least_hollow
 from camgeo.curve.curvature import least_radius, reversals
 from camgeo.curve.curve import Curve
 from camgeo.curve.disc import StraightFace, SwingingFace, face_shape
-from camgeo.curve.extremes import greatest, least
+from camgeo.curve.extremes import both, greatest, least
 from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.rates import stretches
@@ -324,6 +324,21 @@ def test_a_knife_edge_never_undercuts_by_bending() -> None:
     assert undercuts(Curve.whole(Parallel(hollow_pitch(), 0.0))) == ()
 
 
+@pytest.mark.parametrize("name", ["disc-roller", "disc-knife-edge"])
+def test_bounds_of_a_curve_run_the_other_way_are_those_of_the_curve(name: str) -> None:
+    curve = load(RECIPES / f"{name}.yaml").cam.exact().surfaces[0].curve
+    turned = backwards(curve)
+    cells, made = turned.cells, Curve(turned.shape, turned.runs).cells
+    assert cells.low[0] == turned.runs[0].low
+    assert np.array_equal(cells.high[:-1], cells.low[1:])
+    assert cells.rows == pytest.approx(made.rows, rel=1e-6, abs=1e-9)
+    share = np.linspace(1e-6, 1.0 - 1e-6, 7)
+    at = turned.sample((cells.low[:, None] + (cells.high - cells.low)[:, None] * share).ravel())
+    speed, turn = at.speed.reshape(-1, 7).T, at.turn.reshape(-1, 7).T
+    assert ((cells.rows[0] - 1e-9 <= speed) & (speed <= cells.rows[1] + 1e-9)).all()
+    assert ((cells.rows[2] - 1e-9 <= turn) & (turn <= cells.rows[3] + 1e-9)).all()
+
+
 def test_extremes_are_proved_and_reached() -> None:
     """A figure with a top of its own height at a place known: 3 sin t + 0.1 sin 30 t, and its enclosure."""
     from kin.numeric import elementary
@@ -338,6 +353,8 @@ def test_extremes_are_proved_and_reached() -> None:
         assert found.value == pytest.approx(seen, abs=1e-10)
         assert abs(found.value) >= abs(seen)
         assert found.room < 1e-12
+    turn = np.array([[0.0, TURN]])
+    assert both(figure, turn) == (least(figure, turn), greatest(figure, turn))
     assert greatest(lambda tau, side=1: tau * 0.0 + 2.0, np.array([[0.0, 1.0]])).value == 2.0  # noqa: ARG005
 
 

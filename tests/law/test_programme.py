@@ -10,7 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.programmes import Segment, law, programme
 
-from kin.law.programme import LAWS, IntentError, polynomial_law
+from kin.law.piecewise import Piecewise
+from kin.law.programme import LAWS, AcceleratedPiece, IntentError, polynomial_law
+from kin.law.segment import Affine
+from kin.numeric.elementary import BallJet, Jet
 
 # Rothbart, Cam Design Handbook (2004), chapters 2, 3: peak velocity, acceleration, jerk for unit stroke and interval.
 PUBLISHED = {
@@ -283,3 +286,25 @@ def test_programmes_are_their_laws(segments, share):
         u = min(max((t - ends[i]) / segment.over, 0.0), 1.0)
         level += (1 if segment.kind == "rise" else -1) * segment.stroke * segment.law.derivatives(u, 0)[0, 0]
     assert made.motion.derivatives(t, 0)[0, 0] == pytest.approx(level, abs=1e-11)
+
+
+@pytest.mark.parametrize("shape", ["sin", "cos", "flat"])
+def test_pieces_of_one_shape_together_are_what_each_is_alone(shape):
+    pieces = [
+        AcceleratedPiece(0.0, 0.0, 0.0, 3.0, 4.0, shape),
+        AcceleratedPiece(1.25, 0.3, -0.7, 5.0, 2.0, shape),
+        AcceleratedPiece(2.0, 0.0, 0.4, -1.5, 0.9, shape),
+    ]
+    members = [Affine(piece, offset=k, scale=2.0 - k, start=0.1 * k, width=1.0 + k) for k, piece in enumerate(pieces)]
+    knots = np.arange(4.0)
+    t = np.linspace(0.01, 2.99, 40)
+    together, owner = Piecewise(knots, tuple(members)).derivatives(t, 4), t.astype(int)
+    for k, member in enumerate(members):
+        alone = Piecewise(knots[k : k + 2], (member,)).derivatives(t[owner == k], 4)
+        assert np.array_equal(together[:, owner == k], alone)
+        # against the same arithmetic on a jet that is not straight, and on intervals
+        jet = member(Jet.variable(t[owner == k], 4) + 0.0 * Jet.variable(t[owner == k], 4) ** 2)
+        assert jet.derivatives() == pytest.approx(alone, rel=1e-13, abs=1e-13)
+        below, above = member(BallJet.variable(t[owner == k], t[owner == k], 4)).bounds()
+        assert (below <= alone + 1e-13).all()
+        assert (alone - 1e-13 <= above).all()

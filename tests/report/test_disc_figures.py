@@ -413,8 +413,8 @@ def test_a_shoe_is_no_roller() -> None:
 
 
 def test_a_guide_without_a_stem() -> None:
-    for follower in ("kind: flat", "kind: roller, radius: 8, arm: {length: 65, pivot: 80}"):
-        with pytest.raises(RecipeErrors, match=r"dynamics\.guide: the follower has no stem that a roller drives"):
+    for follower in ("kind: flat, arm: {pivot: 110, face: 5}", "kind: roller, radius: 8, arm: {length: 65, pivot: 80}"):
+        with pytest.raises(RecipeErrors, match=r"dynamics\.guide: the follower has no stem of its own"):
             load_text(disc(follower, more=TRAIN), "cam.yaml")
 
 

@@ -143,7 +143,7 @@ def forces(recipe: Recipe, design: Design) -> list[Plot]:
     from camgeo.measures.running_forces import running_of
 
     running = None if recipe.dynamics is None else running_of(recipe, design)
-    if running is None:
+    if running is None or running.jam_deg is not None:
         return []
     state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
     normal = tuple(Series(name, row) for name, row in zip(running.turn.names, state.normal, strict=True))

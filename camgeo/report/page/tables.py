@@ -192,6 +192,10 @@ def forces(report: dict[str, Any]) -> str:
     section = report.get("forces")
     if section is None:
         return ""
+    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
+    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
+    if "jams_at_deg" in section:
+        return f"{head}<p>{told} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
     rows: list[_Row] = []
     ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
     ranges += [("torque of the shaft", section["torque"])]
@@ -208,8 +212,6 @@ def forces(report: dict[str, Any]) -> str:
     rows += [
         (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
     ]
-    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
-    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
     return f"{head}<p>{told}</p>{_figures('Forces', rows)}</section>"
 
 

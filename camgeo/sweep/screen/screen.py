@@ -144,7 +144,7 @@ class Cams:
         if train is None or train.guide is None or lean is None:
             raise TypeError("no stem is led in a guide")
         steepest = np.maximum(self.most(self.contours.slope), lean[:, 0])
-        return math.degrees(train.guide.jam) - np.degrees(np.arctan(steepest))
+        return math.degrees(train.guide.jam()) - np.degrees(np.arctan(steepest))
 
     def spin(self) -> Array:
         """Greatest speed of the roller."""
