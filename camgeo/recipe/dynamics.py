@@ -216,7 +216,7 @@ DYNAMICS = Table(
         mapping(
             "coupler",
             "the square frame of a linkage as a body, for a rigid train",
-            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST),
+            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST, unit=Kind.MASS),
             Field(
                 "centre",
                 Kind.POINT,
