@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
 from camgeo.motions.load_table import LOAD
-from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.recipe.linkage import TURNING
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.motions.load_table import LoadTable
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
@@ -36,6 +40,24 @@ class StemGuide:
 
 
 @dataclass(frozen=True)
+class CouplerBody:
+    """The square frame as a body: kg, its centre in the frame's axes from the frame's middle, mm, kg m^2 about it."""
+
+    mass: float
+    centre: tuple[float, float] = (0.0, 0.0)
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True)
+class Material:
+    """Young's modulus, N/mm^2, Poisson's ratio, and the pressure in contacts that a recipe says it bears, N/mm^2."""
+
+    modulus: float
+    poisson: float
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
 class Dynamics:
     """A follower train in SI, but for `backlash`, mm.
 
@@ -51,25 +73,54 @@ class Dynamics:
     rate: float = 0.0
     backlash: float | None = None
     guide: StemGuide | None = None
+    coupler: CouplerBody | None = None
     transient: bool = False
     load: str | LoadTable = "0"
     least_force: float | None = None
     width: float | None = None
-    material: str | None = None
-    roller_material: str | None = None
+    material: Material | None = None
+    roller_material: Material | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
 MATERIALS = {
-    "steel": (206_000.0, 0.3),
-    "nodular-iron": (169_000.0, 0.275),
-    "grey-iron": (110_000.0, 0.26),
-    "bronze": (110_000.0, 0.34),
-    "aluminium": (71_000.0, 0.33),
-    "pom": (3_000.0, 0.35),
-    "pa66": (3_000.0, 0.39),
+    "steel": Material(206_000.0, 0.3),
+    "nodular-iron": Material(169_000.0, 0.275),
+    "grey-iron": Material(110_000.0, 0.26),
+    "bronze": Material(110_000.0, 0.34),
+    "aluminium": Material(71_000.0, 0.33),
+    "pom": Material(3_000.0, 0.35),
+    "pa66": Material(3_000.0, 0.39),
 }
-"""Young's modulus, N/mm^2, and Poisson's ratio: round figures of handbooks, for the pressure of contacts alone."""
+"""Round figures of handbooks, for the pressure of contacts alone; none has a limit of its own."""
+
+
+OWN_MATERIAL = Table(
+    (
+        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST),
+        Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
+        Field(
+            "limit", Kind.NUMBER, "pressure that it bears, N/mm², which is told and not judged", above=0, at_most=MOST
+        ),
+    )
+)
+
+
+def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Material | None:
+    """Read a material's name, or a mapping with its figures."""
+    if isinstance(node, Mapping):
+        values = reader.table(OWN_MATERIAL, node, path)
+        return Material(values["E"], values["nu"], values.get("limit")) if {"E", "nu"} <= values.keys() else None
+    return MATERIALS.get(reader.readers[Kind.CHOICE](reader, field, node, path))
+
+
+_MATERIAL: Form[Reader] = Form(
+    "a material",
+    f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
+    _read_material,
+    lambda _: {"anyOf": [{"enum": list(MATERIALS)}, table_schema(OWN_MATERIAL)]},
+    instead=OWN_MATERIAL,
+)
 
 
 DYNAMICS = Table(
@@ -81,6 +132,7 @@ DYNAMICS = Table(
             required=True,
             above=0,
             at_most=_MOST,
+            unit=Kind.INERTIA,
         ),
         Field(
             "damping",
@@ -97,6 +149,7 @@ DYNAMICS = Table(
             default="rigid",
             above=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "preload",
@@ -104,6 +157,7 @@ DYNAMICS = Table(
             "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         replace(
             length(
@@ -118,6 +172,7 @@ DYNAMICS = Table(
             default="0",
             at_least=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "least_force",
@@ -125,23 +180,25 @@ DYNAMICS = Table(
             "least force along the travel for which the preload of the spring is found, N; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         Field(
             "load",
             Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
-            unit=Kind.NUMBER,
+            unit=Kind.THRUST,
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
-        Field("material", Kind.CHOICE, "material of the cam", choices=tuple(MATERIALS)),
+        Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
         Field(
             "roller_material",
-            Kind.CHOICE,
+            Kind.OWN,
             "that of what touches it",
             default="that of the cam",
             choices=tuple(MATERIALS),
+            form=_MATERIAL,
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
         Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),
@@ -156,6 +213,25 @@ DYNAMICS = Table(
             length("length", "length of the guide", required=True),
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
+        mapping(
+            "coupler",
+            "the square frame of a linkage as a body, for a rigid train",
+            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST, unit=Kind.MASS),
+            Field(
+                "centre",
+                Kind.POINT,
+                "its centre of mass in the frame's axes, from the frame's middle",
+                default="[0, 0]",
+            ),
+            Field(
+                "inertia",
+                Kind.NUMBER,
+                "its moment of inertia about that, kg m²",
+                default="0",
+                at_least=0,
+                at_most=_MOST,
+            ),
+        ),
     ),
     alternatives=(("preload", ()), ("backlash", ())),
     optional=True,
@@ -165,6 +241,7 @@ DYNAMICS = Table(
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
     _check_spring(train, reader)
+    _check_coupler(train, reader)
     if "backlash" in train and "rate" in train:
         key = reader.written("dynamics.backlash").removeprefix("dynamics.")
         remedy = f"give preload in place of {key}, or leave the rate out"
@@ -193,6 +270,19 @@ def check_guide(values: Values, reader: Reader) -> None:
         )
 
 
+def _check_coupler(train: Values, reader: Reader) -> None:
+    """Note a coupler where there is none."""
+    if "coupler" not in train:
+        return
+    if "linkage" not in reader.marks:
+        remedy = "leave it out, or give a linkage"
+        reader.fault_at("dynamics.coupler", "a coupler without a linkage", None, remedy)
+    elif reader.kinds["linkage"] in TURNING:
+        what = "the frame of this linkage is no coupler: it slides on the rocker and turns with it"
+        remedy = "leave it out, and add the frame's moment of inertia about the rocker's pivot to dynamics.mass"
+        reader.fault_at("dynamics.coupler", what, None, remedy)
+
+
 def _check_spring(train: Values, reader: Reader) -> None:
     """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
     given = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
@@ -206,19 +296,27 @@ def _check_spring(train: Values, reader: Reader) -> None:
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )
-        for name in ("load", "least_force"):
+        for name in ("load", "least_force", "coupler"):
             if name in train:
                 remedy = "leave stiffness out, or this"
                 reader.fault_at(f"dynamics.{name}", "belongs to a train without stiffness", None, remedy)
         return
     wanted = "give a number above 0: stiffness of the contact or train, N/m; N m/rad where it turns"
     needing = [name for name in ("backlash", "transient", "damping") if train.get(name)]
-    if "linkage" in reader.marks or needing:
-        what = f"missing, needed with {needing[0]}" if needing else "missing"
-        reader.fault(reader.marks["dynamics"], "dynamics.stiffness", what, None, wanted)
+    if needing:
+        reader.fault(reader.marks["dynamics"], "dynamics.stiffness", f"missing, needed with {needing[0]}", None, wanted)
+    if "linkage" in reader.marks and "least_force" in train:
+        remedy = (
+            "leave it out: the faces of a square frame hold the cam from all sides; preload is a spring at the output"
+        )
+        reader.fault_at("dynamics.least_force", "no spring holds a square frame on the cam", None, remedy)
 
 
 def build_train(train: Values) -> Dynamics:
     """Make the train of values in which there is no fault."""
-    guide = train.get("guide")
-    return Dynamics(**{"stiffness": None, **train, "guide": None if guide is None else StemGuide(**guide)})
+    guide, coupler = train.get("guide"), train.get("coupler")
+    bodies = {
+        "guide": None if guide is None else StemGuide(**guide),
+        "coupler": None if coupler is None else CouplerBody(**coupler),
+    }
+    return Dynamics(**{"stiffness": None, **train, **bodies})
