@@ -186,6 +186,10 @@ class Ask:
             Kind.LENGTH: length,
             Kind.MOTION: length if slides else Unit("deg"),
             Kind.NUMBER: Unit(""),
+            Kind.MASS: Unit(""),
+            Kind.FORCE: Unit("N"),
+            Kind.MOMENT: Unit("N m"),
+            Kind.THRUST: Unit("N m" if swings else "N"),
         }
         found = {}
         for name in figures:
