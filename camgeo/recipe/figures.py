@@ -354,7 +354,7 @@ def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]
         case "backlash" | "preload":
             return {f"dynamics.{needs}", "dynamics.stiffness"} <= paths
         case "forces":
-            return "dynamics" in paths and paths.isdisjoint({"linkage", "dynamics.stiffness"})
+            return "dynamics" in paths and "dynamics.stiffness" not in paths
         case "material":
             return "dynamics.material" in paths and there("forces", offers, paths)
         case "reaction":

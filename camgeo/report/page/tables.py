@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
+from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.units import with_pounds
 from camgeo.report.bound import sign, title, unit_text
 from camgeo.report.document import measured, pieces_word, value_text
@@ -200,6 +201,7 @@ def forces(report: dict[str, Any]) -> str:
     ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
     ranges += [("torque of the shaft", section["torque"])]
     ranges += [(f"reaction at the {one['end']} end of the guide", one) for one in section.get("guide", ())]
+    ranges += [(REACTIONS[one["reaction"]], one) for one in section.get("reactions", ())]
     for name, one in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
             rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
@@ -217,7 +219,7 @@ def forces(report: dict[str, Any]) -> str:
         for one in section.get("pressure", ())
         if "limit" in one
     ]
-    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section["rollers"]]
+    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section.get("rollers", ())]
     rows += [
         (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
     ]
