@@ -10,16 +10,17 @@ from camgeo.checks.declared import FLOAT
 from camgeo.measures.forces import Extreme
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.running_forces import running_of
+from camgeo.measures.units import pounds
 from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from kin.judge.check import Check
-from kin.numeric.angles import TURN, degrees
+from kin.numeric.angles import TURN
 from kin.numeric.monotone import RoughError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from camgeo.measures.running_forces import Running
+    from camgeo.measures.running import Running
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
@@ -29,12 +30,12 @@ FORCES = (FORCE_LEAST, FORCE_GREATEST, TORQUE, PRESSURE, GUIDE_FORCE, MEAN_FORCE
 
 @dataclass(frozen=True, eq=False)
 class Extremes:
-    """Least and greatest of every force over the turn: of each contact, the torque, the guide's ends and pressures."""
+    """Least and greatest of every force over the turn: of each contact, the torque, F, reactions and pressures."""
 
     contacts: tuple[tuple[Extreme, Extreme], ...]
     torque: tuple[Extreme, Extreme]
     along: tuple[Extreme, Extreme]
-    guide: tuple[tuple[Extreme, Extreme], ...]
+    reactions: Mapping[str, tuple[Extreme, Extreme]]
     pressure: tuple[tuple[Extreme, Extreme], ...]
 
 
@@ -42,18 +43,20 @@ def extremes_of(running: Running) -> Extremes:
     """Find them, none sampled past. Raises RoughError where the motion is too abrupt."""
     count = len(running.turn.names)
 
-    def values(phi: Array) -> Array:
-        state = running.state(phi)
-        more = [one for one in (running.guide_forces(state), running.pressure(state)) if one is not None]
-        return np.concatenate([state.normal, running.torque(state)[None], state.force[None], *more])
+    def values(t: Array) -> Array:
+        state = running.at(t)
+        more = [] if state.pressure is None else [*state.pressure]
+        return np.stack([*state.normal, state.torque, state.force, *state.reactions.values(), *more])
 
     found = running.turn.extremes(values)
+    names = tuple(running.at(running.turn.places[:1]).reactions)
     rest = found[count + 2 :]
-    ends = 2 if running.train.guide is not None else 0
     contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in found[:count])
     if count == 1:  # a spring that does not hold it pulls
         contacts = (found[0],)
-    return Extremes(contacts, found[count], found[count + 1], tuple(rest[:ends]), tuple(rest[ends:]))
+    return Extremes(
+        contacts, found[count], found[count + 1], dict(zip(names, rest, strict=False)), tuple(rest[len(names) :])
+    )
 
 
 def float_check(running: Running, found: Extremes) -> Check | None:
@@ -76,9 +79,11 @@ def forces_section(running: Running, found: Extremes) -> dict[str, object]:
     }
     if running.train.least_force is not None:
         section |= {"preload": running.preload, "preload_unit": turn.unit}
-    if found.guide:
-        pair = zip(("near", "far"), found.guide, strict=True)
-        section["guide"] = [{"end": end, **_range(one, "N")} for end, one in pair]
+    ends = {"guide_a": "near", "guide_b": "far"}
+    if guide := [{"end": ends[name], **_range(one, "N")} for name, one in found.reactions.items() if name in ends]:
+        section["guide"] = guide
+    elif found.reactions:
+        section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in found.reactions.items()]
     if found.pressure:
         bearable = running.most_pressure
         section["pressure"] = [
@@ -86,17 +91,9 @@ def forces_section(running: Running, found: Extremes) -> dict[str, object]:
             | ({} if bearable is None else {"limit": bearable, "share_of_limit": most.value / bearable})
             for name, (_, most) in zip(names, found.pressure, strict=True)
         ]
-    if len(names) > 1:
-        section["changes_at_deg"] = [degrees(at) for at in running.changes]
-    rollers = {"roller": 0} if running.shared_roller else {name: k for k, name in enumerate(names)}
-    means = [(name, running.mean_force(index)) for name, index in rollers.items()]
-    section["rollers"] = [
-        {"roller": name, "mean_force": mean[0], "unit": "N", "turns": mean[1]}
-        for name, mean in means
-        if mean is not None
-    ]
+    section |= running.own_section()
     if lost := running.lost_rpm():
-        section["lost"] = [{"contact": name, "rpm": rpm, "at_deg": at} for name, rpm, at in lost]
+        section["lost"] = [one._asdict() for one in lost]
     return section
 
 
@@ -122,20 +119,27 @@ def found_forces(recipe: Recipe, design: Design) -> Forces | None:
     return Forces(forces_section(running, found), () if check is None else (check,))
 
 
-def forces_table(running: Running, count: int) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm."""
+def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm.
+
+    With the `units` inch behind them lbf, lbf in and psi.
+    """
     state = running.state(np.linspace(0.0, TURN, count + 1))
     names = [name.replace(" ", "_") for name in running.turn.names]
     several = len(names) > 1
     columns: dict[str, Array] = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
     columns |= {f"{name}_N" if several else "contact_N": row for name, row in zip(names, state.normal, strict=True)}
-    columns["torque_Nm"] = running.torque(state)
-    if (guide := running.guide_forces(state)) is not None:
-        columns |= {"guide_a_N": guide[0], "guide_b_N": guide[1]}
-    groups = ("pressure_N_mm2", running.pressure(state)), ("roller_rpm", running.roller_speeds(state))
+    columns["torque_Nm"] = state.torque
+    columns |= {f"{name}_N": row for name, row in state.reactions.items()}
+    groups = ("pressure_N_mm2", state.pressure), ("roller_rpm", state.roller_rpm)
     for column, rows in groups:
         if rows is not None:
             columns |= {f"{name}_{column}" if several else column: row for name, row in zip(names, rows, strict=True)}
+    for column in tuple(columns):
+        for ending, unit in (("_N", "N"), ("_Nm", "N m"), ("_N_mm2", "N/mm^2")):
+            if column.endswith(ending) and (other := pounds(units, unit)) is not None:
+                name, many = other
+                columns[f"{column.removesuffix(ending)}_{name.replace(' ', '_')}"] = many * columns[column]
     return tuple(columns), np.column_stack(list(columns.values()))
 
 
@@ -165,8 +169,9 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     }
     if found.pressure:
         figures[PRESSURE] = worst(found.pressure, "N/mm^2")
-    if found.guide:
-        end = max((one for pair in found.guide for one in pair), key=lambda one: abs(one.value))
+    guides = [one for name, pair in found.reactions.items() if name.startswith("guide") for one in pair]
+    if guides:
+        end = max(guides, key=lambda one: abs(one.value))
         figures[GUIDE_FORCE] = Measured(abs(end.value), "N", end.at_deg)
     means = [mean[0] for k in range(len(names)) if (mean := running.mean_force(k)) is not None]
     if means:

@@ -6,6 +6,7 @@ Lengths are mm and forces N here; of a follower that swings positions are rad an
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -36,12 +37,70 @@ class Extreme(NamedTuple):
     at_deg: float
 
 
-@dataclass(frozen=True, eq=False)
-class FollowerTurn:
-    """A design's follower over the turn, by the parameter of its law: its position and the lines of its contacts.
+class Turn(ABC):
+    """What moves over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
 
     `corners` are shaft angles, rad, at which what is found over the turn is not smooth, besides those of the motion.
     """
+
+    corners: tuple[float, ...]
+
+    @property
+    @abstractmethod
+    def swings(self) -> bool:
+        """Whether forces along the travel are moments."""
+
+    @property
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """What reports call each contact."""
+
+    @abstractmethod
+    def rows(self, t: Array) -> Array:
+        """Position and two derivatives by the shaft angle at parameters t (n,): (3, n), mm or rad."""
+
+    @property
+    @abstractmethod
+    def places(self) -> Array:
+        """Parameters, rising over a whole turn, between which the motion is smooth."""
+
+    def shaft(self, t: Array) -> Array:
+        """Shaft angles (n,) at parameters (n,): the same, unless said otherwise."""
+        return t
+
+    def parameter(self, phi: Array) -> Array:
+        """Parameters (n,) at shaft angles (n,)."""
+        return phi
+
+    @property
+    def unit(self) -> str:
+        """Of forces along the travel, as reported."""
+        return "N m" if self.swings else "N"
+
+    def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
+        """Functions of the parameter, values(t (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
+        from kin.numeric.monotone import between, cells, pieces
+
+        corners = self.parameter(np.array(self.corners)) if self.corners else ()
+        made = cells(values, between(0.0, TURN, [*self.places, *corners]), share=SHARE)
+        return [pieces(made, row) for row in range(len(made.coefficients))]
+
+    def degrees(self, t: float) -> float:
+        """Shaft angle in degrees, from 0 to less than 360, at a parameter."""
+        return degrees(float(self.shaft(np.array([t]))[0]))
+
+    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
+        """Least and greatest of such functions over the turn, none sampled past."""
+
+        def placed(found: tuple[float, float]) -> Extreme:
+            return Extreme(found[0], self.degrees(found[1]))
+
+        return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
+
+
+@dataclass(frozen=True, eq=False)
+class FollowerTurn(Turn):
+    """A design's follower over the turn, by the shaft angle: its position and the lines of its contacts."""
 
     design: Design
     corners: tuple[float, ...] = ()
@@ -52,22 +111,17 @@ class FollowerTurn:
         return self.design.follower.arrangement.unit == "deg"
 
     @property
-    def unit(self) -> str:
-        """Of forces along the travel, as reported."""
-        return "N m" if self.swings else "N"
-
-    @property
     def names(self) -> tuple[str, ...]:
-        """What reports call each contact: by its surface, or by its touch with a letter where there are several."""
+        """By its surface, or by its touch with a letter where there are several."""
         contacts = self.design.follower.contacts
         letters = "AB" if len(contacts) > 1 else ("",)
         return tuple(
             one.surface or f"{one.touch.word} {letter}".rstrip() for one, letter in zip(contacts, letters, strict=True)
         )
 
-    def rows(self, phi: Array) -> Array:
-        """Position and two derivatives by the shaft angle at shaft angles phi (n,): (3, n), mm or rad."""
-        return self.design.motion.travel(phi, 2)
+    def rows(self, t: Array) -> Array:
+        """Position and two derivatives, mm or rad."""
+        return self.design.motion.travel(t, 2)
 
     def lines(self, rows: Array) -> tuple[ContactLine, ...]:
         """The line of each contact at positions of the follower."""
@@ -82,21 +136,6 @@ class FollowerTurn:
 
         shaft_deg = self.design.motion.shaft_deg
         return between(0.0, TURN, sorted(math.radians(shaft_deg(float(at))) for at in self.design.exact.breaks))
-
-    def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
-        """Functions of the shaft angle, values(phi (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
-        from kin.numeric.monotone import between, cells, pieces
-
-        made = cells(values, between(0.0, TURN, [*self.places, *self.corners]), share=SHARE)
-        return [pieces(made, row) for row in range(len(made.coefficients))]
-
-    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
-        """Least and greatest of such functions over the turn, none sampled past."""
-
-        def placed(found: tuple[float, float]) -> Extreme:
-            return Extreme(found[0], degrees(found[1]))
-
-        return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
 
 
 # --- preload by interference ------------------------------------------------------------------------------------------

@@ -1,8 +1,7 @@
 """Forces of a follower that runs at a speed, rigid or with both contacts under preload: contacts, shaft, guide, roller.
 
-In SI: N and m, about a pivot N m and rad. F is what the cam must give along the travel, above 0 where the first contact
-pushes: m Omega^2 y'' + k (y - least y) + F0 + load, y the position counted that way. The shaft's torque is that of the
-normal forces' lines about it, by exact derivatives of the motion; without friction it is F y'.
+The shaft's torque is that of the normal forces' lines about it, by exact derivatives of the motion; without friction it
+is F y'.
 """
 
 from __future__ import annotations
@@ -15,6 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
+from camgeo.measures.frame_forces import frame_running
+from camgeo.measures.running import Lost, Running, State
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
@@ -22,47 +23,25 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.recipe.dynamics import Dynamics
+    from camgeo.measures.forces import Turn
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
     from kin.law.contacts import Side
-    from kin.law.formula.formula import Formula
     from kin.numeric.arrays import Array
 
 LIFE = 10.0 / 3.0  # exponent of the rating life of needle and roller bearings (ISO 281)
-STRETCHES, MOST_OPEN = 256, 64  # in which a load is enclosed, and of them looked at where it cannot be
-NARROW, LARGE = 1e-9, 1e6  # rad; of its usual size: what it has there is a pole
 PANELS, NODES = 48, 8  # of Gauss's rule between any two places of the mean
 
 
-class State(NamedTuple):
-    """At n shaft angles: F along the travel, position y, both SI; the normal force of each contact (m, n), N."""
-
-    force: Array
-    rows: Array
-    lines: tuple[ContactLine, ...]
-    normal: Array
-
-
 @dataclass(frozen=True, eq=False)
-class Running:
-    """A design's follower at the speed and with the loads of its recipe's dynamics."""
-
-    recipe: Recipe
-    design: Design
-    train: Dynamics
+class FollowerRunning(Running):
+    """A follower without a linkage."""
 
     @cached_property
     def turn(self) -> FollowerTurn:
         """The follower over the turn."""
         return FollowerTurn(self.design, self.corners)
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """Shaft angles, rad, at which a table of the load has corners."""
-        load = self.train.load
-        return () if isinstance(load, str) else tuple(load.corners.tolist())
 
     @cached_property
     def sides(self) -> tuple[Side, ...]:
@@ -76,11 +55,6 @@ class Running:
         return tuple(side * one.sense for side, one in zip(self.sides, self.design.follower.contacts, strict=True))
 
     @property
-    def speed(self) -> float:
-        """Rad/s."""
-        return self.train.rpm * TURN / 60.0
-
-    @property
     def unit(self) -> float:
         """Metres in one of position, or radians."""
         return 1.0 if self.turn.swings else PER_MM
@@ -90,74 +64,25 @@ class Running:
         found: Array = self.senses[0] * self.unit * rows
         return found
 
-    @cached_property
-    def lowest(self) -> float:
-        """Least y."""
-        ((least, _),) = self.turn.extremes(lambda phi: self.position(self.turn.rows(phi))[:1])
-        return least.value
-
-    @cached_property
-    def load(self) -> Callable[[Array], Array]:
-        """The load over shaft angles (n,), N or N m, above 0 towards the cam's first contact.
-
-        Raises RecipeErrors where it has no value, or no bound.
-        """
-        from kin.law.formula.formula import Formula, FormulaDomainError
-
-        given = self.train.load
-        if not isinstance(given, str):
-            return given
-        formula = Formula(given)
-        try:
-            at = unbounded(formula)
-            formula(self.turn.places)
-        except FormulaDomainError as error:
-            raise self.recipe.error("dynamics.load", str(error)) from error
-        if at is not None:
-            why = f"it has no bound near {degrees(at):.6g} degrees"
-            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
-        return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
-
-    def _rest(self, phi: Array, y: Array) -> Array:
-        """What the cam must give besides inertia and the spring's preload."""
-        rest: Array = self.train.rate * (y - self.lowest) + self.load(phi) if self.train.rate else self.load(phi)
-        return rest
-
-    def inertia(self, rows: Array, speed: float) -> Array:
-        """Inertia's share of F at a speed, rad/s."""
-        force: Array = self.train.mass * speed**2 * self.position(rows)[2]
-        return force
-
-    @cached_property
-    def preload(self) -> float:
-        """Force of the spring at the lowest place: as given, or the least that leaves `least_force` all round."""
-        if self.train.least_force is None:
-            return self.train.preload or 0.0
-
-        def without(phi: Array) -> Array:
-            rows = self.turn.rows(phi)
-            force: Array = self.inertia(rows, self.speed) + self._rest(phi, self.position(rows)[0])
-            return force[None]
-
-        ((least, _),) = self.turn.extremes(without)
-        return max(self.train.least_force - least.value, 0.0)
-
-    def state(self, phi: Array) -> State:
+    def at(self, t: Array) -> State:
         """All of it at shaft angles (n,)."""
-        rows = self.turn.rows(phi)
+        rows = self.turn.rows(t)
         lines = self.turn.lines(rows)
         y = self.position(rows)
-        force = self.inertia(rows, self.speed) + self._rest(phi, y[0]) + self.preload
-        levers = self._levers(lines, y)
-        if len(lines) == 1:
-            return State(force, y, lines, force / levers)
+        force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
+        normal = (force if len(lines) == 1 else self._pair(force, rows)) / self._levers(lines, y)
+        shaft = np.array([side * line.shaft for side, line in zip(self.sides, lines, strict=True)])
+        torque: Array = PER_MM * np.sum(normal * shaft, axis=0)
+        pressure, speeds = self._pressure(normal, lines), self._roller_rpm(lines)
+        return State(force, y, normal, torque, pressure, self._guide_forces(y, normal, lines), lines, speeds)
+
+    def _pair(self, force: Array, rows: Array) -> Array:
+        """What two contacts that hold the follower from both sides push along the travel, (2, n)."""
         given = self.design.exact.preload
         if given is not None and given.stiffness is not None:
             scale = PER_MM if self.turn.swings else 1.0
-            pair = elastic(self.turn, given, rows).split(force / scale) * scale
-        else:
-            pair = np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
-        return State(force, y, lines, pair / levers)
+            return elastic(self.turn, given, rows).split(force / scale) * scale
+        return np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
 
     def _levers(self, lines: Sequence[ContactLine], y: Array) -> Array:
         """Lever of each contact's normal force along the travel, 1 or m (m, n); on a stem less its guide's friction.
@@ -209,47 +134,27 @@ class Running:
         least = min((one for one, _ in self.turn.extremes(free)), key=lambda one: one.value)
         return least.at_deg if least.value <= 0.0 else None
 
-    def torque(self, state: State) -> Array:
-        """Torque that the shaft gives, N m (n,), above 0 where it drives."""
-        shaft = np.array([side * line.shaft for side, line in zip(self.sides, state.lines, strict=True)])
-        torque: Array = PER_MM * np.sum(state.normal * shaft, axis=0)
-        return torque
-
-    def guide_forces(self, state: State) -> Array | None:
-        """Reactions of the guide at its near end and its far one, N (2, n), across the stem; None without."""
+    def _guide_forces(self, y: Array, normal: Array, lines: Sequence[ContactLine]) -> dict[str, Array]:
+        """Reactions of the guide at its near end and its far one, N (n,), across the stem; none without."""
         if self.train.guide is None:
-            return None
-        pushed = np.array(self.sides)[:, None] * state.normal
-        forces: Array = np.sum(pushed[:, None] * self._at_ends(state.lines, state.rows), axis=0)
-        return forces
+            return {}
+        pushed = np.array(self.sides)[:, None] * normal
+        near, far = np.sum(pushed[:, None] * self._at_ends(lines, y), axis=0)
+        return {"guide_a": near, "guide_b": far}
 
-    def pressure(self, state: State) -> Array | None:
-        """Hertz's pressure of each contact, N/mm^2 (m, n); None where width, material or a radius is not known."""
-        train, width = self.train, self.train.width or self.recipe.part.thickness
-        if train.material is None or width is None:
-            return None
-        bodies = [train.material, train.roller_material or train.material]
-        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
+    def _pressure(self, normal: Array, lines: Sequence[ContactLine]) -> Array | None:
         found = []
         follower = self.design.follower
-        for normal, line, side, one in zip(state.normal, state.lines, self.sides, follower.contacts, strict=True):
+        for line, side, one in zip(lines, self.sides, follower.contacts, strict=True):
             radius = follower.running(one).radius
-            curvature = side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0)
-            found.append(np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance)))
-        return np.array(found)
+            found.append(side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0))
+        return self.hertz(normal, np.array(found))
 
-    @property
-    def most_pressure(self) -> float | None:
-        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
-        bodies = (self.train.material, self.train.roller_material)
-        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
-
-    def roller_speeds(self, state: State) -> Array | None:
-        """Speed of the roller about its pin as each contact turns it, turns a minute (m, n); None of other touches."""
+    def _roller_rpm(self, lines: Sequence[ContactLine]) -> Array | None:
         from kin.follower.contact_lines import roller_turns
 
         follower, sides = self.design.follower, self.sides
-        each = zip(state.lines, sides, follower.contacts, strict=True)
+        each = zip(lines, sides, follower.contacts, strict=True)
         found = [roller_turns(line, follower.running(one), side) for line, side, one in each]
         turns = [one for one in found if one is not None]
         return self.train.rpm * np.array(turns) if len(turns) == len(found) else None
@@ -269,7 +174,7 @@ class Running:
         width = np.diff(np.append(edges, places[-1]))
         phi = (edges[:, None] + 0.5 * width[:, None] * (x + 1.0)).ravel()
         state, steps = self.state(phi), (0.5 * width[:, None] * weight).ravel()
-        speeds = self.roller_speeds(state)
+        speeds = state.roller_rpm
         if speeds is None:
             return None
         shared = self.shared_roller
@@ -286,69 +191,81 @@ class Running:
         contacts = self.design.follower.contacts
         return len(contacts) > 1 and self.design.follower.arrangement.contacts == 1
 
-    def lost_rpm(self) -> list[tuple[str, float | None, float | None]]:
-        """Of contacts under preload: name, the speed from which each is lost over the turn, None for none, and where.
+    def own_section(self) -> dict[str, object]:
+        """Of several contacts where they change, of rollers their mean force, and where a preload loses contacts."""
+        names = self.turn.names
+        section: dict[str, object] = {}
+        if len(names) > 1:
+            section["changes_at_deg"] = [degrees(at) for at in self.changes]
+        rollers = {"roller": 0} if self.shared_roller else {name: k for k, name in enumerate(names)}
+        means = [(name, self.mean_force(index)) for name, index in rollers.items()]
+        section["rollers"] = [
+            {"roller": name, "mean_force": mean[0], "unit": "N", "turns": mean[1]}
+            for name, mean in means
+            if mean is not None
+        ]
+        return section
 
-        F = m Omega^2 y'' + W reaches the force that takes a contact away first where y'' over what is left is greatest.
-        """
+    def lost_rpm(self) -> list[Lost]:
+        """Of contacts under preload the speed from which each is lost over the turn."""
         given = self.design.exact.preload
         if given is None or given.stiffness is None:
             return []
         scale = PER_MM if self.turn.swings else 1.0
 
-        def shares(phi: Array) -> Array:
+        def held(phi: Array) -> Pull:
             rows = self.turn.rows(phi)
-            held = elastic(self.turn, given, rows)
-            rest = self._rest(phi, self.position(rows)[0]) + self.preload
-            pull = self.inertia(rows, 1.0)
-            upper, lower = scale * held.loses_second - rest, rest - scale * held.loses_first
-            return np.array([-pull / lower, pull / upper, upper, lower])
+            pair = elastic(self.turn, given, rows)
+            rest = self.rest(phi, self.position(rows)[0]) + self.preload
+            return Pull(self.inertia(rows, 1.0), rest, scale * pair.loses_first, scale * pair.loses_second)
 
-        (_, first), (_, second), (upper, _), (lower, _) = self.turn.extremes(shares)
-        found: list[tuple[str, float | None, float | None]] = []
-        for name, share, left in zip(self.turn.names, (first, second), (lower, upper), strict=True):
-            if left.value <= 0.0:  # at rest already
-                found.append((name, 0.0, left.at_deg))
-            elif share.value > 0.0:
-                found.append((name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
-            else:
-                found.append((name, None, None))
-        return found
+        return lost(self.turn, self.turn.names, held)
 
 
-def unbounded(formula: Formula) -> float | None:
-    """A shaft angle, rad, near which a formula grows beyond all bounds, None where there is none.
+class Pull(NamedTuple):
+    """What two contacts bear (n,): per square of the speed, besides, and at which of it the first or second is lost."""
 
-    What intervals leave open is halved until it is as narrow as angles are told apart, and looked at there.
+    inertia: Array
+    rest: Array
+    loses_first: Array
+    loses_second: Array
+
+
+def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[Lost]:
+    """The speeds from which two contacts under preload are lost over the turn.
+
+    Omega^2 J + W reaches the force that takes a contact away first where J over what is left is greatest.
     """
-    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
-    high: Array = low + TURN / STRETCHES
-    usual = float(np.median(np.abs(formula(0.5 * (low + high))))) + 1.0
-    while True:
-        found = formula.ball(low, high, 0)
-        open_ = ~np.isfinite(found.rad[0])
-        low, high = low[open_][:MOST_OPEN], high[open_][:MOST_OPEN]
-        if not len(low) or float((high - low).max()) < NARROW:
-            break
-        middle = 0.5 * (low + high)
-        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    for at in low:
-        sides = np.array([at - NARROW, at + 2.0 * NARROW])
-        if float(np.abs(formula(sides)).max()) > LARGE * usual:
-            return float(at)
-    return None
+
+    def shares(t: Array) -> Array:
+        one = pull(t)
+        upper, lower = one.loses_second - one.rest, one.rest - one.loses_first
+        return np.array([-one.inertia / lower, one.inertia / upper, upper, lower])
+
+    (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
+    found = []
+    for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
+        if left.value <= 0.0:  # at rest already
+            found.append(Lost(name, 0.0, left.at_deg))
+        elif share.value > 0.0:
+            found.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
+        else:
+            found.append(Lost(name, None, None))
+    return found
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:
-    """The rigid follower as it runs, None without dynamics, with an elastic train or under a linkage.
+    """What moves as it runs, None without dynamics or with an elastic train.
 
-    Raises RecipeErrors for one contact that nothing holds on the cam.
+    Raises RecipeErrors for one contact that nothing holds on the cam, and a linkage that does not turn.
     """
     train = recipe.dynamics
-    if train is None or recipe.linkage is not None or train.stiffness is not None:
+    if train is None or train.stiffness is not None:
         return None
+    if design.driven is not None:
+        return frame_running(recipe, design, design.driven, train)
     held = train.preload is not None or train.least_force is not None
     if not held and len(design.follower.contacts) == 1:
         why = f"a single {design.follower.name} is held on the cam by a spring"
         raise recipe.error("dynamics", why, None, "give preload or least_force")
-    return Running(recipe, design, train)
+    return FollowerRunning(recipe, design, train)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
 from camgeo.motions.load_table import LOAD
+from camgeo.recipe.linkage import TURNING
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping
@@ -39,6 +40,15 @@ class StemGuide:
 
 
 @dataclass(frozen=True)
+class CouplerBody:
+    """The square frame as a body: kg, its centre in the frame's axes from the frame's middle, mm, kg m^2 about it."""
+
+    mass: float
+    centre: tuple[float, float] = (0.0, 0.0)
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True)
 class Material:
     """Young's modulus, N/mm^2, Poisson's ratio, and the pressure in contacts that a recipe says it bears, N/mm^2."""
 
@@ -63,6 +73,7 @@ class Dynamics:
     rate: float = 0.0
     backlash: float | None = None
     guide: StemGuide | None = None
+    coupler: CouplerBody | None = None
     transient: bool = False
     load: str | LoadTable = "0"
     least_force: float | None = None
@@ -121,6 +132,7 @@ DYNAMICS = Table(
             required=True,
             above=0,
             at_most=_MOST,
+            unit=Kind.INERTIA,
         ),
         Field(
             "damping",
@@ -137,6 +149,7 @@ DYNAMICS = Table(
             default="rigid",
             above=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "preload",
@@ -144,6 +157,7 @@ DYNAMICS = Table(
             "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         replace(
             length(
@@ -158,6 +172,7 @@ DYNAMICS = Table(
             default="0",
             at_least=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "least_force",
@@ -165,13 +180,14 @@ DYNAMICS = Table(
             "least force along the travel for which the preload of the spring is found, N; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         Field(
             "load",
             Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
-            unit=Kind.NUMBER,
+            unit=Kind.THRUST,
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
@@ -197,6 +213,25 @@ DYNAMICS = Table(
             length("length", "length of the guide", required=True),
             Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
         ),
+        mapping(
+            "coupler",
+            "the square frame of a linkage as a body, for a rigid train",
+            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST, unit=Kind.MASS),
+            Field(
+                "centre",
+                Kind.POINT,
+                "its centre of mass in the frame's axes, from the frame's middle",
+                default="[0, 0]",
+            ),
+            Field(
+                "inertia",
+                Kind.NUMBER,
+                "its moment of inertia about that, kg m²",
+                default="0",
+                at_least=0,
+                at_most=_MOST,
+            ),
+        ),
     ),
     alternatives=(("preload", ()), ("backlash", ())),
     optional=True,
@@ -206,6 +241,7 @@ DYNAMICS = Table(
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
     _check_spring(train, reader)
+    _check_coupler(train, reader)
     if "backlash" in train and "rate" in train:
         key = reader.written("dynamics.backlash").removeprefix("dynamics.")
         remedy = f"give preload in place of {key}, or leave the rate out"
@@ -234,6 +270,19 @@ def check_guide(values: Values, reader: Reader) -> None:
         )
 
 
+def _check_coupler(train: Values, reader: Reader) -> None:
+    """Note a coupler where there is none."""
+    if "coupler" not in train:
+        return
+    if "linkage" not in reader.marks:
+        remedy = "leave it out, or give a linkage"
+        reader.fault_at("dynamics.coupler", "a coupler without a linkage", None, remedy)
+    elif reader.kinds["linkage"] in TURNING:
+        what = "the frame of this linkage is no coupler: it slides on the rocker and turns with it"
+        remedy = "leave it out, and add the frame's moment of inertia about the rocker's pivot to dynamics.mass"
+        reader.fault_at("dynamics.coupler", what, None, remedy)
+
+
 def _check_spring(train: Values, reader: Reader) -> None:
     """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
     given = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
@@ -247,19 +296,27 @@ def _check_spring(train: Values, reader: Reader) -> None:
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )
-        for name in ("load", "least_force"):
+        for name in ("load", "least_force", "coupler"):
             if name in train:
                 remedy = "leave stiffness out, or this"
                 reader.fault_at(f"dynamics.{name}", "belongs to a train without stiffness", None, remedy)
         return
     wanted = "give a number above 0: stiffness of the contact or train, N/m; N m/rad where it turns"
     needing = [name for name in ("backlash", "transient", "damping") if train.get(name)]
-    if "linkage" in reader.marks or needing:
-        what = f"missing, needed with {needing[0]}" if needing else "missing"
-        reader.fault(reader.marks["dynamics"], "dynamics.stiffness", what, None, wanted)
+    if needing:
+        reader.fault(reader.marks["dynamics"], "dynamics.stiffness", f"missing, needed with {needing[0]}", None, wanted)
+    if "linkage" in reader.marks and "least_force" in train:
+        remedy = (
+            "leave it out: the faces of a square frame hold the cam from all sides; preload is a spring at the output"
+        )
+        reader.fault_at("dynamics.least_force", "no spring holds a square frame on the cam", None, remedy)
 
 
 def build_train(train: Values) -> Dynamics:
     """Make the train of values in which there is no fault."""
-    guide = train.get("guide")
-    return Dynamics(**{"stiffness": None, **train, "guide": None if guide is None else StemGuide(**guide)})
+    guide, coupler = train.get("guide"), train.get("coupler")
+    bodies = {
+        "guide": None if guide is None else StemGuide(**guide),
+        "coupler": None if coupler is None else CouplerBody(**coupler),
+    }
+    return Dynamics(**{"stiffness": None, **train, **bodies})

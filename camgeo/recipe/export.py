@@ -400,8 +400,8 @@ def check_files(values: Values, reader: Reader) -> None:
             check_milling(path, reader)
         if (request.kind, request.as_) == ("csv", "forces"):
             train = values.get("dynamics", {})
-            if not train or "linkage" in reader.marks or "stiffness" in train:
-                remedy = "give dynamics without stiffness and no linkage, or leave this out"
+            if not train or "stiffness" in train:
+                remedy = "give dynamics without stiffness, or leave this out"
                 reader.fault_at(path, "a table of forces needs a train whose forces are found", None, remedy)
         if request.kind == "csv":
             _check_table(file, request, values, reader)

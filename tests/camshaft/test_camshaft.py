@@ -301,6 +301,20 @@ def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[
     assert np.array([ends for _, *ends in found]) == pytest.approx(np.array([ends for _, *ends in right]), abs=1e-4)
 
 
+def test_waves_of_a_base_circle_are_a_dwell() -> None:
+    """Forty waves of 0.3 micrometres beside a lift of 8 mm; those of 30 are told."""
+    motion = "{formula: 8*((1 - cos(t))/2)**8 + %s*cos(40*t)}"
+    text = f"cam: {{kind: disc, base_radius: 60, follower: {{kind: flat}}, motion: {motion}}}\n"
+    small, large = (stretches(designed(camgeo.load(text % wave), Clock()).exact, 0.0) for wave in ("0.0003", "0.03"))
+    assert [stretch.phase for stretch in small] == ["rise", "return", "dwell"]
+    rise, back, dwell = small
+    assert rise.end == back.begin == pytest.approx(180.0, abs=1e-6)
+    assert dwell.begin == back.end
+    assert dwell.end == pytest.approx(360.0 + rise.begin, abs=1e-9)
+    assert 60.0 < rise.begin < 120.0
+    assert len(large) > 20
+
+
 # --- the metal --------------------------------------------------------------------------------------------------------
 
 
@@ -361,6 +375,31 @@ def test_planted_faults(
     assert made.ok
     assert made.path is not None
     assert failing(camgeo.verify(right, made.path / "shaft.stl")) == fails
+
+
+MIRRORED = (
+    "[{dwell: 180}, {rise: 12, over: 90, law: cycloidal}, {dwell: 30}, {return: 12, over: 60, law: modified-sine}]"
+)
+OTHER_LOBES = {
+    "a mirrored lobe": (MIRRORED, "offset: -4"),
+    "a table in crank degrees read as one of the cam": (
+        "[{rise: 12, over: 30, law: modified-sine}, {dwell: 15}, {return: 12, over: 45, law: cycloidal}, {dwell: 270}]",
+        "offset: 4",
+    ),
+}
+
+
+@pytest.mark.parametrize(("motion", "offset"), OTHER_LOBES.values(), ids=OTHER_LOBES)
+def test_another_lobe_is_caught(tmp_path: Path, solid: tuple[Path, camgeo.Report], motion: str, offset: str) -> None:
+    right, _ = solid
+    path = shaft(tmp_path, TWO)
+    text = re.sub(r"motion: .*", f"motion: {motion}", ROLLER).replace("offset: 4", offset)
+    (tmp_path / "roller.yaml").write_text(text)
+    made = camgeo.export(path, tmp_path / "out")
+    assert made.path is not None
+    fails = failing(camgeo.verify(right, made.path / "shaft.stl"))
+    assert {"phase, roller", "contour, roller", "motion, roller"} <= fails
+    assert not {name for name in fails if name.endswith("intake")}
 
 
 def test_a_mirrored_shaft_fails(tmp_path: Path, solid: tuple[Path, camgeo.Report]) -> None:
@@ -487,3 +526,20 @@ def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
     report = camgeo.check(shaft(tmp_path, "\n".join(rows), files="[stl]", body=body))
     assert report.ok
     assert sum(check.name == "phase" for check in report.checks) == 24
+
+
+def test_the_rings_of_many_lobes_stay_wide_enough_for_their_numbers(tmp_path: Path) -> None:
+    rows = [f"recipe: intake.yaml, cylinder: {k // 2 + 1}, valve: intake, z: {4 * k}, length: 4" for k in range(24)]
+    order = ", ".join(str(k + 1) for k in range(12))
+    engine = ENGINE.replace("1, 3, 4, 2", order)
+    body = "  shaft: {diameter: 24, from: -2, to: 100}\n"
+    report = camgeo.export(shaft(tmp_path, "\n".join(rows), engine, files="[svg]", body=body), tmp_path / "out")
+    assert report.path is not None
+    text = (report.path / "shaft.svg").read_text(encoding="utf-8")
+    widths = [float(width) for width in re.findall(r'<path [^>]*stroke-width="([\d.]+)"', text)]
+    numbers = re.findall(r'font-size="([\d.]+)" text-anchor="middle" fill="#ffffff"[^>]*>(\d+)<', text)
+    assert len(widths) == len(numbers) == 24
+    assert all(width >= 2 * 0.62 * float(size) for width, (size, _) in zip(widths, numbers, strict=True))
+    side = float(re.findall(r'width="([\d.]+)"', text)[0])
+    reach = max(float(radius) for radius in re.findall(r' r="([\d.]+)"', text))
+    assert reach + 100 < side / 2

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from camgeo.measures.force_figures import extremes_of
-from camgeo.measures.running_forces import Running, running_of
+from camgeo.measures.running import Running
+from camgeo.measures.running_forces import running_of
 from camgeo.motions.load_table import LoadTable
 from camgeo.output.pipeline import export
 from camgeo.recipe.loading import read

@@ -125,7 +125,7 @@ def test_equilibrium_in_the_plane(name):
     run = running(text(**values))
     phi = np.linspace(0.05, 6.2, 301)
     state, guide = run.state(phi), run.train.guide
-    near, far = run.guide_forces(state)
+    near, far = state.reactions.values()
     first = state.lines[0]
     axis = run.design.follower.offset
     lowest = run.design.follower.contacts[0].datum + run.turn.extremes(lambda at: run.turn.rows(at)[:1])[0][0].value

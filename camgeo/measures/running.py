@@ -1,0 +1,205 @@
+"""What runs at a speed and is rigid: what its cam must give, and the interface by which its forces are asked for.
+
+In SI: N and m, about a pivot N m and rad. F is what the cam must give along the travel, above 0 where the first contact
+pushes, or the way the output of a linkage grows: m Omega^2 y'' + k (y - least y) + F0 + load, y counted that way.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from camgeo.measures.forces import Turn
+    from camgeo.recipe.dynamics import Dynamics
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.follower.contact_lines import ContactLine
+    from kin.law.formula.formula import Formula
+    from kin.numeric.arrays import Array
+
+STRETCHES, MOST_OPEN = 256, 64  # in which a load is enclosed, and of them looked at where it cannot be
+NARROW, LARGE = 1e-9, 1e6  # rad; of its usual size: what it has there is a pole
+
+
+class State(NamedTuple):
+    """At n places: F along the travel, position y and two derivatives (3, n), SI; normal forces (m, n), N.
+
+    torque      that the shaft gives, N m (n,), above 0 where it drives
+    pressure    Hertz's, of each contact, N/mm^2 (m, n); None where width, material or a radius is not known
+    reactions   further forces, N (n,), by the names of their columns
+    lines       the contacts of a follower without a linkage
+    roller_rpm  of the roller about its pin as each contact turns it (m, n); None of other touches
+    """
+
+    force: Array
+    rows: Array
+    normal: Array
+    torque: Array
+    pressure: Array | None
+    reactions: Mapping[str, Array]
+    lines: tuple[ContactLine, ...] = ()
+    roller_rpm: Array | None = None
+
+
+class Lost(NamedTuple):
+    """The speed from which a contact under preload is lost, None where it never is, and where."""
+
+    contact: str
+    rpm: float | None
+    at_deg: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Running(ABC):
+    """What moves in a design, at the speed and with the loads of its recipe's dynamics."""
+
+    recipe: Recipe
+    design: Design
+    train: Dynamics
+
+    @property
+    @abstractmethod
+    def turn(self) -> Turn:
+        """It over the turn."""
+
+    @abstractmethod
+    def position(self, rows: Array) -> Array:
+        """Position y and two derivatives, SI (3, n), from those of the turn."""
+
+    @abstractmethod
+    def at(self, t: Array) -> State:
+        """All of it at parameters of the turn (n,)."""
+
+    @abstractmethod
+    def own_section(self) -> dict[str, object]:
+        """What the report's section has besides extremes."""
+
+    @property
+    def jam_deg(self) -> float | None:
+        """Shaft angle in degrees at which a stem jams in its guide, None where none does."""
+        return None
+
+    def mean_force(self, index: int) -> tuple[float, float] | None:  # noqa: ARG002
+        """Mean force that the roller of a contact bears over its own turns, N, and its turns per turn of the shaft."""
+        return None
+
+    def lost_rpm(self) -> list[Lost]:
+        """Of contacts under preload the speed from which each is lost over the turn."""
+        return []
+
+    def state(self, phi: Array) -> State:
+        """All of it at shaft angles (n,)."""
+        return self.at(self.turn.parameter(phi))
+
+    @property
+    def speed(self) -> float:
+        """Rad/s."""
+        return self.train.rpm * TURN / 60.0
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Shaft angles, rad, at which a table of the load has corners."""
+        load = self.train.load
+        return () if isinstance(load, str) else tuple(load.corners.tolist())
+
+    @cached_property
+    def lowest(self) -> float:
+        """Least y."""
+        ((least, _),) = self.turn.extremes(lambda t: self.position(self.turn.rows(t))[:1])
+        return least.value
+
+    @cached_property
+    def load(self) -> Callable[[Array], Array]:
+        """The load over shaft angles (n,), N or N m, above 0 against F.
+
+        Raises RecipeErrors where it has no value, or no bound.
+        """
+        from kin.law.formula.formula import Formula, FormulaDomainError
+
+        given = self.train.load
+        if not isinstance(given, str):
+            return given
+        formula = Formula(given)
+        try:
+            at = unbounded(formula)
+            formula(self.turn.shaft(self.turn.places))
+        except FormulaDomainError as error:
+            raise self.recipe.error("dynamics.load", str(error)) from error
+        if at is not None:
+            why = f"it has no bound near {degrees(at):.6g} degrees"
+            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
+        return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
+
+    def rest(self, t: Array, y: Array) -> Array:
+        """What the cam must give besides inertia and the spring's preload, at parameters and positions (n,)."""
+        load = self.load(self.turn.shaft(t))
+        rest: Array = self.train.rate * (y - self.lowest) + load if self.train.rate else load
+        return rest
+
+    def inertia(self, rows: Array, speed: float) -> Array:
+        """Inertia's share of F at a speed, rad/s."""
+        force: Array = self.train.mass * speed**2 * self.position(rows)[2]
+        return force
+
+    @cached_property
+    def preload(self) -> float:
+        """Force of the spring at the lowest place: as given, or the least that leaves `least_force` all round."""
+        if self.train.least_force is None:
+            return self.train.preload or 0.0
+
+        def without(t: Array) -> Array:
+            rows = self.turn.rows(t)
+            force: Array = self.inertia(rows, self.speed) + self.rest(t, self.position(rows)[0])
+            return force[None]
+
+        ((least, _),) = self.turn.extremes(without)
+        return max(self.train.least_force - least.value, 0.0)
+
+    @property
+    def most_pressure(self) -> float | None:
+        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
+        bodies = (self.train.material, self.train.roller_material)
+        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
+
+    def hertz(self, normal: Array, curvature: Array) -> Array | None:
+        """Hertz's pressure of line contacts, N/mm^2, by forces, N, and curvatures, 1/mm; None without material."""
+        train, width = self.train, self.train.width or self.recipe.part.thickness
+        if train.material is None or width is None:
+            return None
+        bodies = [train.material, train.roller_material or train.material]
+        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
+        pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance))
+        return pressure
+
+
+def unbounded(formula: Formula) -> float | None:
+    """A shaft angle, rad, near which a formula grows beyond all bounds, None where there is none.
+
+    What intervals leave open is halved until it is as narrow as angles are told apart, and looked at there.
+    """
+    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
+    high: Array = low + TURN / STRETCHES
+    usual = float(np.median(np.abs(formula(0.5 * (low + high))))) + 1.0
+    while True:
+        found = formula.ball(low, high, 0)
+        open_ = ~np.isfinite(found.rad[0])
+        low, high = low[open_][:MOST_OPEN], high[open_][:MOST_OPEN]
+        if not len(low) or float((high - low).max()) < NARROW:
+            break
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    for at in low:
+        sides = np.array([at - NARROW, at + 2.0 * NARROW])
+        if float(np.abs(formula(sides)).max()) > LARGE * usual:
+            return float(at)
+    return None
