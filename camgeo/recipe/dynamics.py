@@ -296,7 +296,7 @@ def _check_spring(train: Values, reader: Reader) -> None:
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )
-        for name in ("load", "least_force", "coupler"):
+        for name in ("load", "least_force", "coupler", "width", "material", "roller_material"):
             if name in train:
                 remedy = "leave stiffness out, or this"
                 reader.fault_at(f"dynamics.{name}", "belongs to a train without stiffness", None, remedy)
