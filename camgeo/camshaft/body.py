@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from camgeo.curve.ring import steps_along
 from camgeo.files.errors import RegionError
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline, Polygon
-from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,18 +24,12 @@ if TYPE_CHECKING:
 
 LOOKS = 4  # places on each arc at which it is looked at
 BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
+_Outline = TypeVar("_Outline", Polygon, ArcSpline)
 
 
-def _rotated(points: Array, angle: float) -> Array:
-    c, s = math.cos(angle), math.sin(angle)
-    turned: Array = points @ np.array([[c, s], [-s, c]])
-    return turned
-
-
-def _placed(outline: Any, angle: float, rotation: str) -> Any:  # noqa: ANN401 - a polygon or a chain of arcs, as given
+def _placed(outline: _Outline, angle: float, rotation: str) -> _Outline:
     """Turn an outline counter-clockwise, and mirror the drawing where the shaft turns that way."""
-    name = "vertices" if isinstance(outline, Polygon) else "points"
-    turned = replace(outline, **{name: _rotated(getattr(outline, name), angle)})
+    turned = outline.turned(angle)
     return turned.mirrored() if rotation == "ccw" else turned
 
 

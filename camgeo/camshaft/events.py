@@ -1,4 +1,4 @@
-"""When lobes lift: crossings of a lift, lobe centres, and an engine's valve events.
+"""When lobes lift: crossings of a lift, lobe centres, an engine's valve events, and the stretches of a machine's chart.
 
 A lobe's centre is the middle between the two crossings of a lift, never its peak; events are told in crank degrees,
 twice the camshaft's.
@@ -7,14 +7,18 @@ twice the camshaft's.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-from camgeo.measures.lobe import EventError, event_of
+import numpy as np
+
+from camgeo.measures.lobe import EventError, event_of, monotone
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam
 
 CRANK = 720.0  # degrees of one turn of the camshaft
+Phase: TypeAlias = Literal["rise", "dwell", "return"]
 
 
 class Event(NamedTuple):
@@ -24,6 +28,14 @@ class Event(NamedTuple):
     closes: float
     centre: float
     duration: float  # of the shaft
+
+
+class Stretch(NamedTuple):
+    """What a follower does between two shaft angles, degrees, the first from 0 to below 360, the second beyond it."""
+
+    phase: Phase
+    begin: float
+    end: float
 
 
 class Valves(NamedTuple):
@@ -45,6 +57,29 @@ def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
         return None
     opens, closes = (math.degrees(angle + zero) for angle in (crossed.opening, crossed.closing))
     return Event(opens % 360.0, closes % 360.0, 0.5 * (opens + closes) % 360.0, closes - opens)
+
+
+def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
+    """Rises, dwells and returns of a lobe whose motion begins at `zero`, rad, in their order round the turn.
+
+    They are those of the motion, whatever its source: segments that follow one another in one direction are one
+    stretch. None of a motion that is too rough to be followed.
+    """
+    try:
+        x = monotone(exact).x
+    except EventError:
+        return ()
+    middle = 0.5 * (x[:-1] + x[1:])
+    phases = np.where(exact.motion.by_parameter(middle, 1)[1] > 0.0, "rise", "return")
+    for begin, end in {rest for gauge in exact.gauges.values() for rest in gauge.rests}:
+        phases[np.mod(middle - begin, TURN) < end - begin] = "dwell"
+    first = np.flatnonzero(phases != np.roll(phases, 1))
+    if not first.size:
+        return (Stretch(phases[0], 0.0, 360.0),)
+    begins = np.round(np.degrees(x[first] + zero), 9)  # so that one at 360 is at 0
+    ends = np.append(begins[1:], begins[0] + 360.0)
+    rows = zip(phases[first].tolist(), (begins % 360.0).tolist(), (ends - begins).tolist(), strict=True)
+    return tuple(Stretch(phase, begin, begin + length) for phase, begin, length in rows)
 
 
 def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:

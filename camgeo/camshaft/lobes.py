@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import event, valves_of
+from camgeo.camshaft.events import event, stretches, valves_of
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.synthesis.design import designed
@@ -16,7 +16,7 @@ from kin.numeric.records import dataclass, field, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.events import Event, Valves
+    from camgeo.camshaft.events import Event, Stretch, Valves
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
     from camgeo.recipe.camshaft import CamshaftRecipe, Engine, Lobe
@@ -51,6 +51,11 @@ class PlacedLobe:
         if lift not in self.events:
             self.events[lift] = event(self.design.exact, self.zero, lift)
         return self.events[lift]
+
+    @property
+    def stretches(self) -> tuple[Stretch, ...]:
+        """Its rises, dwells and returns over the shaft's angle."""
+        return stretches(self.design.exact, self.zero)
 
     def rows(self, shaft: Array, order: int) -> Array:
         """Lift above the lowest position, mm or rad, and derivatives by the shaft angle, at shaft angles (n,), rad."""

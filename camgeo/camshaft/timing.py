@@ -14,12 +14,16 @@ from camgeo.files.markup import one_line
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.camshaft.events import Phase, Stretch
     from camgeo.camshaft.lobes import PlacedLobe
     from camgeo.recipe.camshaft import CamshaftRecipe
 
 INK, FAINT, PAPER = "#1d2733", "#c3cad3", "#ffffff"
 COLOURS = {"intake": "#2f6fb2", "exhaust": "#c2562d", "": "#4a7d3c"}
-WIDTH, ROW, LEFT, RIGHT = 860.0, 46.0, 150.0, 24.0
+SHADES: dict[Phase, float] = {"rise": 0.55, "dwell": 0.08, "return": 0.3}
+WIDTH, TOP, LEFT, RIGHT = 860.0, 52.0, 150.0, 24.0
+ROW, CURVE, BAR = 62.0, 36.0, 16.0  # of a lobe: its row, in it the height of its curve and of its bars
+LETTER = 6.3  # greatest width of a letter of a bar's label
 FONT = 'font-family="DejaVu Sans, Arial, sans-serif"'
 
 
@@ -45,10 +49,11 @@ def _page(width: float, height: float, title: str, parts: Sequence[str]) -> str:
 
 
 def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
-    """Return a row for each lobe: its lift over the shaft's angle, and a bar where it is beyond the lift of events."""
-    height = 64.0 + ROW * len(lobes) + 40.0
-    span = WIDTH - LEFT - RIGHT
-    base = 64.0 + ROW * len(lobes)
+    """Return a row for each lobe: its lift over the shaft's angle, below it a bar for each rise, dwell and return.
+
+    What passes 360 degrees is split there. Of an engine a line besides shows where a lobe is beyond the lift of events.
+    """
+    span, base = WIDTH - LEFT - RIGHT, TOP + ROW * len(lobes)
     parts = [_text(LEFT, 28.0, f"{recipe.name}: lifts over the shaft's angle", size=16.0)]
     for degree in range(0, 361, 30):
         x = LEFT + span * degree / 360.0
@@ -57,10 +62,11 @@ def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
     parts.append(_text(LEFT + 0.5 * span, base + 35.0, "shaft angle, degrees", size=12.0, anchor="middle"))
     angle = np.arange(0.0, 360.5, 0.5)
     for number, (lobe, lift) in enumerate(zip(lobes, lifts(lobes, np.radians(angle)), strict=True)):
-        foot = 64.0 + ROW * (number + 1) - 6.0
+        top = TOP + ROW * number
+        foot = top + CURVE
         share = (lift - lift.min()) / max(float(np.ptp(lift)), 1e-12)
         points = " ".join(
-            f"{LEFT + span * a / 360.0:.2f},{foot - (ROW - 14.0) * v:.2f}"
+            f"{LEFT + span * a / 360.0:.2f},{foot - (CURVE - 6.0) * v:.2f}"
             for a, v in zip(angle.tolist(), share.tolist(), strict=True)
         )
         colour = COLOURS[lobe.lobe.valve]
@@ -68,19 +74,43 @@ def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
             f'<polygon points="{LEFT:.2f},{foot:.2f} {points} {LEFT + span:.2f},{foot:.2f}" fill="{colour}" '
             f'fill-opacity="0.25" stroke="{colour}" stroke-width="1.5"/>'
         )
-        found = lobe.event(event_lift(recipe, lobe))
-        for low, high in [] if found is None else _split(found.opens, found.duration):
-            x = LEFT + span * low / 360.0
-            width = span * (high - low) / 360.0
-            parts.append(f'<rect x="{x:.2f}" y="{foot:.2f}" width="{width:.2f}" height="5" fill="{colour}"/>')
-        parts.append(_text(LEFT - 10.0, foot - 8.0, lobe.lobe.name, anchor="end"))
-    return _page(WIDTH, height, f"{recipe.name}: timing", parts)
+        for stretch in lobe.stretches:
+            parts += _bar(stretch, foot, colour, lobe.lobe.name)
+        event = lobe.event(event_lift(recipe, lobe)) if recipe.engine is not None else None
+        for low, high in [] if event is None else _split(event.opens, event.opens + event.duration):
+            x, width = LEFT + span * low / 360.0, span * (high - low) / 360.0
+            parts.append(
+                f'<rect x="{x:.2f}" y="{foot + BAR + 2.0:.2f}" width="{width:.2f}" height="3" fill="{colour}"/>'
+            )
+        parts.append(_text(LEFT - 10.0, foot - 4.0, lobe.lobe.name, anchor="end"))
+    return _page(WIDTH, base + 40.0, f"{recipe.name}: timing", parts)
 
 
-def _split(opens: float, duration: float) -> list[tuple[float, float]]:
+def _bar(stretch: Stretch, y: float, colour: str, name: str) -> list[str]:
+    """The bar of a stretch, in two where it passes 360 degrees, each with as much of its label as it has room for."""
+    span, parts = WIDTH - LEFT - RIGHT, []
+    label = f"{stretch.phase} {stretch.begin:.4g}–{_end(stretch.end):.4g}"
+    for low, high in _split(stretch.begin, stretch.end):
+        x, width = LEFT + span * low / 360.0, span * (high - low) / 360.0
+        parts.append(
+            f'<rect x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{BAR:g}" fill="{colour}" '
+            f'fill-opacity="{SHADES[stretch.phase]:g}" stroke="{colour}" stroke-width="1">'
+            f"<title>{one_line(name)}: {label} degrees</title></rect>"
+        )
+        words = next((words for words in (label, stretch.phase) if LETTER * len(words) + 6.0 <= width), "")
+        if words:
+            parts.append(_text(x + 0.5 * width, y + BAR - 4.5, words, size=11.0, anchor="middle"))
+    return parts
+
+
+def _end(degrees: float) -> float:
+    """The end of a stretch as a reading of the shaft: 360 stays."""
+    return degrees if degrees <= 360.0 else degrees - 360.0
+
+
+def _split(begin: float, end: float) -> list[tuple[float, float]]:
     """A stretch of degrees, in two where it passes 360."""
-    closes = opens + duration
-    return [(opens, closes)] if closes <= 360.0 else [(opens, 360.0), (0.0, closes - 360.0)]
+    return [(begin, end)] if end <= 360.0 else [(begin, 360.0), (0.0, end - 360.0)]
 
 
 def _wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:

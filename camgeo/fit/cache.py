@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, overload
 
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError
@@ -11,7 +11,7 @@ from kin.numeric.records import dataclass, field, replace
 if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.fit.pieces import Outline
+    from camgeo.fit.pieces import ArcSpline, Outline, Polygon
 
 
 @dataclass()
@@ -23,6 +23,12 @@ class Fits:
     unsure: float = 0.0
     made: dict[tuple[str, float], Outline] = field(default_factory=dict)
 
+    @overload
+    def within(self, form: Literal["polyline"], tolerance: float) -> Polygon: ...
+    @overload
+    def within(self, form: Literal["arcs"], tolerance: float) -> ArcSpline: ...
+    @overload
+    def within(self, form: str, tolerance: float) -> Outline: ...
     def within(self, form: str, tolerance: float) -> Outline:
         """Polygon, arcs or spline within a tolerance in mm, or the exact rational spline.
 

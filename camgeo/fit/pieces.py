@@ -54,6 +54,10 @@ class Polygon:
         """Mirror about the x axis, again counter-clockwise, from the same first vertex."""
         return Polygon(_mirrored_loop(self.vertices), self.bound)
 
+    def turned(self, angle: float) -> Polygon:
+        """Turn counter-clockwise about the origin, rad."""
+        return Polygon(_turned_loop(self.vertices, angle), self.bound)
+
     def scaled(self, k: float) -> Polygon:
         """Return the drawing k times as large, k > 0 (a change of unit)."""
         return Polygon(self.vertices * _positive(k), self.bound.scaled(k))
@@ -96,6 +100,10 @@ class ArcSpline(ArcChain):
         Mirroring turns the sign of every bulge and so does running backwards: the bulges keep theirs.
         """
         return ArcSpline(_mirrored_loop(self.points), self.bulges[::-1].copy(), self.bound)
+
+    def turned(self, angle: float) -> ArcSpline:
+        """Turn counter-clockwise about the origin, rad."""
+        return ArcSpline(_turned_loop(self.points, angle), self.bulges, self.bound)
 
     def scaled(self, k: float) -> ArcSpline:
         """Return the drawing k times as large, k > 0 (a change of unit); bulges have no unit."""
@@ -280,6 +288,12 @@ def _positive(k: float) -> float:
 def _mirrored_loop(points: Array) -> Array:
     mirrored: Array = np.roll(points[::-1], 1, axis=0) * np.array([1.0, -1.0])
     return mirrored
+
+
+def _turned_loop(points: Array, angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    turned: Array = points @ np.array([[c, s], [-s, c]])
+    return turned
 
 
 def _polygon_area(points: Array) -> float:

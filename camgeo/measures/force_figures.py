@@ -84,8 +84,10 @@ def forces_section(running: Running, found: Extremes) -> dict[str, object]:
     elif found.reactions:
         section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in found.reactions.items()]
     if found.pressure:
+        bearable = running.most_pressure
         section["pressure"] = [
             {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}
+            | ({} if bearable is None else {"limit": bearable, "share_of_limit": most.value / bearable})
             for name, (_, most) in zip(names, found.pressure, strict=True)
         ]
     section |= running.own_section()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.remedies import Missed, of_limit
 from camgeo.measures.figures import of_design, of_dynamics, of_file
-from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.figures import AT_LIFT, FIGURES
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
@@ -38,11 +38,16 @@ def limit_checks(
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
-    measured = of_design(recipe, design, checks, [limit.figure for limit in recipe.limits], speeds)
+    names = [limit.figure for limit in recipe.limits if limit.figure not in AT_LIFT]
+    measured = of_design(recipe, design, checks, names, speeds)
     found: list[Check] = []
     for limit in recipe.limits:
         name, of = limit.figure, FIGURES[limit.figure].of
-        if name in measured:
+        if name in AT_LIFT:
+            from camgeo.measures.lobe import lobe_figure
+
+            found += _held(recipe, limit, lobe_figure(name, design.exact, limit.lift))
+        elif name in measured:
             found += _held(recipe, limit, measured[name])
         elif of == "dynamics" and dynamics is not None:
             for run, value in of_dynamics(name, dynamics, checks).items():
@@ -71,6 +76,8 @@ def _held(
         value, slack = measured.value, ROUNDING * abs(bound)
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
         detail = measured.detail if value is None or math.isinf(value) else ""
+        if limit.place and value is not None:
+            detail = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
         if value is not None and not ok:
             missed = Missed(value, bound, measured.unit, tolerance, measured.surface)
             detail = f"{of_limit(recipe, limit, missed)} would satisfy it"

@@ -59,10 +59,7 @@ class EventError(KinError, ValueError):
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> Event:
     """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
-    try:
-        made = _pieces(exact)
-    except RoughError as error:
-        raise EventError("the motion changes too abruptly to be resolved") from error
+    made = monotone(exact)
     datum, _ = made.least()
     crossings = made.crossings(datum + lift)
     if len(crossings) != 2:
@@ -73,10 +70,13 @@ def event_of(exact: ExactCam, lift: float) -> Event:
 
 
 @lru_cache(maxsize=16)
-def _pieces(exact: ExactCam) -> Pieces:
-    """The follower's position over a turn; raises RoughError."""
+def monotone(exact: ExactCam) -> Pieces:
+    """Give the follower's position over a turn, mm or rad, as monotone pieces; raises EventError if it is too rough."""
     position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
-    return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
+    try:
+        return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
+    except RoughError as error:
+        raise EventError("the motion changes too abruptly to be resolved") from error
 
 
 def _duration(event: Event, _: ExactCam) -> Measured:
@@ -120,15 +120,19 @@ _MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
 _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
 
 
-def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
-    """Measure a figure at the lift that the recipe's limit of it states, or at its usual one."""
-    stated = (limit.at_lift for limit in recipe.limits if limit.figure == name and limit.at_lift is not None)
-    lift = next(stated, AT_LIFT[name])
+def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
+    """Measure a figure at a lift, mm from the lowest; without a value where that is not crossed just twice."""
     if name == LIFT_AREA and lift == 0.0:
-        turn = between(0.0, TURN, design.exact.breaks.tolist())
-        return Measured(math.degrees(_integral(design.exact, turn, 0.0)), _UNITS[name])
+        turn = between(0.0, TURN, exact.breaks.tolist())
+        return Measured(math.degrees(_integral(exact, turn, 0.0)), _UNITS[name])
     try:
-        event = event_of(design.exact, lift)
+        event = event_of(exact, lift)
     except EventError as error:
         return Measured(None, _UNITS[name], detail=str(error))
-    return _MADE.get(name, _area)(event, design.exact)
+    return _MADE.get(name, _area)(event, exact)
+
+
+def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
+    """Measure a figure at the lift that the recipe's first limit of it states, or at its usual one."""
+    lift = next((limit.lift for limit in recipe.limits if limit.figure == name), AT_LIFT[name])
+    return lobe_figure(name, design.exact, lift)

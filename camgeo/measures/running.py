@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.recipe.dynamics import MATERIALS
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
@@ -166,13 +165,19 @@ class Running(ABC):
         ((least, _),) = self.turn.extremes(without)
         return max(self.train.least_force - least.value, 0.0)
 
+    @property
+    def most_pressure(self) -> float | None:
+        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
+        bodies = (self.train.material, self.train.roller_material)
+        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
+
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
         """Hertz's pressure of line contacts, N/mm^2, by forces, N, and curvatures, 1/mm; None without material."""
         train, width = self.train, self.train.width or self.recipe.part.thickness
         if train.material is None or width is None:
             return None
-        bodies = [MATERIALS[train.material], MATERIALS[train.roller_material or train.material]]
-        compliance = sum((1.0 - nu**2) / modulus for modulus, nu in bodies)
+        bodies = [train.material, train.roller_material or train.material]
+        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
         pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance))
         return pressure
 

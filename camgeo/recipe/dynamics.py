@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 from camgeo.common.rounding import downward
 from camgeo.motions.load_table import LOAD
 from camgeo.recipe.linkage import TURNING
-from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.motions.load_table import LoadTable
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
@@ -46,6 +49,15 @@ class CouplerBody:
 
 
 @dataclass(frozen=True)
+class Material:
+    """Young's modulus, N/mm^2, Poisson's ratio, and the pressure in contacts that a recipe says it bears, N/mm^2."""
+
+    modulus: float
+    poisson: float
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
 class Dynamics:
     """A follower train in SI, but for `backlash`, mm.
 
@@ -66,21 +78,49 @@ class Dynamics:
     load: str | LoadTable = "0"
     least_force: float | None = None
     width: float | None = None
-    material: str | None = None
-    roller_material: str | None = None
+    material: Material | None = None
+    roller_material: Material | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
 MATERIALS = {
-    "steel": (206_000.0, 0.3),
-    "nodular-iron": (169_000.0, 0.275),
-    "grey-iron": (110_000.0, 0.26),
-    "bronze": (110_000.0, 0.34),
-    "aluminium": (71_000.0, 0.33),
-    "pom": (3_000.0, 0.35),
-    "pa66": (3_000.0, 0.39),
+    "steel": Material(206_000.0, 0.3),
+    "nodular-iron": Material(169_000.0, 0.275),
+    "grey-iron": Material(110_000.0, 0.26),
+    "bronze": Material(110_000.0, 0.34),
+    "aluminium": Material(71_000.0, 0.33),
+    "pom": Material(3_000.0, 0.35),
+    "pa66": Material(3_000.0, 0.39),
 }
-"""Young's modulus, N/mm^2, and Poisson's ratio: round figures of handbooks, for the pressure of contacts alone."""
+"""Round figures of handbooks, for the pressure of contacts alone; none has a limit of its own."""
+
+
+OWN_MATERIAL = Table(
+    (
+        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST),
+        Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
+        Field(
+            "limit", Kind.NUMBER, "pressure that it bears, N/mm², which is told and not judged", above=0, at_most=MOST
+        ),
+    )
+)
+
+
+def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Material | None:
+    """Read a material's name, or a mapping with its figures."""
+    if isinstance(node, Mapping):
+        values = reader.table(OWN_MATERIAL, node, path)
+        return Material(values["E"], values["nu"], values.get("limit")) if {"E", "nu"} <= values.keys() else None
+    return MATERIALS.get(reader.readers[Kind.CHOICE](reader, field, node, path))
+
+
+_MATERIAL: Form[Reader] = Form(
+    "a material",
+    f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
+    _read_material,
+    lambda _: {"anyOf": [{"enum": list(MATERIALS)}, table_schema(OWN_MATERIAL)]},
+    instead=OWN_MATERIAL,
+)
 
 
 DYNAMICS = Table(
@@ -146,13 +186,14 @@ DYNAMICS = Table(
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
-        Field("material", Kind.CHOICE, "material of the cam", choices=tuple(MATERIALS)),
+        Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
         Field(
             "roller_material",
-            Kind.CHOICE,
+            Kind.OWN,
             "that of what touches it",
             default="that of the cam",
             choices=tuple(MATERIALS),
+            form=_MATERIAL,
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
         Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, described, entries, join, keys, scalars
+from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys, scalars
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ class Limit:
 
     `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `at_lift`
     is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is
-    the recipe's key of the upper bound below `limits`, empty for the figure's own.
+    the recipe's key of the upper bound below `limits`, empty for the figure's own; `place` the entry of the figure's
+    list, such as duration[1], empty where it has none.
     """
 
     figure: str
@@ -37,10 +38,17 @@ class Limit:
     rpm: float | None = None
     at_lift: float | None = None
     key: str = ""
+    place: str = ""
+
+    @property
+    def lift(self) -> float:
+        """Lift, mm, at which a lobe's figure is held."""
+        return AT_LIFT[self.figure] if self.at_lift is None else self.at_lift
 
     def field(self, sense: str) -> str:
         """Give the recipe's field of a bound, `at_least` or `at_most`."""
-        return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
+        own = f"{self.place or self.figure}.{sense}"
+        return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{own}"
 
 
 Own: TypeAlias = Literal[
@@ -131,6 +139,7 @@ MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "u
 DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA = "duration", "lobe-centre", "ramp-velocity", "lift-area"
 
 
+MOST_LIFTS = 20  # at which a recipe bounds one figure
 AT_LIFT = {DURATION: 1.27, LOBE_CENTRE: 1.27, RAMP_VELOCITY: 0.1524, LIFT_AREA: 0.0}
 """Lifts, mm, at which figures of lobes are taken unless a limit says another: 0.050 and 0.006 in, and all of it."""
 
@@ -394,36 +403,53 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
-        table = Field("", Kind.TABLE, "", table=own_bounds(name) if field is LIMITS else bounds(FIGURES[name]))
-        found = len(reader.errors)
-        values = reader.field(table, given[word], below)
-        if values is None or len(reader.errors) > found:
-            continue
-        stated = {key: values.pop(key) for key in ("rpm", "at_lift") if key in values}
-        on_return = values.pop("on_return", None)
-        if not values and on_return is None:
-            reader.fault(given[word].mark, below, "no bound", None, "give at_least, at_most or both")
-        factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
-        if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
-            none = "no design" if field is not LIMITS else "nothing"
-            reader.fault_at(f"{below}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
-        said = {bound: factor * value for bound, value in values.items()}
-        if on_return is not None and "at_least" in values:
-            reader.fault_at(f"{below}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
-            continue
-        if on_return is not None:
-            rising = said.pop("at_most", None)
-            for one, bound, most in ((ON_RISE, "at_most", rising), (ON_RETURN, "on_return", on_return)):
-                if most is not None:
-                    limits.append({"figure": one, "at": below, "at_most": most, "key": f"{name}.{bound}"})
-            continue
-        limits.append({"figure": name, "at": below, **said, **stated})
+        value = given[word]
+        if field is LIMITS and name in AT_LIFT and isinstance(value, Sequence):
+            for i, item in enumerate(reader.items(_bounded(field, name), value, below, MOST_LIFTS)):
+                own = _read_limit(reader, field, name, item, join(below, i))
+                limits += [{**limit, "place": f"{name}[{i}]"} for limit in own]
+        else:
+            limits += _read_limit(reader, field, name, value, below)
     return limits
+
+
+def _bounded(field: Field, name: str) -> Field:
+    return Field("", Kind.TABLE, "", table=own_bounds(name) if field is LIMITS else bounds(FIGURES[name]))
+
+
+def _read_limit(reader: Reader, field: Field, name: str, node: Node, path: str) -> list[Values]:
+    """Read the bounds of one figure: one limit, or those of the rise and of the return; none where there is a fault."""
+    faults = len(reader.errors)
+    values = reader.field(_bounded(field, name), node, path)
+    if values is None or len(reader.errors) > faults:
+        return []
+    stated = {key: values.pop(key) for key in ("rpm", "at_lift") if key in values}
+    on_return = values.pop("on_return", None)
+    if not values and on_return is None:
+        reader.fault(node.mark, path, "no bound", None, "give at_least, at_most or both")
+    factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
+    if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
+        none = "no design" if field is not LIMITS else "nothing"
+        reader.fault_at(f"{path}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
+    said = {bound: factor * value for bound, value in values.items()}
+    if on_return is None:
+        return [{"figure": name, "at": path, **said, **stated}]
+    if "at_least" in values:
+        reader.fault_at(f"{path}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
+        return []
+    both = ((ON_RISE, "at_most", said.get("at_most")), (ON_RETURN, "on_return", on_return))
+    return [
+        {"figure": figure, "at": path, "at_most": most, "key": f"{name}.{bound}"}
+        for figure, bound, most in both
+        if most is not None
+    ]
 
 
 def _limits_schema(field: Field) -> Schema:
     tables = {name: own_bounds(name) if field is LIMITS else bounds(FIGURES[name]) for name in field.choices}
     limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
+    for name in AT_LIFT if field is LIMITS else ():  # one lift, or a list of them
+        limits[name] |= {"type": ["object", "array"], "items": limits[name], "minItems": 1, "maxItems": MOST_LIFTS}
     for former, name in field.former_choices:
         limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}
@@ -458,13 +484,14 @@ def of_recipe(reader: Reader) -> tuple[str, ...]:
 
 def check_limits(limits: list[Values], reader: Reader) -> None:
     """Note limits of figures that the recipe has not."""
-    here, bounded = of_recipe(reader), dict[tuple[str, str], str]()
+    here, bounded = of_recipe(reader), dict[tuple[str, str, float | None], str]()
     for limit in limits:
         for bound in ("at_least", "at_most"):
-            key = limit["figure"], bound
+            key = limit["figure"], bound, limit.get("at_lift", AT_LIFT.get(limit["figure"]))
             if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
                 other, path = sorted((bounded[key], limit["at"]), key=len)
-                reader.fault_at(path, f"{other} with on_return bounds it too", None, "leave one of the two out")
+                how = "at the same lift" if "place" in limit else "with on_return"
+                reader.fault_at(path, f"{other} {how} bounds it too", None, "leave one of the two out")
         name, needs = limit["figure"], FIGURES[limit["figure"]].needs
         if needs and name not in here and not ("rpm" in limit and "linkage" not in reader.marks):
             remedy = f"the figures of this recipe are {either(here, 'and')}"

@@ -11,7 +11,11 @@ import pytest
 from support.heavy import trimesh
 
 import camgeo
+from camgeo.camshaft.events import stretches
+from camgeo.camshaft.timing import LEFT, RIGHT, WIDTH
 from camgeo.cli.main import main
+from camgeo.common.clock import Clock
+from camgeo.synthesis.design import designed
 from kin.judge.camshaft import verify_camshaft
 
 RECIPES = Path(__file__).parents[2] / "recipes"
@@ -208,6 +212,95 @@ def test_the_direction_turns_an_engines_metal_and_no_event(tmp_path: Path, engin
     assert "phase, cylinder 3 intake" in failing(camgeo.verify(shaft(straight, row.format(0), ENGINE), file))
 
 
+# --- the chart --------------------------------------------------------------------------------------------------------
+
+CHART = re.compile(
+    r'<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"[^>]*stroke-width="1"><title>(\w+): ([^<]+) degrees</title>'
+)
+STRETCHES = {
+    "a": {
+        "rise 0–120": [(0, 120)],
+        "dwell 120–180": [(120, 180)],
+        "return 180–300": [(180, 300)],
+        "dwell 300–360": [(300, 360)],
+    },
+    "b": {
+        "rise 75–175": [(75, 175)],
+        "dwell 175–215": [(175, 215)],
+        "return 215–355": [(215, 355)],
+        "dwell 355–75": [(355, 360), (0, 75)],
+    },
+    "c": {
+        "rise 310–10": [(310, 360), (0, 10)],
+        "dwell 10–40": [(10, 40)],
+        "return 40–130": [(40, 130)],
+        "dwell 130–310": [(130, 310)],
+    },
+}
+
+
+@pytest.mark.parametrize("name", ["shaft.svg", "shaft.html"])
+def test_a_machine_has_a_bar_for_each_stretch_split_at_360(machine: tuple[str, camgeo.Report], name: str) -> None:
+    """Case f24: rises, dwells and returns over the machine's angle."""
+    _, report = machine
+    assert report.path is not None
+    text = (report.path / name).read_text(encoding="utf-8")
+    bars: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    heights: dict[str, set[str]] = {}
+    for x, y, width, lobe, label in CHART.findall(text):
+        begin = (float(x) - LEFT) * 360 / (WIDTH - LEFT - RIGHT)
+        end = begin + float(width) * 360 / (WIDTH - LEFT - RIGHT)
+        bars.setdefault(lobe, {}).setdefault(label, []).append((begin, end))
+        heights.setdefault(lobe, set()).add(y)
+    assert bars == {
+        lobe: {label: [pytest.approx(part, abs=0.01) for part in parts] for label, parts in of_lobe.items()}
+        for lobe, of_lobe in STRETCHES.items()
+    }
+    assert all(len(rows) == 1 for rows in heights.values())
+    assert ">return 40–130<" in text
+    assert ">rise 310–10<" in text  # on the part that has room for it
+
+
+MATCHED = (
+    "{rise: 2, over: 40, law: match}, {rise: 6, over: 60, law: constant-velocity}, {rise: 2, over: 40, law: match}"
+)
+LOBE = "{lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}"
+SOURCES = {
+    "lobe": (LOBE, 235, [("return", 235, 303), ("dwell", 303, 527), ("rise", 167, 235)]),
+    "formula": ("{formula: 5*(1 - cos(t))}", 30, [("rise", 30, 210), ("return", 210, 390)]),
+    "one rise of three segments": (
+        f"[{MATCHED}, {{dwell: 40}}, {{return: 10, over: 180, law: cycloidal}}]",
+        0,
+        [("rise", 0, 140), ("dwell", 140, 180), ("return", 180, 360)],
+    ),
+    "rise and fall": (
+        "[{rise_fall: 5, over: 90}, {dwell: 270}]",
+        0,
+        [("rise", 0, 45), ("return", 45, 90), ("dwell", 90, 360)],
+    ),
+    "two a turn": (
+        "{repeat: 2, segments: [{rise: 5, over: 60, law: harmonic}, {to: 0, over: 60, law: harmonic}, {dwell: 60}]}",
+        350,
+        [
+            (name, at + turn, at + turn + 60)
+            for turn in (350, 170)
+            for name, at in (("rise", 0), ("return", 60), ("dwell", 120))
+        ],
+    ),
+    "a whole dwell": ("[{dwell: 360}]", 20, [("dwell", 0, 360)]),
+}
+
+
+@pytest.mark.parametrize(("motion", "zero", "expected"), SOURCES.values(), ids=SOURCES)
+def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[str, float, float]]) -> None:
+    text = f"cam: {{kind: disc, base_radius: 30, follower: {{kind: roller, radius: 8}}, motion: {motion}}}\n"
+    exact = designed(camgeo.load(text), Clock()).exact
+    found = [tuple(stretch) for stretch in stretches(exact, math.radians(zero))]
+    right = [(phase, begin % 360, begin % 360 + end - begin) for phase, begin, end in expected]
+    assert [phase for phase, *_ in found] == [phase for phase, *_ in right]
+    assert np.array([ends for _, *ends in found]) == pytest.approx(np.array([ends for _, *ends in right]), abs=1e-4)
+
+
 # --- the metal --------------------------------------------------------------------------------------------------------
 
 
@@ -240,6 +333,8 @@ def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> 
     assert report.path is not None
     text = (report.path / "shaft.html").read_text()
     assert "<script" not in text
+    assert "{{" not in text
+    assert "Content-Security-Policy" in text.partition("</head>")[0]
     assert "every check holds" in text
     assert "<button" not in text
     assert re.search(r"position, roller", text)
@@ -284,7 +379,6 @@ def test_a_phase_is_measured(solid: tuple[Path, camgeo.Report]) -> None:
 
     from camgeo.camshaft.lobes import placed
     from camgeo.camshaft.pipeline import _intent
-    from camgeo.common.clock import Clock
     from camgeo.recipe.loading import load_order
 
     path, report = solid

@@ -18,6 +18,7 @@ from typing import NamedTuple, get_args
 import pytest
 from support.cases import few
 
+import camgeo
 from camgeo.checks.declared import CHECKS
 from camgeo.cli.main import main
 from camgeo.measures.remarks import RemarkName
@@ -209,12 +210,21 @@ def test_the_readme_prints_what_its_recipe_gives(tmp_path, capsys):
 # --- Python, and settings ---------------------------------------------------------------------------------------------
 
 
+def write_named(folder):
+    """Write the blocks whose first line names a file, such as `# valve.yaml`, each to that file."""
+    for block in blocks():
+        named = re.match(r"# ([a-z-]+\.yaml)\b", block.text)
+        if named:
+            (folder / named[1]).write_text(block.text, encoding="utf-8")
+
+
 @pytest.fixture(scope="module")
 def workshop(tmp_path_factory):
-    """The shipped recipes, and a cam that came back."""
+    """The shipped recipes, those that pages name, and a cam that came back."""
     folder = tmp_path_factory.mktemp("workshop")
     shutil.copytree(ROOT / "recipes", folder / "recipes")
     assert main(["export", str(folder / "recipes" / "shu-wu.yaml"), "--out", str(folder / "out")]) == 0
+    write_named(folder)
     (folder / "returned").mkdir()
     for kind in ("dxf", "stl"):
         shutil.copy(folder / "out" / "shu-wu" / f"shu-wu.{kind}", folder / "returned" / f"cam.{kind}")
@@ -253,6 +263,14 @@ def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
     monkeypatch.chdir(workshop)
     for words in lines:
         assert main(words) == 0, (words, capsys.readouterr().err)
+
+
+def test_the_camshaft_of_its_page_is_made_of_the_lobe_beside_it(workshop, tmp_path):
+    report = camgeo.export(workshop / "single.yaml", tmp_path)
+    assert report.ok
+    told = {"phase", "position", "shaft", "journal", "bore", "thickness", "volume"}
+    assert {check.name for check in report.checks} >= told
+    assert {path.suffix for path in report.path.iterdir()} == {".stl", ".step", ".svg", ".csv", ".html", ".json"}
 
 
 def test_settings_are_read():

@@ -82,6 +82,39 @@ def test_lobe_centre_is_no_peak() -> None:
     assert made["duration"].value == pytest.approx(2.0 * 150.0 * (1.0 - share), abs=1e-8)
 
 
+def test_one_figure_at_two_lifts() -> None:
+    """Each entry of a list is a limit of its own, at its own lift, and a remedy names the one that fails."""
+    lifts = "duration: [{at_lift: 1.27, at_least: 190}, {at_lift: 1.52, at_least: 194, at_most: 200}, {at_most: 300}]"
+    with pytest.raises(RecipeErrors, match=re.escape("limits.duration[2]: limits.duration[0] at the same lift")):
+        measured(LOBE % ("", ""), lifts.replace("at_most: 300", "at_least: 3"))
+    recipe = load_text(f"{LOBE % ('', '')}limits: {{{lifts}}}\n", "lobe.yaml")
+    design = designed(recipe)
+    checks = limit_checks(recipe, design, design.checks, (), None)
+    assert [check.name for check in checks] == ["limit:duration"] * 4
+    assert [check.ok for check in checks] == [True, False, True, True]
+    values = [200.061617891, 193.858569753, 193.858569753, 200.061617891]
+    assert [check.value for check in checks] == pytest.approx(values, abs=6e-10)
+    assert checks[0].detail == "at a lift of 1.27 mm"
+    assert checks[1].detail == "limits.duration[1].at_least of 193.858 would satisfy it"
+    mended = load_text(f"{LOBE % ('', '')}limits: {{{lifts.replace('194', '193.858')}}}\n", "lobe.yaml")
+    assert all(check.ok for check in limit_checks(mended, design, design.checks, (), None))
+
+
+@pytest.mark.parametrize(
+    ("limits", "wanted"),
+    [
+        ("duration: []", "limits.duration: an empty list"),
+        ("duration: [{at_lift: 1}]", r"limits.duration\[0\]: no bound"),
+        ("duration: [{at_lift: 1, at_leest: 3}]", r"limits.duration\[0\].at_leest: unknown key; did you mean at_least"),
+        ("duration: [7]", r"limits.duration\[0\]: not a mapping"),
+        ("size: [{at_most: 9}]", "limits.size: not a mapping, given a list of 1"),
+    ],
+)
+def test_lists_of_limits_that_are_refused(limits: str, wanted: str) -> None:
+    with pytest.raises(RecipeErrors, match=wanted):
+        measured(LOBE % ("", ""), limits)
+
+
 def test_lift_that_is_not_crossed_twice_fails_and_says_so() -> None:
     check = measured(LOBE % ("", ""), "duration: {at_lift: 9, at_least: 1}")["duration"]
     assert (check.ok, check.value) == (False, None)

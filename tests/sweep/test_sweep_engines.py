@@ -167,9 +167,30 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("camgeo.sweep.search.job.__version__", "99.0")
-    how = How(2) if engine == "processes" else How(scheduler=cluster.scheduler_address)
-    with pytest.raises(VersionsError, match="a worker has other versions than this run"):
+    how, error, text = {
+        "processes": (How(2), VersionsError, "^a worker has other versions than this run"),
+        "dask": (
+            How(scheduler=cluster.scheduler_address),
+            engines.EngineError,
+            r"^the worker at tcp://.* has camgeo .*, numpy .*, this run camgeo 99\.0, numpy",
+        ),
+    }[engine]
+    with pytest.raises(error, match=text):
         list(how.results(job(), [0, 1]))
+
+
+@pytest.mark.slow
+def test_a_worker_without_camgeo_is_told(tmp_path: Path) -> None:
+    preload = tmp_path / "without.py"
+    preload.write_text("import sys\nsys.modules['camgeo'] = None\n", encoding="utf-8")
+    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty:
+        options = ["--no-nanny", "--no-dashboard", "--preload", str(preload)]
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", empty.scheduler_address, *options]
+        with subprocess.Popen(command, stderr=subprocess.DEVNULL) as worker:
+            empty.wait_for_workers(1, 30)
+            with pytest.raises(engines.EngineError, match=r"^the worker at tcp://.* cannot run camgeo: .*camgeo"):
+                next(engines.dask(job(), [0], empty.scheduler_address))
+            worker.terminate()
 
 
 # --- surroundings -----------------------------------------------------------------------------------------------------
@@ -189,7 +210,7 @@ def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"])
+@pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n", bytes(64)])
 def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engines, "_PATIENCE", 1.0)
     accepted = []

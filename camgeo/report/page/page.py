@@ -16,7 +16,7 @@ from camgeo.report.page.pack import packed
 from camgeo.report.page.scene import STEPS
 
 if TYPE_CHECKING:
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
     from camgeo.report.page.content import Content
     from camgeo.report.page.curves import Plot
     from camgeo.report.page.scene import Body
@@ -27,12 +27,7 @@ LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watch
 
 def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
     """Return the page of a recipe from what it shows and what the report says."""
-    ok = report["ok"]
     parts = {
-        "title": escape(recipe.name),
-        "about": escape(recipe.about),
-        "verdict": "every check holds" if ok else tables.failing(report["checks"]),
-        "state": "ok" if ok else "failed",
         "note": escape(content.scene.note),
         "facts": tables.facts(report),
         "drawing": svg.moving(content.scene),
@@ -42,15 +37,32 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
         "dynamics": tables.preload(report) + tables.forces(report) + tables.dynamics(report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
-        "style": asset("drawing.css") + looks.rules() + asset("page.css"),
         "script": asset("page.js"),
         "data": encoded(data(recipe, content)),
     }
-    head, *rest = asset("page.html").split("{{")
-    text = [head]
+    return head(recipe, report) + _filled("page.html", parts)
+
+
+def head(recipe: Order, report: dict[str, Any], more: str = "") -> str:
+    """Return what any page begins with: what it may load, its style with `more` rules, name, verdict and note."""
+    ok = report["ok"]
+    parts = {
+        "title": escape(recipe.name),
+        "about": escape(recipe.about),
+        "verdict": "every check holds" if ok else tables.failing(report["checks"]),
+        "state": "ok" if ok else "failed",
+        "style": asset("drawing.css") + looks.rules() + asset("page.css") + more,
+    }
+    return _filled("head.html", parts)
+
+
+def _filled(name: str, parts: dict[str, str]) -> str:
+    """Return a file of this folder with its {{parts}} in their places."""
+    first, *rest = asset(name).split("{{")
+    text = [first]
     for piece in rest:
-        name, _, after = piece.partition("}}")
-        text += [parts[name], after]
+        part, _, after = piece.partition("}}")
+        text += [parts[part], after]
     return "".join(text)
 
 

@@ -208,6 +208,16 @@ def forces(report: dict[str, Any]) -> str:
         (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
         for one in section.get("pressure", ())
     ]
+    rows += [
+        (
+            f"that pressure over the {one['limit']:.6g} N/mm² that the material bears",
+            one["share_of_limit"],
+            "",
+            None,
+        )
+        for one in section.get("pressure", ())
+        if "limit" in one
+    ]
     rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section.get("rollers", ())]
     rows += [
         (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())

@@ -12,11 +12,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.common import workers
-from camgeo.sweep.search.job import result
+from camgeo.sweep.search.job import result, versions
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 
     from camgeo.sweep.search.job import Job
 
@@ -73,12 +73,13 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
     """Let the workers of the Dask scheduler at `address` compute; they need camgeo, and no shared disk.
 
     Raises ModuleNotFoundError without the package distributed, and EngineError where the scheduler does not answer or
-    goes away, has no workers, or a chunk is lost again and again.
+    goes away, has no workers or such of other versions, or a chunk is lost again and again.
     """
     from distributed import Client, wait
 
     first_of: Callable[..., Any] = wait
     with _quiet(), _connected(Client, address) as client, _lost(address):
+        _demand_versions(client.run(versions, job.plan, on_error="return"), versions(job.plan))
         key, left = job.key, list(reversed(numbers))
         running: dict[Any, int] = {}
         alone = 0
@@ -98,6 +99,16 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
                 continue
             for future in done:
                 yield running.pop(future), future.result()
+
+
+def _demand_versions(workers: Mapping[str, dict[str, str] | Exception], ours: dict[str, str]) -> None:
+    """Refuse workers of other versions, and those without camgeo, which the first chunk would end without a word."""
+    for worker, theirs in workers.items():
+        if isinstance(theirs, Exception):
+            raise EngineError(f"the worker at {worker} cannot run camgeo: {theirs}")
+        if theirs != ours:
+            text, own = (", ".join(f"{name} {version}" for name, version in each.items()) for each in (theirs, ours))
+            raise EngineError(f"the worker at {worker} has {text}, this run {own}")
 
 
 @contextmanager
@@ -132,13 +143,13 @@ def _heard(address: str) -> None:
     """Make sure that a scheduler listens at an address such as tcp://host:8786; raises EngineError otherwise."""
     import asyncio
     import socket
-    from urllib.parse import urlsplit
+    import struct
 
+    from distributed.comm import get_address_host_port
+
+    parted: Callable[[str], tuple[str, int]] = get_address_host_port
     try:
-        parts = urlsplit(address if "://" in address else f"tcp://{address}")
-        if not parts.hostname or not parts.port:
-            raise EngineError(f"{address} {_NO_ADDRESS}")
-        socket.create_connection((parts.hostname, parts.port), _PATIENCE).close()
+        socket.create_connection(parted(address), _PATIENCE).close()  # at once: `rpc` tries again until its time is up
     except ValueError as error:
         raise EngineError(f"{address} {_NO_ADDRESS}") from error
     except OSError as error:
@@ -149,7 +160,7 @@ def _heard(address: str) -> None:
     except TimeoutError:
         text = f"the server at {address} does not answer as a Dask scheduler does: no answer in {_PATIENCE:g} s"
         raise EngineError(text) from None
-    except MemoryError:  # its first bytes were read as a length
+    except (MemoryError, struct.error):  # its first bytes were read as a length
         raise EngineError(f"the server at {address} speaks another protocol than a Dask scheduler") from None
     except (OSError, ValueError) as error:
         raise EngineError(f"the server at {address} is not a Dask scheduler") from error
@@ -159,16 +170,11 @@ def _heard(address: str) -> None:
 
 async def _kind_of(address: str) -> str:
     """What a node of Dask calls itself: Scheduler, Worker, Nanny."""
-    from distributed.comm.core import connect
-    from distributed.core import send_recv
+    from distributed import rpc
 
-    reach: Callable[..., Any] = connect
-    ask: Callable[..., Any] = send_recv
-    comm = await reach(address, timeout=_PATIENCE)
-    try:
-        return str((await ask(comm, op="identity"))["type"])
-    finally:
-        comm.abort()
+    reach: Callable[..., Any] = rpc
+    async with reach(address, timeout=_PATIENCE) as node:
+        return str((await node.identity())["type"])
 
 
 @contextmanager
