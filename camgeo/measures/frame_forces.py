@@ -101,7 +101,7 @@ class FrameRunning(Running):
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
         given = self._given(motion, force, self.speed)
-        (one, three), (two, four) = (self._faces(pair) for pair in (given.across, -given.along))
+        (one, three), (two, four) = map(self._faces, given.pairs)
         normal = np.array([one, two, three, four])
         reactions = {"across": given.across, "along": given.along} | self._joints(motion, given.joint)
         return State(force, y, normal, PER_MM * given.torque, self._pressure(t, normal), reactions)
@@ -137,16 +137,15 @@ class FrameRunning(Running):
         if pressed is None:
             return []
 
-        def pull(t: Array, name: str, sign: int) -> Pull:
+        def pull(t: Array, rank: int) -> Pull:
             motion = self.mechanism.at(t, 2)
             rows = motion.over_shaft(motion.output)
-            moved = self._given(motion, self.inertia(rows, 1.0), 1.0)
-            still = self._given(motion, self.rest(t, self.position(rows)[0]) + self.preload, 0.0)
-            each = (sign * getattr(one, name) for one in (moved, still))
-            return Pull(*each, pressed.loses_first, pressed.loses_second)
+            moved = self._given(motion, self.inertia(rows, 1.0), 1.0).pairs[rank]
+            still = self._given(motion, self.rest(t, self.position(rows)[0]) + self.preload, 0.0).pairs[rank]
+            return Pull(moved, still, pressed.loses_first, pressed.loses_second)
 
-        found = [lost(self.turn, faces, partial(pull, name=name, sign=sign)) for name, (sign, faces) in PAIRS.items()]
-        return sorted(one for pair in found for one in pair)
+        first, second = (lost(self.turn, self.turn.names[k::2], partial(pull, rank=k)) for k in range(2))
+        return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
         """Size of the force in joint D, and what the slide gives its link across its line; none with dyads on it."""
