@@ -178,7 +178,7 @@ PRELOAD = mapping(
         Kind.NUMBERS,
         "stiffness of the first contact and the second along their normals, N/m, for the force alone",
         default="no force",
-        unit=Kind.NUMBER,
+        unit=Kind.RATE,
         at_least=1.0,
         at_most=MOST**2,
         most=2,

@@ -23,6 +23,7 @@ COLOURS = {"intake": "#2f6fb2", "exhaust": "#c2562d", "": "#4a7d3c"}
 SHADES: dict[Phase, float] = {"rise": 0.55, "dwell": 0.08, "return": 0.3}
 WIDTH, TOP, LEFT, RIGHT = 860.0, 52.0, 150.0, 24.0
 ROW, CURVE, BAR = 62.0, 36.0, 16.0  # of a lobe: its row, in it the height of its curve and of its bars
+RING = 16.0  # of a lobe of an engine: the least that shows the number of its cylinder
 LETTER = 6.3  # greatest width of a letter of a bar's label
 FONT = 'font-family="DejaVu Sans, Arial, sans-serif"'
 
@@ -115,9 +116,9 @@ def _split(begin: float, end: float) -> list[tuple[float, float]]:
 
 def _wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
     """A ring for each lobe on a wheel of 720 crank degrees, clockwise from the first cylinder's firing dead centre."""
-    size, middle = 720.0, 360.0
-    outer, inner = 250.0, 90.0
-    step = (outer - inner) / len(lobes)
+    inner = 90.0
+    outer = inner + max(160.0, RING * len(lobes))
+    middle, step = outer + 110.0, (outer - inner) / len(lobes)
     parts = [
         _text(
             20.0, 28.0, f"{recipe.name}: crank degrees after firing dead centre of cylinder {_first(recipe)}", size=16.0
@@ -149,20 +150,22 @@ def _wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
         (x0, y0), (x1, y1) = ends
         parts.append(
             f'<path d="M {x0:.2f} {y0:.2f} A {radius:.2f} {radius:.2f} 0 {large} 1 {x1:.2f} {y1:.2f}" fill="none" '
-            f'stroke="{colour}" stroke-width="{min(0.6 * step, 14.0):.2f}"/>'
+            f'stroke="{colour}" stroke-width="{min(0.75 * step, 14.0):.2f}"/>'
         )
         a = start + 0.5 * sweep
         if lobe.lobe.cylinder is not None:
             x, y = middle + radius * math.sin(a), middle - radius * math.cos(a)
-            size_told = min(11.0, 0.7 * step)
+            size_told = min(11.0, 0.6 * step)
             parts.append(
                 _text(x, y + 0.36 * size_told, f"{lobe.lobe.cylinder}", size=size_told, anchor="middle", colour=PAPER)
             )
     for k, (valve, words) in enumerate((("intake", "intake"), ("exhaust", "exhaust"), ("", "other lobe"))):
         if any(lobe.lobe.valve == valve for lobe in lobes):
-            parts.append(f'<rect x="20" y="{650 + 20 * k}" width="14" height="12" fill="{COLOURS[valve]}"/>')
-            parts.append(_text(42.0, 661.0 + 20 * k, words, size=12.0))
-    return _page(size, 720.0, f"{recipe.name}: valve timing", parts)
+            parts.append(
+                f'<rect x="20" y="{2.0 * middle - 70.0 + 20.0 * k:g}" width="14" height="12" fill="{COLOURS[valve]}"/>'
+            )
+            parts.append(_text(42.0, 2.0 * middle - 59.0 + 20.0 * k, words, size=12.0))
+    return _page(2.0 * middle, 2.0 * middle, f"{recipe.name}: valve timing", parts)
 
 
 def _first(recipe: CamshaftRecipe) -> int:

@@ -21,12 +21,10 @@ import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import OfLaw, SourceT, bounds_of, cut, series_of
-from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import Affine, Constant
 from kin.numeric import elementary
-from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 from kin.numeric.records import dataclass
 
@@ -38,7 +36,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
 
 TURN = 2.0 * math.pi
-_LOOKS = 1024  # angles at which a formula's rounding is asked for
 MOST_KEPT = 8  # bounds over many intervals
 
 
@@ -93,13 +90,10 @@ class Displacement:
         low, high = sorted(scale * end for end in self.range)
         return Displacement(over, self.repeats, (low, high))
 
-    @cached_property
+    @property
     def rounding(self) -> float:
         """By how much S or S' may be off through the rounding of a recipe's own formula; 0 where there is none."""
-        if not any(isinstance(_bare(f), Expression) for f in self.over.functions):
-            return 0.0
-        theta = distinct(np.concatenate([np.arange(_LOOKS) * (TURN / self.repeats / _LOOKS), self.over.breaks]))
-        return float(self.over.enclosure(theta, theta, 1)[1].max())
+        return self.over.rounding
 
     @property
     def eccentric(self) -> Mask:
@@ -115,10 +109,6 @@ class Displacement:
     def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
         """Give S and its derivatives at theta (n,), (order + 1, n)."""
         return self.over.derivatives(theta, order, side)
-
-
-def _bare(function: Stretch) -> Stretch:
-    return _bare(function.function) if isinstance(function, Affine) else function
 
 
 def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stretch:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -305,20 +306,22 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
         return None
     tolerances = {file.path.name: file.tolerance for file in files}
     follower, found = design.exact.gauge, []
-    whole, closure = stroke_of(follower), follower.closure
+    closure = follower.closure
     word = "swing" if follower.unit == "deg" else "stroke"
     for check in checks:
         tolerance = tolerances.get(check.file or "")
         if not tolerance or check.limit is None:
             continue
-        direct, size, of = follower.direct_limit(tolerance), whole, word
+        direct, radius = follower.direct_limit(tolerance), None
         if closure is not None and check.name == closure.name:
             direct = direct_play(closure, follower, tolerance)
-            size, of = (whole, word) if closure.radius is None else (closure.radius, "roller's radius")
+            radius = closure.radius
         elif check.name != MOTION.name:
             continue
+        size = partial(stroke_of, follower) if radius is None else partial(float, radius)
         if is_loose(check.limit, direct, size, LOOSE):
-            found.append((check.limit / size, check.limit, of, check))
+            of = word if radius is None else "roller's radius"
+            found.append((check.limit / size(), check.limit, of, check))
     if not found:
         return None
     share, limit, of, check = max(found, key=lambda row: row[0])

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from camgeo.motions.lift_table import FILE, read_rows
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, join
+from camgeo.schema.quantity import parted
+from camgeo.schema.yaml_source import Mapping, Scalar, join
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.motions.lift_table import Angles
@@ -62,7 +63,11 @@ LOADS = Table(
 
 
 def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTable | None:
-    """Read a formula, or a mapping with a table."""
+    """Read a formula, a number with its unit, or a mapping with a table."""
+    if isinstance(node, Scalar) and parted(node.text)[1]:
+        number = replace(field, form=None, at_least=-MOST_LOAD, at_most=MOST_LOAD)
+        value: float | None = reader.readers[Kind.NUMBER](reader, number, node, path)
+        return None if value is None else repr(value)
     if not isinstance(node, Mapping):
         found: str | None = reader.readers[Kind.FORMULA](reader, field, node, path)
         return found
@@ -79,7 +84,7 @@ def _table(reader: Reader, file: str, angles: Angles, path: str) -> LoadTable | 
     if (found := read_rows(reader, file, path, angles=angles, unit="N")) is None:
         return None
     try:
-        rows = periodic(found[0].samples(), TURN, path, "N m" if Kind.STROKE in reader.angular else "N")
+        rows = periodic(found[0].samples(), TURN, path, reader.unit(Kind.THRUST))
     except IntentError as error:
         reader.fault_at(path, f"{file}, {error.message}")
         return None

@@ -132,6 +132,7 @@ DYNAMICS = Table(
             required=True,
             above=0,
             at_most=_MOST,
+            unit=Kind.INERTIA,
         ),
         Field(
             "damping",
@@ -148,6 +149,7 @@ DYNAMICS = Table(
             default="rigid",
             above=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "preload",
@@ -155,6 +157,7 @@ DYNAMICS = Table(
             "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         replace(
             length(
@@ -169,6 +172,7 @@ DYNAMICS = Table(
             default="0",
             at_least=0,
             at_most=_MOST,
+            unit=Kind.GIVING,
         ),
         Field(
             "least_force",
@@ -176,13 +180,14 @@ DYNAMICS = Table(
             "least force along the travel for which the preload of the spring is found, N; N m where it turns",
             above=0,
             at_most=_MOST,
+            unit=Kind.THRUST,
         ),
         Field(
             "load",
             Kind.OWN,
             "load of a rigid train over the shaft angle t, N, above 0 towards the cam; N m where it turns",
             default="0",
-            unit=Kind.NUMBER,
+            unit=Kind.THRUST,
             form=LOAD,
         ),
         length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
@@ -211,7 +216,7 @@ DYNAMICS = Table(
         mapping(
             "coupler",
             "the square frame of a linkage as a body, for a rigid train",
-            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST),
+            Field("mass", Kind.NUMBER, "its mass, kg", required=True, above=0, at_most=_MOST, unit=Kind.MASS),
             Field(
                 "centre",
                 Kind.POINT,

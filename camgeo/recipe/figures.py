@@ -236,17 +236,17 @@ FIGURES: dict[str, Figure] = {
     ),
     PRELOAD_LEAST: Figure(
         "least force of a preload by interference over the turn, along the travel, N; N m where it turns",
-        Kind.NUMBER,
+        Kind.THRUST,
         "most",
         "stiff",
     ),
-    PRELOAD_GREATEST: Figure("its greatest force", Kind.NUMBER, "least", "stiff"),
-    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.NUMBER, "most", "forces"),
-    FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.NUMBER, "least", "forces"),
-    TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.NUMBER, "least", "forces"),
+    PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", "stiff"),
+    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.FORCE, "most", "forces"),
+    FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.FORCE, "least", "forces"),
+    TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", "forces"),
     PRESSURE: Figure("greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material"),
-    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.NUMBER, "least", "reaction"),
-    MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.NUMBER, "least", "bearing"),
+    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", "reaction"),
+    MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", "bearing"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -265,7 +265,7 @@ FIGURES: dict[str, Figure] = {
     OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", "stem"),
     PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", "arm"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
-    MASS: Figure("mass of a disc, kg", Kind.NUMBER, "least", "density", per="kg"),
+    MASS: Figure("mass of a disc, kg", Kind.MASS, "least", "density", per="kg"),
     ECCENTRICITY: Figure("distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", "density"),
     INERTIA: Figure("moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", "density", "kg mm^2"),
     UNBALANCE: Figure(
@@ -287,10 +287,10 @@ FIGURES: dict[str, Figure] = {
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
     "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
     "least-force": Figure(
-        "least contact force, N; N m where it turns", Kind.NUMBER, "most", "preload", of="dynamics", swept=False
+        "least contact force, N; N m where it turns", Kind.THRUST, "most", "preload", of="dynamics", swept=False
     ),
     "peak-force": Figure(
-        "greatest contact force, N; N m where it turns", Kind.NUMBER, "least", "preload", of="dynamics", swept=False
+        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", "preload", of="dynamics", swept=False
     ),
     BACKLASH_LEFT: Figure(
         "least backlash that the dynamics leave between the faces",

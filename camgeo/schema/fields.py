@@ -56,6 +56,13 @@ class Kind(Enum):
     OUTPUT = "a change of the output"  # of a linkage: an angle, or a length where its last link slides
     MOTION = "a motion"  # of the output, or without a linkage of the follower
     BACKLASH = "a backlash"  # an angle of a flat pair, else a length
+    FORCE = "a force"
+    MOMENT = "a moment"
+    RATE = "a spring rate"
+    MASS = "a mass"
+    THRUST = "a force along the travel"  # a moment where the follower swings, or what a linkage drives
+    GIVING = "a stiffness along the travel"  # likewise
+    INERTIA = "an inertia along the travel"  # likewise
     TRUTH = "true or false"
     RATIO = "a ratio"
     FORMULA = "a formula"

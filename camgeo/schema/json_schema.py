@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from camgeo.schema.fields import (
@@ -11,7 +12,7 @@ from camgeo.schema.fields import (
     Table,
     length,
 )
-from camgeo.schema.quantity import ANGLES, LENGTHS
+from camgeo.schema.quantity import ANGLES, FORCES, LENGTHS, MASSES, MOMENTS, RATES
 from camgeo.schema.scalars import MOST_TEXT
 
 if TYPE_CHECKING:
@@ -24,6 +25,13 @@ if TYPE_CHECKING:
 _NUMBER_TEXT = r"(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+"
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 _EITHER = {Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.BACKLASH}  # a length or an angle
+_CARRIED: dict[Kind | None, tuple[str, ...]] = {
+    Kind.FORCE: tuple(FORCES),
+    Kind.MOMENT: tuple(MOMENTS),
+    Kind.THRUST: (*FORCES, *MOMENTS),
+    **dict.fromkeys((Kind.RATE, Kind.GIVING), tuple(RATES)),
+    **dict.fromkeys((Kind.MASS, Kind.INERTIA), tuple(MASSES)),
+}
 _NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"
 _RATIO = r"^[0-9]+(/[0-9]+)?$"
 
@@ -132,7 +140,8 @@ def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schem
         number["minimum"], number["maximum"] = -(MOST**2), MOST**2
     kind = unit if field is None else field.unit or field.kind
     units = [*(LENGTHS if kind in _LENGTHS | _EITHER else ()), *(ANGLES if kind in _EITHER | {Kind.ANGLE} else ())]
-    text = f"^{_NUMBER_TEXT}({'|'.join(units)})?$" if units else f"^{_NUMBER_TEXT}$"
+    units += _CARRIED.get(kind, ())
+    text = f"^{_NUMBER_TEXT}({'|'.join(map(re.escape, units))})?$" if units else f"^{_NUMBER_TEXT}$"
     return {"anyOf": [number, {"type": "string", "pattern": text}]}
 
 

@@ -10,17 +10,36 @@ LENGTHS = {"mm": 10, "cm": 100, "in": 254, "inch": 254}
 """The units that a length may carry, in tenths of a millimetre."""
 ANGLES = {"deg": 1}
 """The units that an angle may carry, in degrees."""
+LBF = 44482216152605  # 1e-13 N: 0.45359237 kg by 9.80665 m/s^2
+FORCES = {"N": 10**13, "lbf": LBF}
+MOMENTS = {"Nm": 10**17, "lbf*in": 254 * LBF, "lbf-in": 254 * LBF}
+RATES = {"N/m": 254 * 10**9, "N/mm": 254 * 10**12, "lbf/in": LBF}
+MASSES = {"kg": 10**8, "lb": 45359237}
+"""The units that forces, moments, rates of springs and masses may carry, as whole multiples of one."""
 
-_QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)"
-_WITHIN = rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES))})\b"
+_QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³*-]*(?:\^[0-9])?)"
+_WITHIN = rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES, *FORCES, 'Nm', *MASSES))})\b"
 _MOST = 80  # characters; a number of them has fewer
 _RATIONAL = r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-_TAKEN = {"degrees": (ANGLES, "deg"), "mm": (LENGTHS, "mm"), "inch": (LENGTHS, "inch")}  # with the own one's name
+_TAKEN = {
+    "degrees": (ANGLES, "deg", "an angle"),
+    "mm": (LENGTHS, "mm", "a length"),
+    "inch": (LENGTHS, "inch", "a length"),
+    "N": (FORCES, "N", "a force"),
+    "N m": (MOMENTS, "Nm", "a moment"),
+    "N/m": (RATES, "N/m", "a spring rate"),
+    "kg": (MASSES, "kg", "a mass"),
+}  # with the own one's name, and what carries them
 
 
 def units_for(own: str) -> tuple[str, ...]:
-    """Name the units that a number may carry where the field's own is `degrees`, `mm` or `inch`; none elsewhere."""
+    """Name the units that a number may carry where the own one is such as `degrees`, `mm` or `N/m`; none elsewhere."""
     return tuple(_TAKEN[own][0]) if own in _TAKEN else ()
+
+
+def quantity_in(own: str) -> str:
+    """Say what is measured in a unit: `a length`."""
+    return _TAKEN[own][2]
 
 
 def holds_unit(text: str) -> bool:
@@ -42,7 +61,8 @@ def parted(text: str) -> tuple[str, str]:
     if found is None:
         return text, ""
     number, unit = found.groups()
-    return (number, unit) if unit in LENGTHS or unit in ANGLES or _is_number(number) else (text, "")
+    known = any(unit in units for units, *_ in _TAKEN.values())
+    return (number, unit) if known or _is_number(number) else (text, "")
 
 
 def _is_number(text: str) -> bool:
@@ -57,7 +77,8 @@ def read_quantity(text: str, own: str) -> float:
     """Read a number, with a unit or without, as one in the field's `own` unit; raises Complaint.
 
     A unit turns the number as written, a decimal or a fraction, into the own unit and rounds it once: `0.75 in` where
-    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm` or `inch`; other fields take none.
+    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m` or `kg`;
+    other fields take none.
     """
     number, unit = parted(text)
     value = read_number(number)
@@ -65,7 +86,7 @@ def read_quantity(text: str, own: str) -> float:
         return value
     if unit not in units_for(own):
         raise UnitComplaint(unit)
-    known, same = _TAKEN[own]
+    known, same, _ = _TAKEN[own]
     if value == 0.0 or known[unit] == known[same]:
         return value
     from fractions import Fraction

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.schema.errors import NEAR, NEARER, shown, suggestion
 from camgeo.schema.fields import Kind, either
-from camgeo.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
+from camgeo.schema.quantity import UnitComplaint, holds_unit, is_metric, quantity_in, read_quantity, units_for
 from camgeo.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
 from camgeo.schema.yaml_source import Scalar, described, written
 
@@ -92,7 +92,7 @@ def _refuse_unit(reader: Reader, field: Field, scalar: Scalar, path: str, unit: 
     """Note a unit that a number of this field does not take, with those that it does."""
     own = reader.unit(field.unit or field.kind)
     if taken := units_for(own):
-        problem = f"'{unit}' is no unit of {'an angle' if own == 'degrees' else 'a length'}"
+        problem = f"'{unit}' is no unit of {quantity_in(own)}"
         remedy = f"give {either(taken)}, or a number alone, which is in {own}"
     else:
         problem, meaning = "carries a unit", f": {field.about}" if field.about else ""

@@ -37,6 +37,18 @@ Readers: TypeAlias = "collections.abc.Mapping[Kind, Callable[[Reader, Field, Nod
 _LENGTHS = (Kind.LENGTH, Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.BACKLASH)  # unless it is an angle
 
 
+# Their units, and those of what turns.
+_SI = {
+    Kind.FORCE: ("N", "N"),
+    Kind.MOMENT: ("N m", "N m"),
+    Kind.RATE: ("N/m", "N/m"),
+    Kind.MASS: ("kg", "kg"),
+    Kind.THRUST: ("N", "N m"),
+    Kind.GIVING: ("N/m", "N m/rad"),
+    Kind.INERTIA: ("kg", "kg m²"),
+}
+
+
 class Reader:
     """Reads one recipe; what it has found grows as it does.
 
@@ -93,6 +105,8 @@ class Reader:
             return "degrees"
         if kind is Kind.AREA:
             return f"square {self.units}"
+        if kind in _SI:
+            return _SI[kind][Kind.MOTION in self.angular]
         return self.units if kind in {Kind.POINT, Kind.PAIR, *_LENGTHS} else ""
 
     def scale(self, kind: Kind) -> float:

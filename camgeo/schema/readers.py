@@ -29,6 +29,7 @@ READERS: Readers = {
     Kind.AREA: read_numeric,
     Kind.ANGLE: read_numeric,
     Kind.NUMBER: read_numeric,
+    Kind.RATE: read_numeric,
     Kind.INTEGER: read_numeric,
     Kind.STROKE: read_numeric,
     Kind.ERROR: read_numeric,

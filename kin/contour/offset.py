@@ -16,7 +16,7 @@ from kin.numeric.errors import KinError
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 STEPS = 60
 SETTLED = 1e-13  # of the size: a meeting is found to this
@@ -35,14 +35,16 @@ class TightError(KinError, ValueError):
 def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
     """Curve at `distance` mm to the left of a closed chain (to its right if negative), run the same way.
 
-    Pieces of the parallel no longer than `fine` mm are left out, and so is what lies within a thousandth of that beside
-    a joint whose tangents do not quite agree. Raises TightError for a piece that has no parallel.
+    Pieces of the parallel that follow one another and are together no longer than `fine` mm are left out, and so is
+    what lies within a thousandth of that beside a joint whose tangents do not quite agree. Raises TightError for a
+    piece that has no parallel.
     """
     stretched = loop.length * (1.0 - loop.curvature * distance)
-    tight = np.flatnonzero(stretched < -fine)
+    left_out = _left_out(stretched, fine)
+    tight = np.flatnonzero(~left_out & (stretched <= 0.0))
     if tight.size:
         raise _tight(loop, int(tight[0]), distance)
-    kept = np.flatnonzero(stretched > fine)
+    kept = np.flatnonzero(~left_out)
     if not kept.size:
         raise _tight(loop, 0, distance)
     chain = loop.take(kept)
@@ -85,6 +87,17 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
             points.append(joint[before])
             bulges.append(spanned[i])
     return Contour.from_bulges(np.array(points), np.array(bulges))
+
+
+def _left_out(stretched: Array, fine: float) -> Mask:
+    """Tell the pieces (n,) of a closed chain that are short, and with those beside them no longer than `fine`."""
+    length = np.abs(stretched)
+    short = length <= fine
+    first = int(np.argmin(short))  # which stays
+    run = np.cumsum(~np.roll(short, -first))
+    together = np.bincount(run, np.roll(np.where(short, length, 0.0), -first))
+    left_out: Mask = short & np.roll(together[run] <= fine, first)
+    return left_out
 
 
 def chain_of(points: Array, bulges: Array) -> Arcs:

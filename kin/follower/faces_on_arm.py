@@ -115,7 +115,7 @@ class ArmFace:
         _, slope, bend = shaft(theta)
         return np.stack([theta + turns * TURN, 1.0 / slope, -bend / slope**3])
 
-    def leeway(self, support: Array, tolerance: float, phi: Array) -> Array:
+    def leeway(self, support: Array, phi: Array, tolerance: float) -> Array:
         """Swing, radians (n,), that a shift of a contour by `tolerance` gives the face, to second order.
 
         `support` (3, n) is the contour's less `out`, with two derivatives, at the places touched at shaft angles phi
@@ -215,7 +215,7 @@ class _OnArm(Moved):
             return np.stack([self._rows(bearing, i, angle)[0] for i in each])
 
         angle = with_steps(phi)
-        errors = positions(angle) - self.intended(angle)
+        errors = positions(angle) - self.course.rows(angle)[0]
         flatness = [float(np.ptp(positions(x), axis=1).max()) for x in dwell_angles(self.rests, phi)]
         motion = motion_error(worst, errors, max(flatness, default=None), "deg")
         return Judged(motion, self._play(bearing) if len(self.faces) > 1 else None)
@@ -228,11 +228,13 @@ class _OnArm(Moved):
         def error(phi: Array, interval: Indices) -> Array:
             return self._rows(bearing, i, phi, middle[interval]) - self.course.rows(phi)
 
-        intended, jumps = self.course.rows(nodes), np.isin(nodes, (*breaks, 0.0, TURN))
+        # a break at 0 stands at either end
+        intended, jumps = self.course.rows(nodes), np.isin(nodes, (*breaks, 0.0, TURN) if len(breaks) else ())
 
         def error_at(ends: slice, side: Side) -> Array:
             rows, phi, at = intended[:, ends].copy(), nodes[ends], jumps[ends]
-            rows[:, at] = self.motion.derivatives(phi[at], 2, side)
+            if at.any():
+                rows[:, at] = self.motion.derivatives(phi[at], 2, side)
             return self._rows(bearing, i, phi, middle) - rows
 
         at_low, at_high = error_at(slice(None, -1), 1), error_at(slice(1, None), -1)
@@ -252,14 +254,18 @@ class _OnArm(Moved):
         least, most = (float(np.degrees(value)) for value in (found.least, found.greatest))
         return Play(least, degrees(found.least_at), most, degrees(found.greatest_at), "deg")
 
-    def _leeway(self, i: int, tolerance: float, tau: Array) -> Array:
-        """Swing, radians (n,), that `tolerance` gives face i where it touches what face A does at parameters (n,)."""
-        return self.faces[i].leeway(support_rows(self.pitch, tau)[0], tolerance, self.shaft_angle(tau))
+    @cached_property
+    def _touched(self) -> tuple[Array, Array]:
+        """What the intended contour has where face A touches it, as limits need it: see `ArmFace.leeway`."""
+        return self._touched_at(grid(self.breaks))
+
+    def _touched_at(self, tau: Array) -> tuple[Array, Array]:
+        """Support function less `out` with two derivatives (3, n), and shaft angles, at parameters (n,)."""
+        return support_rows(self.pitch, tau)[0], self.shaft_angle(tau)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest swing, degrees, that a shift of the contour by `tolerance` gives a face."""
-        tau = grid(self.breaks)
-        return float(np.degrees(max(self._leeway(i, tolerance, tau).max() for i in range(len(self.faces)))))
+        return float(np.degrees(max(face.leeway(*self._touched, tolerance).max() for face in self.faces)))
 
     def direct_limit(self, tolerance: float) -> float:
         """The same, degrees, at the pivot's distance."""
@@ -348,6 +354,14 @@ class FlatPair(OfTransmission, _OnArm):
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play, degrees, from such shifts at both faces."""
+        first, second = self.faces
+        swing = first.leeway(*self._touched, tolerance) + second.leeway(*self._touched_ahead, tolerance)
+        return float(np.degrees(swing.max()))
+
+    @cached_property
+    def _touched_ahead(self) -> tuple[Array, Array]:
+        """The same where face B touches it meanwhile."""
         tau = grid(self.breaks)
-        ahead = self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)
-        return float(np.degrees((self._leeway(0, tolerance, tau) + self._leeway(1, tolerance, ahead)).max()))
+        return self._touched_at(
+            self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)
+        )

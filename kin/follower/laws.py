@@ -52,11 +52,10 @@ class GuidedPitch:
         """Centre and two derivatives by the parameter, each (n, 2)."""
         return self.guide.path(*self._own(tau))
 
-    def leeway(self, tau: Array, tolerance: float) -> tuple[Array, Array, Array]:
-        """How far the roller may move before it leaves the pitch curve by `tolerance`, to second order: rad or mm (n,).
+    def rates(self, tau: Array) -> tuple[Array, Array]:
+        """First and second derivative of the distance from the pitch curve by the position, absolute, at tau: (n,).
 
-        Also first and second derivative of the distance from the pitch curve by the position, absolute (n,): the first
-        of an arm is l cos(pressure angle).
+        The first of an arm is l cos(pressure angle).
         """
         phi, own = self._own(tau)
         _, first, second = self.guide.path(phi, own)
@@ -68,9 +67,17 @@ class GuidedPitch:
         slope = np.abs(dot(across, outward))
         if (slope <= 0.0).any():
             raise ContactError("the roller moves along the cam, at a pressure angle of 90 degrees,", float("nan"))
-        sag = np.abs(bend * dot(across, tangent) ** 2 + dot(inward, outward))
-        swing = tolerance / slope
-        return swing + 0.5 * sag / slope * swing**2, slope, sag
+        return slope, np.abs(bend * dot(across, tangent) ** 2 + dot(inward, outward))
+
+
+def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
+    """How far a roller may move before it leaves the pitch curve by `tolerance`, to second order: rad or mm (n,).
+
+    `slope` and `sag` are those of `GuidedPitch.rates`.
+    """
+    swing = tolerance / slope
+    found: Array = swing + 0.5 * sag / slope * swing**2
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
-from kin.follower.laws import GuidedPitch
+from kin.follower.laws import GuidedPitch, leeway
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
@@ -135,6 +135,12 @@ class _Rollers(Moved):
         each = zip(self.contacts, self.guides, strict=True)
         return tuple(GuidedPitch(one, guide, self.breaks, self.over) for one, guide in each)
 
+    @cached_property
+    def _rates(self) -> tuple[tuple[Array, Array], ...]:
+        """Rates of each roller's distance from its pitch curve, all round, as limits need them."""
+        tau = grid(self.breaks)
+        return tuple(pitch.rates(tau) for pitch in self.pitches)
+
     @abstractmethod
     def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:
         """Shaft angles at which each roller whose error counts is looked at: `steps` first."""
@@ -168,8 +174,7 @@ class _Rollers(Moved):
         That is e/cos(pressure angle), of an arm over its length, the largest over the turn and of all rollers, and the
         term of second order.
         """
-        tau = grid(self.breaks)
-        most = max(float(pitch.leeway(tau, tolerance)[0].max()) for pitch in self.pitches)
+        most = max(float(leeway(*rates, tolerance).max()) for rates in self._rates)
         return math.degrees(most) if self.unit == "deg" else most
 
 
@@ -208,6 +213,12 @@ class RollerYoke(_Guided):
     through the shaft, and roller 2 makes the error that roller 1 makes half a turn on.
     """
 
+    @cached_property
+    def _opposite_rates(self) -> tuple[tuple[Array, Array], ...]:
+        """Rates of both rollers, looked at wherever either passes a break."""
+        tau = grid(np.sort(np.mod(np.concatenate([self.law.breaks, self.law.breaks + np.pi]), TURN)))
+        return tuple(pitch.rates(tau) for pitch in self.pitches)
+
     @property
     def closure(self) -> Closure:
         """The way that the frame can travel with the cam at rest."""
@@ -215,8 +226,7 @@ class RollerYoke(_Guided):
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference, mm: what either roller may be off."""
-        tau = grid(np.sort(np.mod(np.concatenate([self.law.breaks, self.law.breaks + np.pi]), TURN)))
-        near, far = (pitch.leeway(tau, tolerance)[0] for pitch in self.pitches)
+        near, far = (leeway(*rates, tolerance) for rates in self._opposite_rates)
         return float((near + far).max())
 
     def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play:  # noqa: ARG002
@@ -245,8 +255,8 @@ class DoubleRoller(OfTransmission, _Rollers):
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest gap or interference at B, mm: e there, and how far the swing from e at A moves B on the cam."""
-        tau = grid(self.breaks)
-        (swing, _, _), (_, slope, bend) = (pitch.leeway(tau, tolerance) for pitch in self.pitches)
+        first, (slope, bend) = self._rates
+        swing = leeway(*first, tolerance)
         return float((tolerance + slope * swing + 0.5 * bend * swing**2).max())
 
     def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -129,7 +130,7 @@ def _motion_checks(
         worst = motion.max if limits.motion is None else motion.bound
         at, detail = np.radians(motion.at_deg), _found(motion)
         direct = follower.direct_limit(limits.tolerance)
-        vacuous = limits.motion is None and is_loose(limit, direct, stroke_of(follower))
+        vacuous = limits.motion is None and is_loose(limit, direct, partial(stroke_of, follower))
         checked = at_most("motion", worst, limit, motion.unit, angle=at, detail=detail, slack=room)
         checks.append(unlimited(checked) if vacuous else checked)
     closure = follower.closure
@@ -165,7 +166,7 @@ def play_checks(
     if play.extremes == "sampled" and given is not None:
         worst += ALLOWANCE * abs(worst)
     direct = direct_play(closure, follower, limits.tolerance)
-    vacuous = given is None and is_loose(limit, direct, closure.radius or stroke_of(follower))
+    vacuous = given is None and is_loose(limit, direct, lambda: closure.radius or stroke_of(follower))
     checked = at_most(closure.name, worst, limit, play.unit, angle=at, detail=detail, slack=room)
     checks = [unlimited(checked) if vacuous else checked]
     if closure.tight is not None:

@@ -2,10 +2,13 @@
 
 Between two rows the distance X of the wheel's centre is linear in the angle C of the work. A circular arc through both
 rows and the middle of such a join stands for it. In polar coordinates the two agree at three angles, so they differ by
-at most H^3/(72 sqrt 3) max|r'''| over a step H, and a circle about a centre at a distance d = q R from the shaft has
-|r'''| <= d (1 + 5 q)/(1 - q^2)^(3/2) (at 4 096 angles for q from 0.05 to 0.9 it is at most 0.82 of that). The metal is
-the parallel of all joins at the wheel's radius inside: where two joins meet outward the parallels are cut off where
-they cross, where they meet inward the wheel leaves its own arc.
+at most H^3/(72 sqrt 3) max|r'''| over a step H. Of a circle of radius R about a centre at a distance d = q R from the
+shaft r = d cos C + g with g = R w, w = sqrt(1 - (q sin C)^2), and
+
+    g''' = R q^2 (sin C cos C/w) (1 + 3 (1 - q^2)/w^4),    |sin C cos C| <= w,    1 - q^2 <= w^2,
+
+so that |r'''| <= d + d q (1 + 3/(1 - q^2)). The metal is the parallel of all joins at the wheel's radius inside: where
+two joins meet outward the parallels are cut off where they cross, where they meet inward the wheel leaves its own arc.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
 
 UNITS = {"mm": 1.0, "in": 25.4}
 FULL = 1e-9  # degrees within which a table closes
-FINE = 0.05  # of the tolerance: what joints of the path may be snapped by
+FINE = 1e-3  # of the tolerance: what pieces of the metal are left out by
 LEAST_ROWS, MOST_ROWS = 8, 400_000
 COARSE = 0.9  # of a join's radius: its centre lies nearer the shaft than that
 
@@ -60,12 +63,14 @@ def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
     """Simulate a table of the wheel's or the roller's places; raises ReadError for what is none or grinds no lobe."""
     angles, distance, radius, units = _rows(path, grinding)
     loop, off = _joins(angles, distance, path)
+    fine = FINE * tolerance
     try:
-        edge = parallel(loop, radius, FINE * tolerance)
+        edge = parallel(loop, radius, fine)
     except TightError as error:
         told = f"the wheel of radius {radius:.6g} mm leaves no single contour: {error}"
         raise ReadError("open", told, path) from error
-    return Ground(Chain(edge, pieces=len(angles)), units, off)
+    short = np.abs(loop.length * (1.0 - loop.curvature * radius)) <= fine
+    return Ground(Chain(edge, pieces=len(angles)), units, off + (fine if short.any() else 0.0))
 
 
 def _rows(path: Path, grinding: Grinding) -> tuple[Array, Array, float, float]:
@@ -116,6 +121,9 @@ def _joins(angles: Array, distance: Array, path: Path) -> tuple[Arcs, float]:
         row = int(np.argmin(away < COARSE * radius))
         told = f"the wheel moves too fast for its step about {math.degrees(angles[row]):.6g} degrees"
         raise ReadError("range", told, path)
-    share = away / radius
-    bend = away * (1.0 + 5.0 * share) / (1.0 - share * share) ** 1.5
-    return loop, float((step**3 * bend).max()) / (72.0 * math.sqrt(3.0))
+    return loop, float((step**3 * bend(away, away / radius)).max()) / (72.0 * math.sqrt(3.0))
+
+
+def bend(away: Array, share: Array) -> Array:
+    """Bound of |r'''|, mm/rad^3, of circles in polar coordinates whose centres lie `away`, a `share` of the radius."""
+    return away * (1.0 + share * (1.0 + 3.0 / (1.0 - share * share)))

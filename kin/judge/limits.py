@@ -30,9 +30,9 @@ def stroke_of(follower: Follower) -> float:
     return float(np.degrees(stroke)) if follower.unit == "deg" else stroke
 
 
-def is_loose(limit: float, direct: float, size: float, share: float = MOST_SHARE) -> bool:
+def is_loose(limit: float, direct: float, size: Callable[[], float], share: float = MOST_SHARE) -> bool:
     """Whether a limit is above that share of a size, and far above what the same tolerance gives directly."""
-    return limit > share * size and limit > STEEP * direct
+    return limit > STEEP * direct and limit > share * size()
 
 
 def direct_play(closure: Closure, follower: Follower, tolerance: float) -> float:

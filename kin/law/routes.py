@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.segment import Harmonics, Series
+from kin.law.segment import Harmonics, Series, summed
 from kin.numeric import interval
 from kin.numeric.elementary import BallJet, Jet, acos, asin, cos, sin, sqrt
+from kin.numeric.interval import Ball
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -62,18 +63,23 @@ class FromDelta:
         """Give l^2 - D and l^2 + D of cosines alone; of -D where `sense` is -1, which makes D positive at t = 0."""
         terms: list[tuple[int, float]] = [(k, sense * a) for k, a, _ in self.delta.terms]
         rest = math.fsum([self.square, *(-a for _, a in terms)])
+        # all but the values are D's own derivatives
         if isinstance(t, Jet):
-            # all but the values are D's own derivatives
             rows = np.stack([-sense * value.c, sense * value.c])
             k, a = np.array(terms).T[:, :, None]
             rows[0, 0] = rest + (2 * a * np.sin(t.c[0] * (k / 2)) ** 2).sum(axis=0)
             rows[1, 0] = rest + (2 * a * np.cos(t.c[0] * (k / 2)) ** 2).sum(axis=0)
             return Jet(rows[0]), Jet(rows[1])
-        near = far = t.constant(rest)
-        for k, a in terms:
-            near = near + sin(t * (k / 2)) ** 2 * (2 * a)
-            far = far + cos(t * (k / 2)) ** 2 * (2 * a)
-        return near, far
+        k, a = np.array(terms).T
+        n = t.mid.shape[1]
+        half = Ball(np.tile(t.mid[0], k.size), np.tile(t.rad[0], k.size)) * np.repeat(k / 2, n)
+        found = []
+        for sign, wave in zip((-sense, sense), interval.sin_cos(half), strict=True):
+            each = wave**2 * np.repeat(2 * a, n)
+            least = summed(BallJet(each.mid[None], each.rad[None]), n) + rest
+            later = (value * sign).rows[1:]
+            found.append(BallJet(np.vstack([least.mid, later.mid]), np.vstack([least.rad, later.rad])))
+        return found[0], found[1]
 
 
 @dataclass(frozen=True)

@@ -187,13 +187,18 @@ class Harmonics:
         side = (order, len(k) * n)
         wide = [np.broadcast_to(rows[:, None, :], (order, len(k), n)).reshape(side) for rows in (t.mid, t.rad)]
         angle = BallJet(*wide) * np.repeat(k, n)
-        total = cos(angle) * np.repeat(a, n) + sin(angle) * np.repeat(b, n)
-        while (count := total.mid.shape[1] // n) > 1:
-            half = count // 2 * n
-            first, second, odd = (BallJet(total.mid[:, part], total.rad[:, part]) for part in _halves(half))
-            total = first + second
-            total = BallJet(np.hstack([total.mid, odd.mid]), np.hstack([total.rad, odd.rad]))
+        total = summed(cos(angle) * np.repeat(a, n) + sin(angle) * np.repeat(b, n), n)
         return total + self.mean if self.mean else total
+
+
+def summed(terms: BallJet, n: int) -> BallJet:
+    """Sum of terms side by side, each over the same n intervals: by halves."""
+    while (count := terms.mid.shape[1] // n) > 1:
+        half = count // 2 * n
+        first, second, odd = (BallJet(terms.mid[:, part], terms.rad[:, part]) for part in _halves(half))
+        terms = first + second
+        terms = BallJet(np.hstack([terms.mid, odd.mid]), np.hstack([terms.rad, odd.rad]))
+    return terms
 
 
 def _halves(half: int) -> tuple[slice, slice, slice]:

@@ -14,11 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
-from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
 from kin.numeric.interval import Ball
 from kin.numeric.records import dataclass
@@ -48,7 +46,6 @@ _TURN = 2 * math.pi
 # A jump in p or p' below this, relative to the largest of p, p', p'', is the rounding of a formula.
 _JOIN = 1e-11
 _SAME_CIRCLE = 16 * 2.0**-52
-_LOOKS = 1024  # angles at which a formula's rounding is asked for
 
 
 @dataclass(frozen=True)
@@ -149,17 +146,10 @@ class Lift:
         functions = tuple(_farther(f, out, scale) for f in law.functions)
         return Lift(Piecewise(law.knots, functions, law.period, law.smooth_seam), scale * self.datum)
 
-    @cached_property
+    @property
     def rounding(self) -> float:
-        """By how much p or p' may be off through the rounding of a recipe's own formula, mm; 0 where there is none.
-
-        The radius of what proved arithmetic gives at single angles, the greatest of `_LOOKS` all round: digits that a
-        formula loses by cancelling are not found again by anyone who computes with it.
-        """
-        if not any(isinstance(_bare(f), Expression) for f in self.law.functions):
-            return 0.0
-        theta = distinct(np.concatenate([np.arange(_LOOKS) * (_TURN / _LOOKS), self.breaks]))
-        return float(self.law.enclosure(theta, theta, 1)[1].max())
+        """By how much p or p' may be off through the rounding of a recipe's own formula, mm; 0 where there is none."""
+        return self.law.rounding
 
     @cached_property
     def _centred(self) -> Piecewise:
@@ -172,10 +162,6 @@ def _radius(function: Stretch) -> float:
     if isinstance(function, Circle):
         return function.radius
     return function.value if isinstance(function, Constant) else math.nan
-
-
-def _bare(function: Stretch) -> Stretch:
-    return _bare(function.function) if isinstance(function, _Moved) else function
 
 
 def _less_first(function: Stretch) -> Stretch:

@@ -487,3 +487,20 @@ def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
     report = camgeo.check(shaft(tmp_path, "\n".join(rows), files="[stl]", body=body))
     assert report.ok
     assert sum(check.name == "phase" for check in report.checks) == 24
+
+
+def test_the_rings_of_many_lobes_stay_wide_enough_for_their_numbers(tmp_path: Path) -> None:
+    rows = [f"recipe: intake.yaml, cylinder: {k // 2 + 1}, valve: intake, z: {4 * k}, length: 4" for k in range(24)]
+    order = ", ".join(str(k + 1) for k in range(12))
+    engine = ENGINE.replace("1, 3, 4, 2", order)
+    body = "  shaft: {diameter: 24, from: -2, to: 100}\n"
+    report = camgeo.export(shaft(tmp_path, "\n".join(rows), engine, files="[svg]", body=body), tmp_path / "out")
+    assert report.path is not None
+    text = (report.path / "shaft.svg").read_text(encoding="utf-8")
+    widths = [float(width) for width in re.findall(r'<path [^>]*stroke-width="([\d.]+)"', text)]
+    numbers = re.findall(r'font-size="([\d.]+)" text-anchor="middle" fill="#ffffff"[^>]*>(\d+)<', text)
+    assert len(widths) == len(numbers) == 24
+    assert all(width >= 2 * 0.62 * float(size) for width, (size, _) in zip(widths, numbers, strict=True))
+    side = float(re.findall(r'width="([\d.]+)"', text)[0])
+    reach = max(float(radius) for radius in re.findall(r' r="([\d.]+)"', text))
+    assert reach + 100 < side / 2

@@ -48,6 +48,20 @@ def test_the_arc_about_a_corner_shrinks_to_it():
         assert np.abs(np.sort(back.vertices, axis=0) - np.sort(SQUARE, axis=0)).max() <= 1.1 * abs(off) + 1e-12
 
 
+def test_a_spike_of_pieces_each_too_short_to_count():
+    """Pieces are left out if what they make together is short, not each by itself; over the seam too."""
+    steps = 0.04 * np.arange(26)
+    spike = np.concatenate(
+        [np.column_stack([np.full(26, 5.0), steps]), np.column_stack([np.full(25, 5.02), steps[:0:-1]])]
+    )
+    points = np.concatenate([SQUARE[:1], spike, SQUARE[1:]])
+    for shift in (0, 20):
+        with pytest.raises(TightError):
+            parallel(chain_of(np.roll(points, shift, axis=0), np.zeros(len(points))), 2.0, 0.05)
+    few = np.concatenate([SQUARE[:1], [[5.0, 0.0], [5.01, 0.0], [5.02, 0.0], [5.03, 0.0]], SQUARE[1:]])
+    assert len(parallel(chain_of(few, np.zeros(8)), 2.0, 0.05)) == 5
+
+
 @pytest.mark.parametrize("distance", [0.7, -0.7, 1.3, -2.5])
 @pytest.mark.parametrize(
     "shape",

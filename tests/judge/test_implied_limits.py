@@ -62,11 +62,12 @@ def loose(made: Report) -> list[Any]:
 
 
 def test_a_limit_is_loose_beside_the_stroke_and_beside_what_the_tolerance_gives_directly() -> None:
-    assert is_loose(1.01, 0.1, 10.0)
-    assert not is_loose(0.99, 0.01, 10.0)  # less than a tenth of the stroke
-    assert not is_loose(1.99, 0.2, 10.0)  # a coarse tolerance, which the recipe is told of by another remark
-    assert is_loose(0.11, 0.001, 10.0, LOOSE)
-    assert not is_loose(0.09, 0.001, 10.0, LOOSE)
+    assert is_loose(1.01, 0.1, lambda: 10.0)
+    assert not is_loose(0.99, 0.01, lambda: 10.0)  # less than a tenth of the stroke
+    assert not is_loose(1.99, 0.2, lambda: pytest.fail("the stroke does not count"))
+    assert not is_loose(1.99, 0.2, lambda: 10.0)  # a coarse tolerance, which the recipe is told of by another remark
+    assert is_loose(0.11, 0.001, lambda: 10.0, LOOSE)
+    assert not is_loose(0.09, 0.001, lambda: 10.0, LOOSE)
 
 
 @pytest.mark.slow

@@ -13,6 +13,8 @@ from support.programmes import Segment, law, programme
 
 from kin.law.formula.formula import Formula
 from kin.law.programme import IntentError, polynomial_law
+from kin.law.routes import FromDelta
+from kin.law.segment import Harmonics
 from kin.law.transmission import from_arc, from_delta, from_law, from_rosette
 from kin.numeric.elementary import BallJet, Jet
 
@@ -641,3 +643,21 @@ def test_no_motion_is_a_circle_about_the_shaft():
         assert rest.breaks.tolist() == []
         assert rest.radius == pytest.approx([2 * L * math.cos(rest.alpha / 2)])
         assert rest.psi_of_shaft(np.linspace(0, 7, 9), 2).tolist() == np.zeros((3, 9)).tolist()
+
+
+@pytest.mark.parametrize("size", [0.3, 1.0])  # of what reaches |D| = l^2, where the other factor vanishes
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_factors_over_intervals_hold_those_at_points(size, sense):
+    waves = {1: 900.0, 3: 140.0, 5: -60.0, 9: 31.0}
+    scale = sense * size * 3600.0 / sum(waves.values())
+    law = FromDelta(Harmonics(0.0, tuple((k, scale * a, 0.0) for k, a in waves.items())), 3600.0)
+    low = np.linspace(-np.pi, np.pi, 49)[:-1]
+    t = BallJet.variable(low, low + 0.13, 4)
+    for share in (0.0, 0.37, 1.0):
+        at = Jet.variable(low + share * 0.13, 4)
+        for ball, jet in zip(law.factors(t, law.delta(t)), law.factors(at, law.delta(at)), strict=True):
+            below, above = ball.bounds()
+            noise = 1e-12 * np.abs(jet.derivatives()).max(axis=1, keepdims=True)
+            assert (below - noise <= jet.derivatives()).all()
+            assert (jet.derivatives() <= above + noise).all()
+            assert (above - below)[1:].max() < 2.0 * np.ptp(jet.derivatives(), axis=1)[1:].max()

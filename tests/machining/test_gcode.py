@@ -403,7 +403,18 @@ def straight_in(text):
     return nth(r"G3 (X\S+ Y\S+) I\S+ J\S+", 0, lambda m: f"G1 {m[1]}")(text)
 
 
+def into_the_metal_and_back(match):
+    """A cut a tenth of a millimetre deep, of moves each of which is shorter than what is left out of a parallel."""
+    x, y = float(match[1]), float(match[2])
+    deep = [1.0 - 4e-5 * k / math.hypot(x, y) for k in (*range(1, 2500), *range(2499, -1, -1))]
+    return match[0] + "".join(f"G1 X{share * x:.5f} Y{share * y:.5f}\n" for share in deep)
+
+
 FAULTS = {
+    "a cut of tiny moves": (
+        in_last_pass(nth(r"G2 X(\S+) Y(\S+) .*\n", 6, into_the_metal_and_back)),
+        {"closed", "gouge"},
+    ),
     "an arc's direction": (in_last_pass(nth(r"G2 (X\S+ Y\S+ I)", 6, lambda m: f"G3 {m[1]}")), {"contour", "closed"}),
     "an end moved by a hundredth": (moved(0.01), {"readable", "contour"}),
     "all x moved by a hundredth": (

@@ -3,8 +3,12 @@
 import json
 import re
 
+import mpmath
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.cases import examples
 
 from camgeo.cli.main import main
 from camgeo.curve.curve import Curve
@@ -14,6 +18,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from kin.judge.grinding import bend
 
 FLAT = """
 cam:
@@ -25,7 +30,7 @@ manufacture: {wheel: 400}
 export: {tolerance: %s, files: [%s]}
 """
 UNEVEN = "[{rise: 6, over: 70, law: polynomial-4567}, {return: 6, over: 95, law: polynomial-4567}, {dwell: 195}]"
-FAULTS = ("wheel", "half", "contact", "turned", "open", "inch")
+FAULTS = ("wheel", "half", "contact", "turned", "open", "inch", "radians", "lift", "twice", "missing")
 GRINDING = "{csv: {as: grinding%s}}"
 
 
@@ -75,6 +80,29 @@ def test_bound_of_the_second_derivative_is_proved_and_sharp() -> None:
     assert np.abs(bent).max() == pytest.approx(39.1648, rel=1e-3)
 
 
+@given(share=st.floats(0.0, 0.9), angle=st.floats(0.0, 6.3))
+@settings(max_examples=examples(40), deadline=None)
+def test_bound_of_the_third_derivative_of_an_arc(share: float, angle: float) -> None:
+    """Against mpmath's derivative of the distance of a circle's points from the shaft, the radius 1."""
+
+    def distance(c: mpmath.mpf) -> mpmath.mpf:
+        return share * mpmath.cos(c) + mpmath.sqrt(1 - (share * mpmath.sin(c)) ** 2)
+
+    with mpmath.workdps(40):
+        third = abs(float(mpmath.diff(distance, mpmath.mpf(angle), 3)))
+    assert third <= float(bend(np.array(share), np.array(share))) * (1.0 + 1e-12) + 1e-15
+
+
+def test_bound_of_the_third_derivative_is_sharp_for_small_shares() -> None:
+    angle = np.linspace(0.0, 6.3, 4001)
+    for share, least in ((1e-3, 0.99), (0.1, 0.75), (0.5, 0.3)):
+        distance = share * np.cos(angle) + np.sqrt(1.0 - (share * np.sin(angle)) ** 2)
+        third = distance
+        for _ in range(3):
+            third = np.gradient(third, angle)
+        assert np.abs(third[9:-9]).max() >= least * float(bend(np.array(share), np.array(share)))
+
+
 @pytest.mark.parametrize("rotation", ["cw", pytest.param("ccw", marks=pytest.mark.slow)])
 def test_wheel_simulated_by_hand(rotation, tmp_path) -> None:
     """The metal's own places stand one wheel's radius from the joined rows, within what the head of the table says."""
@@ -108,7 +136,7 @@ def test_lift_of_a_roller_on_the_same_metal(tmp_path) -> None:
 
 @pytest.mark.parametrize(
     "fault",
-    ["mirrored", *(pytest.param(name, marks=pytest.mark.slow) for name in FAULTS)],
+    ["mirrored", "spoilt", "spoilt outward", *(pytest.param(name, marks=pytest.mark.slow) for name in FAULTS)],
 )
 def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
     text = FLAT % (0.0001, GRINDING % "")
@@ -134,6 +162,19 @@ def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
             rows[-1, 1] = rows[0, 1]
         case "open":
             rows = rows[:-1]
+        case "spoilt":  # one row, where the cam dwells, by twice the tolerance
+            rows[len(rows) - 40, 1] -= 2e-4
+        case "spoilt outward":
+            rows[np.argmax(np.abs(np.diff(rows[:, 1]))), 1] += 2e-4
+        case "radians":
+            rows[:, 0] = np.radians(rows[:, 0])
+        case "lift":
+            rows[:, 1] -= rows[:, 1].min() - 1e-6
+        case "twice":
+            rows = np.insert(rows, 7, rows[7], axis=0)
+        case "missing":  # twenty rows on a flank
+            worst = int(np.argmax(np.abs(np.diff(rows[:, 1]))))
+            rows = np.delete(rows, np.arange(worst, worst + 20), axis=0)
         case "inch":
             lines[first] = lines[first].replace("_mm", "_in")
     body = [",".join(f"{value:.12g}" for value in row) for row in rows]

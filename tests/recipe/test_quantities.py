@@ -131,8 +131,8 @@ def test_what_is_no_unit_of_a_field(field: str, text: str, said: str) -> None:
             "given '9000 rpm'; give a number above 0 up to 1000000 without a unit: speed of the spindle, turns",
         ),
         (
-            "dynamics: {mass: 1, stiffness: 2e5 N/m, damping: 30, preload: 100, rate: 1000, rpm: 600}",
-            "dynamics.stiffness: carries a unit, given '2e5 N/m'; give a number above 0",
+            "dynamics: {mass: 1, stiffness: 2e5, damping: 30 N s/m, preload: 100, rate: 1000, rpm: 600}",
+            "dynamics.damping: not a number, given '30 N s/m'; give a number of at least 0",
         ),
         ("verify: {angles: 360 mm}", "verify.angles: carries a unit, given '360 mm'; give a whole number"),
     ],

@@ -164,6 +164,15 @@ def test_round_tappet() -> None:
             load_text(LOBE % (given, ""), "r")
 
 
+def test_a_table_of_crank_degrees_that_is_read_as_one_of_the_cam_says_what_to_give(tmp_path) -> None:
+    rows = [f"{angle},{max(0.0, 8.0 * math.cos(math.radians(angle / 2.0))) ** 3:.6f}" for angle in range(0, 720, 4)]
+    (tmp_path / "lift.csv").write_text("\n".join(rows) + "\n")
+    text = "cam: {kind: disc, base_radius: 300, follower: {kind: flat}, motion: {table: lift.csv%s}}\n"
+    with pytest.raises(RecipeErrors, match="covers more than 360 degrees; give angle: crank if its angles are the"):
+        designed(load_text(text % "", str(tmp_path / "lobe.yaml")))
+    designed(load_text(text % ", angle: crank, reading: 0.01", str(tmp_path / "lobe.yaml")))
+
+
 def test_table_in_thousandths(tmp_path) -> None:
     motion = lobe(8.0, 68 * DEGREE, POWERS)
     rows = [(k, at(motion, float(k % 360))) for k in range(360)]

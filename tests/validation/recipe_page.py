@@ -29,6 +29,13 @@ UNITS = {
     Kind.STROKE: "length; deg",
     Kind.MOTION: "deg; length",
     Kind.BACKLASH: "length; deg",
+    Kind.FORCE: "N",
+    Kind.MOMENT: "N m",
+    Kind.RATE: "N/m",
+    Kind.MASS: "kg",
+    Kind.THRUST: "N; N m",
+    Kind.GIVING: "N/m; N m/rad",
+    Kind.INERTIA: "kg; kg m²",
 }
 
 

@@ -185,11 +185,10 @@ class Ask:
             Kind.ANGLE: Unit("deg"),
             Kind.LENGTH: length,
             Kind.MOTION: length if slides else Unit("deg"),
-            Kind.NUMBER: Unit(""),
         }
         found = {}
         for name in figures:
-            unit = by_kind[FIGURES[name].kind]
+            unit = by_kind.get(FIGURES[name].kind, Unit(""))  # numbers, and forces in SI
             found[name] = replace(unit, name=unit.name + FIGURES[name].per)
         return found
 

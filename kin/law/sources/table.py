@@ -166,7 +166,10 @@ def _demand_rows(
     over = float(rows.theta[-1] - rows.theta[0])
     if over > total + SAME_ANGLE:
         i = int(np.argmax(rows.theta - rows.theta[0] > total + SAME_ANGLE))
-        raise TableError(f"the table covers more than {math.degrees(total):.6g} degrees", field, int(rows.lines[i]))
+        crank = quantity == "displacement" and over <= 2.0 * total + SAME_ANGLE
+        remedy = "; give angle: crank if its angles are the crank's" if crank else ""
+        covered = f"the table covers more than {math.degrees(total):.6g} degrees{remedy}"
+        raise TableError(covered, field, int(rows.lines[i]))
 
 
 def _one_turn(rows: Samples, task: Task, field: str) -> tuple[Samples, Dwelling | None]:
