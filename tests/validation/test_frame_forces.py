@@ -15,10 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.page_tables import Row
 from support.square_frame import Bars, axes, solve
 
 from camgeo.measures.figures import of_design
 from camgeo.measures.force_figures import extremes_of, forces_section
+from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.running_forces import running_of
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
@@ -50,6 +52,60 @@ def running(text, dynamics):
 
 def at(text, dynamics, *theta_deg):
     return running(text, dynamics).at(np.radians(np.array(theta_deg, dtype=float)))
+
+
+SOURCES = {
+    "f06": (FOUR_BAR, F06, "AS Figure 9, cam 2a; 12 N m, 0.02 kg m², 120 rpm"),
+    "f07": (FOUR_BAR, F07, "the same, its coupler 0.8 kg, 6e-4 kg m²"),
+    "f08": (INVERTED, F08, "AS Figure 13, cam 2a; 9 N m, 0.03 kg m², 100 rpm"),
+    "f09": (SLIDER, F09, "slider-crank, cam 2a; 200 N, 1.5 kg, 120 rpm"),
+}
+TURN = {  # greatest and least over the turn of f06, as its report has them
+    "across": (9.691172009, -10.134931131),
+    "along": (226.068193330, 132.737274408),
+    "torque": (3.032448252, -4.775890654),
+}
+AT = (  # case, theta, what, value
+    ("f06", 60, "across", 3.635095377),
+    ("f06", 60, "along", 222.464669181),
+    ("f06", 60, "torque", -3.938699874),
+    ("f06", 60, "joint", 222.494366113),
+    ("f07", 60, "across", 8.645901014),
+    ("f07", 60, "along", 228.108336195),
+    ("f07", 60, "torque", -3.991212461),
+    ("f07", 290, "torque", 0.020466756),
+    ("f08", 100, "across", 72.211346842),
+    ("f08", 300, "torque", -2.136467633),
+    ("f09", 60, "across", 3.439611483),
+    ("f09", 60, "along", 210.501225245),
+    ("f09", 60, "guide", -44.452328318),
+    ("f09", 60, "torque", -3.726889093),
+)
+
+
+def rows(workshop):
+    """Forces over the turn from reports, and at relative angles, by equilibrium in the plane and virtual work."""
+    report = workshop.written("forces-f06", f"name: forces-f06\n{FOUR_BAR}dynamics: {{{F06}}}\n").report["forces"]
+    found = []
+    for what, values in TURN.items():
+        one = report["torque"] if what == "torque" else next(r for r in report["reactions"] if r["reaction"] == what)
+        for word, key, value in zip(("greatest", "least"), ("max", "min"), values, strict=True):
+            found.append(_row(f"{word} {_named(what)}", "f06", what, value, one[key]))
+    runs = {case: running(text, dynamics) for case, (text, dynamics, _) in SOURCES.items()}
+    for case, theta, what, value in AT:
+        state = runs[case].at(np.radians([float(theta)]))
+        ours = state.torque if what == "torque" else state.reactions[what]
+        found.append(_row(f"{_named(what)} at θ = {theta}°", case, what, value, float(ours[0])))
+    return found
+
+
+def _named(what):
+    return REACTIONS.get(what, what)
+
+
+def _row(quantity, case, what, value, ours):
+    named = f"{quantity}, {'N m' if what == 'torque' else 'N'}, {case}"
+    return Row(named, SOURCES[case][2], f"{value:.9g}", value, ours, 1e-8 * max(1.0, abs(value)), ".10g")
 
 
 # --- worked cases -----------------------------------------------------------------------------------------------------
