@@ -10,6 +10,7 @@ from camgeo.checks.declared import FLOAT
 from camgeo.measures.forces import Extreme
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.running_forces import running_of
+from camgeo.measures.units import pounds
 from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from kin.judge.check import Check
 from kin.numeric.angles import TURN
@@ -118,8 +119,11 @@ def found_forces(recipe: Recipe, design: Design) -> Forces | None:
     return Forces(forces_section(running, found), () if check is None else (check,))
 
 
-def forces_table(running: Running, count: int) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm."""
+def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm.
+
+    With the `units` inch behind them lbf, lbf in and psi.
+    """
     state = running.state(np.linspace(0.0, TURN, count + 1))
     names = [name.replace(" ", "_") for name in running.turn.names]
     several = len(names) > 1
@@ -131,6 +135,11 @@ def forces_table(running: Running, count: int) -> tuple[tuple[str, ...], Array]:
     for column, rows in groups:
         if rows is not None:
             columns |= {f"{name}_{column}" if several else column: row for name, row in zip(names, rows, strict=True)}
+    for column in tuple(columns):
+        for ending, unit in (("_N", "N"), ("_Nm", "N m"), ("_N_mm2", "N/mm^2")):
+            if column.endswith(ending) and (other := pounds(units, unit)) is not None:
+                name, many = other
+                columns[f"{column.removesuffix(ending)}_{name.replace(' ', '_')}"] = many * columns[column]
     return tuple(columns), np.column_stack(list(columns.values()))
 
 

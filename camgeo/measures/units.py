@@ -5,10 +5,32 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from camgeo.schema.quantity import FORCES, MOMENTS
+
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
 
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
+LBF = FORCES["N"] / FORCES["lbf"]
+_POUNDS = {
+    "N": ("lbf", LBF),
+    "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"]),
+    "N/mm^2": ("psi", LBF * 25.4**2),
+}
+
+
+def pounds(units: str, unit: str) -> tuple[str, float] | None:
+    """Unit beside SI for a force, a moment or a pressure where a recipe's `units` are inches, and how many are one.
+
+    None of other units, and in mm.
+    """
+    return _POUNDS.get(unit) if units == "inch" else None
+
+
+def with_pounds(units: str, value: float | None, unit: str) -> str:
+    """A unit, and behind it the value in pounds where that is told: `N (115.2 lbf)`."""
+    other = pounds(units, unit)
+    return unit if other is None or value is None else f"{unit} ({value * other[1]:.6g} {other[0]})"
 
 
 def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | None, str]:

@@ -81,14 +81,14 @@ def _inspection(job: Job, request: FileRequest) -> Columns:
     return inspection_table(job.recipe.told_for(request), job.design)
 
 
-def _forces(job: Job, _: FileRequest) -> Columns:
+def _forces(job: Job, request: FileRequest) -> Columns:
     from camgeo.measures.force_figures import forces_table
     from camgeo.measures.running_forces import running_of
 
     running = running_of(job.recipe, job.design)
     if running is None:
         raise ValueError(f"{job.recipe.name}: there are no forces")
-    return forces_table(running, job.recipe.verify.angles)
+    return forces_table(running, job.recipe.verify.angles, job.recipe.told_for(request).units)
 
 
 def _trace(job: Job, request: FileRequest) -> Columns:

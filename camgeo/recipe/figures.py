@@ -449,7 +449,8 @@ def _limits_schema(field: Field) -> Schema:
     tables = {name: own_bounds(name) if field is LIMITS else bounds(FIGURES[name]) for name in field.choices}
     limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
     for name in AT_LIFT if field is LIMITS else ():  # one lift, or a list of them
-        limits[name] |= {"type": ["object", "array"], "items": limits[name], "minItems": 1, "maxItems": MOST_LIFTS}
+        item = limits[name]
+        limits[name] = {**item, "type": ["object", "array"], "items": item, "minItems": 1, "maxItems": MOST_LIFTS}
     for former, name in field.former_choices:
         limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}

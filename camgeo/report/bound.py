@@ -40,6 +40,12 @@ def title(check: Mapping[str, object]) -> str:
     return f"{check['name']}, {check['surface']}" if check.get("surface") else str(check["name"])
 
 
+def unit_text(check: Mapping[str, Any]) -> str:
+    """Give the unit of a check, behind it its value in pounds where the report has that: `N (115.2 lbf)`."""
+    told = check.get("pounds")
+    return str(check["unit"]) if told is None else f"{check['unit']} ({told['value']:.6g} {told['unit']})"
+
+
 def is_strict(check: dict[str, Any]) -> bool:
     """Whether a figure equal to the check's limit fails."""
     name, limit = check["name"], check["limit"]

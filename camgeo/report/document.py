@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
-from camgeo.measures.units import in_units
+from camgeo.measures.units import in_units, pounds
 from camgeo.recipe.export import NO_CONTOUR
-from camgeo.report.bound import is_strict, sign, title, words
+from camgeo.report.bound import is_strict, sign, title, unit_text, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 from kin.judge.verdict import UNREAD
@@ -111,6 +111,9 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
         "sense": check.sense,
         "at_deg": check.at_deg,
     }
+    if (other := pounds(recipe.units, unit)) is not None and value is not None:
+        name, many = other
+        entry["pounds"] = {"value": value * many, "limit": None if limit is None else limit * many, "unit": name}
     if check.name in EVERY and EVERY[check.name].formerly:
         entry["formerly"] = EVERY[check.name].formerly
     if check.file is not None:
@@ -324,7 +327,7 @@ def table(report: dict[str, Any]) -> str:
             "ok" if check["ok"] else "FAILED",
             value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
-            check["unit"],
+            unit_text(check),
             "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
             escaped(check.get("file", "")),
         )
@@ -384,7 +387,7 @@ def _told(check: dict[str, Any]) -> str:
     if check.get("file"):
         text += f" ({escaped(check['file'])})"
     if check["value"] is not None:
-        text += f": {_number(check['value'])} {check['unit']}".rstrip()
+        text += f": {_number(check['value'])} {unit_text(check)}".rstrip()
         if check["limit"] is not None:
             word = "needed" if is_strict(check) else "allowed"
             text += f", {words(check)} {_number(check['limit'])} {word}"

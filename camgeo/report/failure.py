@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY, LIMIT, LIMITS, Declared
-from camgeo.report.bound import title, words
+from camgeo.report.bound import title, unit_text, words
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -59,7 +59,7 @@ def _field(check: dict[str, Any], recipe: Recipe) -> str:
 
 
 def _value(check: dict[str, Any]) -> str:
-    return "" if check["value"] is None else f"{check['value']:.6g} {check['unit']}".rstrip()
+    return "" if check["value"] is None else f"{check['value']:.6g} {unit_text(check)}".rstrip()
 
 
 def _limit(check: dict[str, Any]) -> str:

@@ -363,6 +363,31 @@ def test_planted_faults(
     assert failing(camgeo.verify(right, made.path / "shaft.stl")) == fails
 
 
+MIRRORED = (
+    "[{dwell: 180}, {rise: 12, over: 90, law: cycloidal}, {dwell: 30}, {return: 12, over: 60, law: modified-sine}]"
+)
+OTHER_LOBES = {
+    "a mirrored lobe": (MIRRORED, "offset: -4"),
+    "a table in crank degrees read as one of the cam": (
+        "[{rise: 12, over: 30, law: modified-sine}, {dwell: 15}, {return: 12, over: 45, law: cycloidal}, {dwell: 270}]",
+        "offset: 4",
+    ),
+}
+
+
+@pytest.mark.parametrize(("motion", "offset"), OTHER_LOBES.values(), ids=OTHER_LOBES)
+def test_another_lobe_is_caught(tmp_path: Path, solid: tuple[Path, camgeo.Report], motion: str, offset: str) -> None:
+    right, _ = solid
+    path = shaft(tmp_path, TWO)
+    text = re.sub(r"motion: .*", f"motion: {motion}", ROLLER).replace("offset: 4", offset)
+    (tmp_path / "roller.yaml").write_text(text)
+    made = camgeo.export(path, tmp_path / "out")
+    assert made.path is not None
+    fails = failing(camgeo.verify(right, made.path / "shaft.stl"))
+    assert {"phase, roller", "contour, roller", "motion, roller"} <= fails
+    assert not {name for name in fails if name.endswith("intake")}
+
+
 def test_a_mirrored_shaft_fails(tmp_path: Path, solid: tuple[Path, camgeo.Report]) -> None:
     right, _ = solid
     made = camgeo.export(shaft(tmp_path, TWO, extra="rotation: ccw\n"), tmp_path / "out")

@@ -403,6 +403,11 @@ def test_the_schema_knows_every_limit() -> None:
     for name, bounds in schema["properties"].items():
         assert set(bounds["properties"]) == {"at_least", "at_most"} | more.get(name, set())
         assert bounds["minProperties"] == 1
+    lifts = schema["properties"]["duration"]  # one mapping, or a list of them
+    assert lifts["type"] == ["object", "array"]
+    assert lifts["items"] == {key: lifts[key] for key in lifts["items"]} | {"type": "object"}
+    assert "items" not in lifts["items"]
+    assert json.loads(json.dumps(schema)) == schema
 
 
 @pytest.mark.parametrize("kind", KINDS)

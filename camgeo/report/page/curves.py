@@ -141,22 +141,28 @@ def forces(recipe: Recipe, design: Design) -> list[Plot]:
     """Return the plots of forces at the contacts and of the shaft's torque; none but of a rigid train."""
     from camgeo.measures.frame_forces import REACTIONS
     from camgeo.measures.running_forces import running_of
+    from camgeo.measures.units import pounds
 
     running = None if recipe.dynamics is None else running_of(recipe, design)
     if running is None or running.jam_deg is not None:
         return []
     state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
+
+    def noted(unit: str) -> str:
+        other = pounds(recipe.units, unit)
+        return note if other is None else f"{note}; 1 {unit.replace('^2', '²')} is {other[1]:.6g} {other[0]}"
+
     normal = tuple(Series(name, row) for name, row in zip(running.turn.names, state.normal, strict=True))
     plots = [
-        Plot("Contact force", "N", normal, dwells=True, note=note),
-        Plot("Torque of the shaft", "N m", (Series("torque", state.torque),), dwells=True, note=note),
+        Plot("Contact force", "N", normal, dwells=True, note=noted("N")),
+        Plot("Torque of the shaft", "N m", (Series("torque", state.torque),), dwells=True, note=noted("N m")),
     ]
     if recipe.linkage is not None:
         series = tuple(Series(REACTIONS[name], row) for name, row in state.reactions.items())
-        plots.append(Plot("Forces of the frame", "N", series, dwells=True, note=note))
+        plots.append(Plot("Forces of the frame", "N", series, dwells=True, note=noted("N")))
     if state.pressure is not None:
         series = tuple(Series(name, row) for name, row in zip(running.turn.names, state.pressure, strict=True))
-        plots.append(Plot("Contact pressure", "N/mm²", series, dwells=True, note=note))
+        plots.append(Plot("Contact pressure", "N/mm²", series, dwells=True, note=noted("N/mm^2")))
     return plots
 
 

@@ -8,7 +8,8 @@ from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
 from camgeo.measures.frame_forces import REACTIONS
-from camgeo.report.bound import sign, title
+from camgeo.measures.units import with_pounds
+from camgeo.report.bound import sign, title, unit_text
 from camgeo.report.document import measured, pieces_word, value_text
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, t
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
-        f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
+        f"<td>{escape(_unit(unit_text(check)))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
@@ -183,7 +184,7 @@ def preload(report: dict[str, Any]) -> str:
             (f"load that lifts {one['contact']} off", one["load"], one["unit"], one["at_deg"])
             for one in section["lost"]
         ]
-        table = _figures("Preload", cells)
+        table = _figures("Preload", cells, report["units"])
     return f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{told}</p>{table}</section>'
 
 
@@ -222,16 +223,16 @@ def forces(report: dict[str, Any]) -> str:
     rows += [
         (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
     ]
-    return f"{head}<p>{told}</p>{_figures('Forces', rows)}</section>"
+    return f"{head}<p>{told}</p>{_figures('Forces', rows, report['units'])}</section>"
 
 
-def _figures(title: str, figures: Sequence[_Row]) -> str:
-    """Return a table of figures with their units and places."""
-    rows = [
-        f'<tr><th scope="row">{escape(name)}</th><td class="number">{number(value)}</td><td>{escape(unit)}</td>'
-        f"<td>{_place(at, 'shaft')}</td></tr>"
-        for name, value, unit, at in figures
-    ]
+def _figures(title: str, figures: Sequence[_Row], units: str) -> str:
+    """Return a table of figures with their units and places; of a recipe in inches with pounds beside N."""
+    rows = []
+    for name, value, si, at in figures:
+        told = escape(_unit(with_pounds(units, value, si)))
+        cells = f'<td class="number">{number(value)}</td><td>{told}</td><td>{_place(at, "shaft")}</td>'
+        rows.append(f'<tr><th scope="row">{escape(name)}</th>{cells}</tr>')
     return _table(title, ("figure", "value", "unit", "at"), rows)
 
 
@@ -240,18 +241,25 @@ def dynamics(report: dict[str, Any]) -> str:
     section = report.get("dynamics")
     if section is None:
         return ""
-    unit, rows = section["force_unit"], []
+    unit, rows = section["force_unit"], list[str]()
     for run in section["runs"]:
         steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
         cells = [
-            *(_figure(steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")) for name in ("peak", "least")),
+            *(_force(steady, name, unit, report["units"]) for name in ("peak", "least")),
             number(run.get("float_rpm")),
             NONE if impacts.get("count") is None else str(impacts["count"]),
             number(impacts.get("greatest_velocity")),
         ]
         body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
         rows.append(f'<tr><th scope="row">{escape(run["from"])}</th>{body}</tr>')
-    head = ("driven by", f"peak force, {unit}", f"least force, {unit}", "floats from, rpm", "impacts a turn", "fastest")
+    head = (
+        "driven by",
+        f"peak force, {unit}",
+        f"least force, {unit}",
+        "floats from, rpm",
+        "impacts a turn",
+        "fastest",
+    )
     told = (
         f"At {number(section['rpm'])} rpm; the train's own frequency is {number(section['natural_ratio'])} times the "
         f"shaft's, its damping ratio {number(section['damping_ratio'])}."
@@ -260,9 +268,13 @@ def dynamics(report: dict[str, Any]) -> str:
     return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
 
 
-def _figure(value: float | None, angle: float | None) -> str:
-    """Return a figure with the place where it is."""
-    return number(value) if value is None or angle is None else f"{number(value)} {_place(angle, 'shaft')}"
+def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
+    """Return an extreme of a train's force with the place where it is; of a recipe in inches with pounds."""
+    value, angle = steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")
+    if value is None or angle is None:
+        return number(value)
+    told = with_pounds(units, value, si).removeprefix(si)
+    return f"{number(value)}{told} {_place(angle, 'shaft')}"
 
 
 def skipped(report: dict[str, Any]) -> str:

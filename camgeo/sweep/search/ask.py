@@ -185,6 +185,9 @@ class Ask:
             Kind.ANGLE: Unit("deg"),
             Kind.LENGTH: length,
             Kind.MOTION: length if slides else Unit("deg"),
+            Kind.FORCE: Unit("N"),
+            Kind.MOMENT: Unit("N m"),
+            Kind.THRUST: Unit("N m" if swings else "N"),
         }
         found = {}
         for name in figures:
