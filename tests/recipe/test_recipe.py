@@ -401,7 +401,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
         kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
         assert {file.kind for file in recipe.export.files} - {"gcode"} == kinds
     files = [file for recipe in recipes.values() for file in recipe.export.files]
-    tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace"}
+    tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace", "forces"}
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", *tables, None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
     assert {recipe.units for recipe in recipes.values()} == {"mm", "inch"}

@@ -507,7 +507,8 @@ def test_report_page_table_and_figures(tmp_path):
     assert figures["contact-force-greatest"].surface == "face 4"
     assert figures["contact-pressure"].value == max(one["max"] for one in section["pressure"])
     page = next(tmp_path.rglob("*.html")).read_text(encoding="utf-8")
-    for words in ("force along the frame", "greatest force in joint D", "Forces of the frame"):
+    titles = ("Contact force, face 2 and face 4", "Contact pressure, face 1 and face 3", "Forces of the frame")
+    for words in (*titles, "Forces at joint D", "greatest force along the frame", "greatest force in joint D"):
         assert words in page
 
 
