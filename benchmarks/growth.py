@@ -90,8 +90,9 @@ def exponent(sizes: list[float], seconds: list[float]) -> float:
     return float(np.polyfit(x[last], y[last], 1)[0])
 
 
-def growth(rows: list[Row], *, small: bool) -> None:
-    """Print a line for each row."""
+def growth(rows: list[Row], *, small: bool) -> dict[str, float]:
+    """Print a line for each row, and give its exponent."""
+    exponents = {}
     print("\n| what grows | size: ms | exponent |\n| --- | --- | --- |")
     for row in rows:
         sizes, seconds = [], []
@@ -101,7 +102,9 @@ def growth(rows: list[Row], *, small: bool) -> None:
             sizes.append(float(found) if isinstance(found, int) else size)
             seconds.append(least(work, 1 if small else 7))
         told = ", ".join(f"{size:.7g}: {1e3 * spent:.3g}" for size, spent in zip(sizes, seconds, strict=True))
-        print(f"| {row.name} | {told} | {exponent(sizes, seconds):.2f} |", flush=True)
+        exponents[row.name] = exponent(sizes, seconds)
+        print(f"| {row.name} | {told} | {exponents[row.name]:.2f} |", flush=True)
+    return exponents
 
 
 def polygons(name: str) -> Callable[[float], Callable[[], object]]:
@@ -246,8 +249,9 @@ def in_memory(recipe: Recipe) -> None:
         judge_contour(Chain(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
 
 
-def warm(pattern: str, *, small: bool) -> None:
-    """Print a line for each shipped recipe."""
+def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:
+    """Print a line for each shipped recipe, and give its milliseconds."""
+    found = {}
     print("\n| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for path in sorted(RECIPES.glob("*.yaml"))[:: 12 if small else 1]:
@@ -267,10 +271,12 @@ def warm(pattern: str, *, small: bool) -> None:
         for scene in scenes:
             scene()
             spent.append(1e3 * least(scene, 1 if small else 7))
+        found[path] = spent
         a, b, c, d, e = spent
         print(
             f"| {path.stem} | {a:.1f} | {b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} |", flush=True
         )
+    return found
 
 
 if __name__ == "__main__":

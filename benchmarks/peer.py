@@ -119,6 +119,33 @@ def extruded(cam: str, count: int, path: Path) -> None:
     trimesh.creation.extrude_polygon(Polygon(contour(cam, count)), THICKNESS).export(path)
 
 
+def by_hand(cam: str, count: int, path: Path) -> None:
+    """numpy alone: the polygon extruded, its lids as fans about the middle, written as a binary STL."""
+    points = contour(cam, count)
+    after, middle = np.roll(points, -1, axis=0), np.broadcast_to(points.mean(axis=0), points.shape)
+
+    def at(flat: np.ndarray, z: float) -> np.ndarray:
+        return np.column_stack([flat, np.full(len(flat), z)])
+
+    low, high, low_after, high_after = at(points, 0.0), at(points, THICKNESS), at(after, 0.0), at(after, THICKNESS)
+    corners = np.concatenate(
+        [
+            np.stack(each, axis=1)
+            for each in (
+                (low, low_after, high_after),
+                (low, high_after, high),
+                (at(middle, THICKNESS), high, high_after),
+                (at(middle, 0.0), low_after, low),
+            )
+        ]
+    )
+    records = np.zeros(len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    records["normal"] = normal / np.linalg.norm(normal, axis=1)[:, None]
+    records["corners"] = corners
+    path.write_bytes(bytes(80) + len(records).to_bytes(4, "little") + records.tobytes())
+
+
 def spline(cam: str, count: int, path: Path) -> None:
     """scipy's periodic cubic spline through exact points as a DXF SPLINE; the offset by the spline's own normals."""
     from scipy.interpolate import CubicSpline
@@ -173,6 +200,7 @@ def openscad(cam: str, count: int, path: Path) -> None:
 
 
 PEERS = {
+    "numpy": (by_hand, ".stl"),
     "numpy + shapely + ezdxf": (polyline, ".dxf"),
     "shapely + trimesh": (extruded, ".stl"),
     "scipy spline + ezdxf": (spline, ".dxf"),

@@ -1,5 +1,7 @@
 """Error over run time and size against what a user would pick instead: `python benchmarks/peers.py [--python PYTHON]`.
 
+`--targets` prints one table of all aims of speed instead, and what is reached (`benchmarks/targets.py`).
+
 Every peer (`benchmarks/peer.py`) and camgeo make the same cams at a ladder of point counts or tolerances, and every
 file is judged by the same judge, `kin.judge.verify`, in the same run. All is processor time. Warm seconds are the least
 of repeats within one process, cold seconds those of the whole process. PYTHON runs the peers, and may have
@@ -243,6 +245,8 @@ def main() -> None:
     )
     parser.add_argument("--peer", action="append", choices=tuple(PEERS), help="only this one; repeatable")
     parser.add_argument("--thin", type=int, default=1, help="only every so many point counts")
+    parser.add_argument("--targets", action="store_true", help="the table of aims, with the first cam of these alone")
+    parser.add_argument("--tests", action="store_true", help="the quick suite's row in it too, which takes minutes")
     arguments = parser.parse_args()
     print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
     found = {}
@@ -257,6 +261,14 @@ def main() -> None:
                 points += of_peer(peer, cam, arguments.python, folder, arguments.thin)
             found[cam] = points
             print(tables(cam, points), flush=True)
+            if arguments.targets:
+                break
+        if arguments.targets:
+            from targets import table
+
+            line = [sys.executable, "-m", "pytest", "-q", "-n", "2"] if arguments.tests else []
+            table(lambda tool, level: (at_level(points, tool, level) or {}).get("cold"), line)
+            return
         picture(found, folder / "peers.png" if SMALL else arguments.picture)
 
 

@@ -137,10 +137,12 @@ print(status, spent[0], time.process_time(), file=sys.stderr)
 """
 
 
-def command() -> None:
+def command() -> float:
+    """The command itself; gives designs a second that it computes, of the usual limits."""
     print(f"\n`camgeo sweep --jobs 1`, {SOUGHT:,} four-bars, 360 angles, designs a second of processor; target 20,000")
     vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
     print(f"{'':42}{'computing':>10} {'whole process':>14}")
+    found = []
     for limits in ("transmission-angle: {at_least: 34}, size: {at_most: 44}", "peak-velocity: {at_most: 22}"):
         text = CAM_2A.text[: CAM_2A.text.index("sweep:")] + SEARCH.replace("VARY", vary).replace("LIMITS", limits)
         text = text.replace("COUNT", str(SOUGHT))
@@ -153,6 +155,8 @@ def command() -> None:
                 told = subprocess.run(call, env=environment, capture_output=True, text=True, check=True).stderr
                 best = [min(a, float(b)) for a, b in zip(best, told.split()[-2:], strict=True)]
         print(f"limits on {limits.split(':')[0]:24} {SOUGHT / best[0]:10.0f} {SOUGHT / best[1]:14.0f}")
+        found.append(SOUGHT / best[0])
+    return found[0]
 
 
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
@@ -232,6 +236,17 @@ CAMS = {
     ),
 }
 LAWS = ("cycloidal", "modified-sine") if SMALL else tuple(name for name in NAMES if name != "constant-velocity")
+
+
+def estimates() -> dict[str, float]:
+    """Designs a second of cams without a linkage, all figures estimated, by follower."""
+    found = {}
+    for name, (text, ranges) in CAMS.items():
+        recipe = load_text(cam_text(text.replace("LAW", "cycloidal"), ranges), "0.yaml")
+        evaluator, many = Evaluator.of(recipe, tuple(ranges), screened=True), drawn(ranges)
+        evaluator.found(many[:64])
+        found[name] = DESIGNS / least(lambda e=evaluator, v=many: e.found(v))[0]
+    return found
 
 
 def screen() -> None:

@@ -104,6 +104,8 @@ def verify(
     told = {path: _no_file(path) for path in paths}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
+    again = [path for path in dict.fromkeys(found) if found.count(path) > 1]
+    faults += [f"{escaped(str(path))}: it is given {found.count(path)} times; give each file once" for path in again]
     known = ", ".join(SUFFIXES)
     faults += [f"{escaped(str(path))}: none of {known}" for path in found if path.suffix.lower() not in SUFFIXES]
     if within is not None and not 0.0 < within <= MOST:

@@ -17,6 +17,7 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam
 
+WAVE = 1e-3  # of the stroke: a rise or a return by less counts as a dwell
 CRANK = 720.0  # degrees of one turn of the camshaft
 Phase: TypeAlias = Literal["rise", "dwell", "return"]
 
@@ -63,17 +64,23 @@ def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
     """Rises, dwells and returns of a lobe whose motion begins at `zero`, rad, in their order round the turn.
 
     They are those of the motion, whatever its source: segments that follow one another in one direction are one
-    stretch. None of a motion that is too rough to be followed.
+    stretch, and waves below a thousandth of the stroke are a dwell. None of a motion that is too rough to be followed.
     """
     try:
-        x = monotone(exact).x
+        followed = monotone(exact)
     except EventError:
         return ()
+    x, level = followed.x, followed.values[:-1]
     middle = 0.5 * (x[:-1] + x[1:])
     phases = np.where(exact.motion.by_parameter(middle, 1)[1] > 0.0, "rise", "return")
     for begin, end in {rest for gauge in exact.gauges.values() for rest in gauge.rests}:
         phases[np.mod(middle - begin, TURN) < end - begin] = "dwell"
     first = np.flatnonzero(phases != np.roll(phases, 1))
+    if first.size:  # waves, such as a measured base circle has
+        flat = np.abs(level[np.roll(first, -1)] - level[first]) < WAVE * np.ptp(level)
+        runs = np.repeat(np.where(flat, "dwell", phases[first]), np.diff(first, append=first[0] + len(phases)))
+        phases = np.roll(runs, first[0])
+        first = np.flatnonzero(phases != np.roll(phases, 1))
     if not first.size:
         return (Stretch(phases[0], 0.0, 360.0),)
     begins = np.round(np.degrees(x[first] + zero), 9)  # so that one at 360 is at 0

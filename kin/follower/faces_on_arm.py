@@ -17,9 +17,11 @@ import numpy as np
 
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
+from kin.follower.flat import NEAR
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.rests import dwell_angles
 from kin.follower.support import Bearing, bearing_of
+from kin.law.bounds import cubic_cells
 from kin.law.contacts import Flat, Oscillating
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -180,6 +182,11 @@ class _OnArm(Moved):
     def resolution(self) -> float:
         """To what extremes of the error are found, radians."""
 
+    @property
+    @abstractmethod
+    def cells(self) -> Array:
+        """Shaft angles between which the intended motion has nothing narrow."""
+
     @cached_property
     def envelope(self) -> FlatEnvelope:
         """The exact contour, over the parameter of the pitch."""
@@ -223,7 +230,7 @@ class _OnArm(Moved):
     def _error_extremes(self, bearing: Bearing, i: int) -> Extremes:
         """Extremes of the error of face i over the shaft angle, between its passages and the breaks of the motion."""
         breaks = np.mod(self.motion.breaks, TURN)
-        nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks]))
+        nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks, self.cells]))
 
         def error(phi: Array, interval: Indices) -> Array:
             return self._rows(bearing, i, phi, middle[interval]) - self.course.rows(phi)
@@ -296,6 +303,11 @@ class SwingingFace(OfLaw, _OnArm):
         """The same everywhere."""
         return FINE_ANGLE
 
+    @cached_property
+    def cells(self) -> Array:
+        """See `_OnArm`."""
+        return cubic_cells(self.law, self.law.breaks, NEAR / self.faces[0].pivot)
+
     @property
     def lever(self) -> float:
         """How far from the pivot the face is touched at the shaft's zero, about."""
@@ -341,6 +353,13 @@ class FlatPair(OfTransmission, _OnArm):
     def lever(self) -> float:
         """About how far from the pivot the faces are touched, mm: the law's arm l."""
         return self.transmission.arm
+
+    @cached_property
+    def cells(self) -> Array:
+        """See `_OnArm`: the shaft angle bends no more sharply over the parameter than the law does."""
+        cells = cubic_cells(self.transmission.psi, self.breaks, NEAR / self.transmission.arm)
+        phi: Array = self.transmission.at(cells, 0)[0][0]
+        return phi
 
     @property
     def closure(self) -> Closure:

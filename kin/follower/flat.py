@@ -16,6 +16,7 @@ from kin.follower.envelope import FlatEnvelope, LiftPitch
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
+from kin.law.bounds import cubic_cells
 from kin.law.contacts import METRE, Flat
 from kin.law.support_function import Lift
 from kin.numeric.angles import TURN, degrees
@@ -25,6 +26,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Indices
+
+NEAR = 1e-8  # mm: so near to a cubic is the intended motion between two places of a search
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +95,11 @@ class FlatFace(Follower):
             return Lift(self.lift.law.taken_from(first.zero))
         return Lift(self.lift.law.raised(first.zero)) if first.zero else self.lift
 
+    @cached_property
+    def _cells(self) -> Array:
+        """Shaft angles between which the intended distance has nothing narrow."""
+        return cubic_cells(self.distance.law, self.distance.breaks, NEAR)
+
     @property
     def _share(self) -> float:
         """Distance of the face from the shaft for one along the line of travel."""
@@ -124,7 +132,7 @@ class FlatFace(Follower):
     def _reach(self, bearing: Bearing) -> Extremes:
         """Extremes over the shaft angle of how far the contour reaches beyond the intended face, along its normal."""
         lift, share, ahead = self.distance, self._share, self.ahead
-        nodes = bearing.nodes(0.0, TURN, lift.breaks, ahead)
+        nodes = bearing.nodes(0.0, TURN, self._cells, ahead)
         stretch, at_low, at_high = bearing.between(nodes, ahead)
         intended = share * lift.derivatives(nodes, 2)
         at_low -= intended[:, :-1]

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, Jet
+from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -115,3 +118,31 @@ def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, fl
                 best = (float(points[top]), float(values[top]))
             low, high = points[max(top - 1, 0)], points[min(top + 1, 256)]
     return best
+
+
+def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
+    """Cut a turn into cells (m + 1,), between a law's breaks all round, that hold nothing narrow.
+
+    The cubic of a cell's end values and slopes is proved to be `near` the law: of width h it strays by no more than
+    h^4/384 max|f''''|; where that is not bounded the law itself is enclosed as closely. So what is narrower than any
+    step of a search cannot be missed. Raises UnsettledError where too many cells are needed.
+    """
+    ends = distinct(np.concatenate([[0.0], np.mod(breaks, TURN), [TURN]]))
+    low, high, settled = ends[:-1], ends[1:], [ends[:1]]
+    for _ in range(_HALVINGS):
+        mid, rad = law.enclosure(low, high, 4)
+        with np.errstate(invalid="ignore", over="ignore"):
+            strays = (high - low) ** 4 / 384.0 * (np.abs(mid[4]) + rad[4])
+            open_ = ~((strays <= near) | (rad[0] <= near))
+        settled.append(high[~open_])
+        low, high = low[open_], high[open_]
+        if not len(low):
+            break
+        if len(low) > _MOST_CELLS:
+            raise UnsettledError(f"the intended motion is too rough to be followed to {near:.3g}")
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    else:
+        raise UnsettledError(f"the intended motion cannot be followed to {near:.3g} about {low[0]:.6g} rad")
+    cells: Array = np.sort(np.concatenate(settled))
+    return cells

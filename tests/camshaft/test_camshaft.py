@@ -301,6 +301,20 @@ def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[
     assert np.array([ends for _, *ends in found]) == pytest.approx(np.array([ends for _, *ends in right]), abs=1e-4)
 
 
+def test_waves_of_a_base_circle_are_a_dwell() -> None:
+    """Forty waves of 0.3 micrometres beside a lift of 8 mm; those of 30 are told."""
+    motion = "{formula: 8*((1 - cos(t))/2)**8 + %s*cos(40*t)}"
+    text = f"cam: {{kind: disc, base_radius: 60, follower: {{kind: flat}}, motion: {motion}}}\n"
+    small, large = (stretches(designed(camgeo.load(text % wave), Clock()).exact, 0.0) for wave in ("0.0003", "0.03"))
+    assert [stretch.phase for stretch in small] == ["rise", "return", "dwell"]
+    rise, back, dwell = small
+    assert rise.end == back.begin == pytest.approx(180.0, abs=1e-6)
+    assert dwell.begin == back.end
+    assert dwell.end == pytest.approx(360.0 + rise.begin, abs=1e-9)
+    assert 60.0 < rise.begin < 120.0
+    assert len(large) > 20
+
+
 # --- the metal --------------------------------------------------------------------------------------------------------
 
 

@@ -139,6 +139,18 @@ def test_one_disc_is_judged_alone_and_says_what_is_left_out(made):
     assert left["form-closure"] == "pair-2.dxf is judged alone: disc 1 is not among the files that are given"
 
 
+def test_one_file_for_both_discs_is_refused(made, capsys):
+    """Else disc 1 would be judged twice, each time alone, and a pair without a disc 2 called right."""
+    recipe, report = made
+    first = report.path / "pair-1.dxf"
+    with pytest.raises(camgeo.CallError, match=r"-1\.dxf: it is given 2 times; give each file once"):
+        camgeo.verify(recipe, first, first)
+    assert main(["verify", str(recipe), str(first), str(first)]) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "give each file once" in told
+
+
 def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):
     recipe, report = made
     paths = [tmp_path / name for name in ("left.dxf", "right.dxf")]

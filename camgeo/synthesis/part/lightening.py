@@ -136,22 +136,18 @@ def _largest(room: _Room, count: int, least: float) -> Found:
 
 
 def _climbed(room: _Room, points: Array, step: float) -> tuple[float, float]:
-    """Climb the room from points (n, 2), all at once, in eight directions; the best place reached."""
+    """Climb the room from points (n, 2) in eight directions, each by its own steps; the best place reached."""
     turns = np.arange(8) * 0.25 * np.pi
     ways = np.column_stack([np.cos(turns), np.sin(turns)])
-    height = room.about(points)
-    moved = np.arange(len(points))  # the others have found nothing better with this step
-    while step > 0.2 * CENTRE:
-        tried = points[moved, None, :] + step * ways
-        heights = room.about(tried.reshape(-1, 2)).reshape(len(moved), -1)
-        which = heights.argmax(axis=1)
-        rows = np.arange(len(moved))
-        better = heights[rows, which] > height[moved]
-        tried, highest, moved = tried[rows, which][better], heights[rows, which][better], moved[better]
-        points[moved], height[moved] = tried, highest
-        if not moved.size:
-            step *= SHRINK
-            moved = np.arange(len(points))
+    height, steps = room.about(points), np.full(len(points), step)
+    while (left := np.flatnonzero(steps > 0.2 * CENTRE)).size:
+        tried = points[left, None, :] + steps[left, None, None] * ways
+        heights = room.about(tried.reshape(-1, 2)).reshape(left.size, -1)
+        best = np.arange(left.size), heights.argmax(axis=1)
+        better = heights[best] > height[left]
+        moved = left[better]
+        points[moved], height[moved] = tried[best][better], heights[best][better]
+        steps[left[~better]] *= SHRINK
     x, y = points[int(np.argmax(height))].tolist()
     return x, y
 

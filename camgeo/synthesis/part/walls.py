@@ -94,7 +94,7 @@ def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, fl
         SETTLED,
     )
     nodes = np.concatenate([low, nearest_points])
-    point = contour.sample(nodes).point - origin
+    point = np.concatenate([first.point, contour.sample(nearest_points).point]) - origin
     distance = np.hypot(point[:, 0], point[:, 1])
     nearest_node = int(np.argmin(distance))
     side = 1.0 if winds(first.point - origin) else -1.0
@@ -104,7 +104,11 @@ def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, fl
 def contour_gap(looks: Looks, chain: Arcs) -> Gap:
     """Wall between a closed chain in the metal on one side of a contour and that contour; negative elsewhere."""
     contour, low, high, first, last, side, _ = looks
-    falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
+    # each interval ends where the next begins
+    distance, foot = feet(chain, np.concatenate([first.point, last.point[-1:]]))
+    out = np.sign(distance)
+    falls = out[:-1] * dot(first.point - foot[:-1], first.tangent)
+    rises = out[1:] * dot(last.point - foot[1:], last.tangent)
     turning = (falls < 0.0) & (rises > 0.0)
 
     def product(t: Array) -> Array:
@@ -112,9 +116,9 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
         return _from_chain(chain, at.point, at.tangent)
 
     found = roots(product, low[turning], high[turning], (falls[turning], rises[turning]), SETTLED)
-    nodes = np.concatenate([low, found])
-    point = contour.sample(nodes).point
-    distance = signed_distance(chain, point)
+    between = contour.sample(found).point
+    nodes, point = np.concatenate([low, found]), np.concatenate([first.point, between])
+    distance = np.concatenate([distance[:-1], signed_distance(chain, between)])
     least = int(np.argmin(distance))
     wall = float(distance[least])
     if wall > 0.0 and winds(first.point - chain.start[0]) is (side < 0):
