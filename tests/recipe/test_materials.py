@@ -106,3 +106,11 @@ def test_what_is_no_material(material: str, field: str, words: str) -> None:
     (error,) = caught.value.errors
     assert error.path == f"dynamics.{field}"
     assert words in str(error)
+
+
+@pytest.mark.parametrize("key", ["width: 4", "material: steel", "roller_material: {E: 3000, nu: 0.4}"])
+def test_an_elastic_train_has_no_pressure(key: str) -> None:
+    with pytest.raises(RecipeErrors, match=r"belongs to a train without stiffness; leave stiffness out, or this"):
+        read(CAM.replace("MATERIAL", f"{key}, stiffness: 1.0e6").encode(), Path("case.yaml"))
+    for remedied in (key, "stiffness: 1.0e6"):
+        read(CAM.replace("MATERIAL", remedied).encode(), Path("case.yaml"))
