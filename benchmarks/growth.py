@@ -28,6 +28,7 @@ import numpy as np
 
 from camgeo.api.design import Design
 from camgeo.api.loading import load
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import extruded
 from camgeo.files.stl import write_stl
@@ -38,6 +39,7 @@ from camgeo.output.pipeline import export
 from camgeo.recipe.part import Part
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, intents, permitted
+from camgeo.synthesis.part.shapes import disc
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
 from kin.read.nesting import Chain
@@ -119,9 +121,12 @@ def solids(count: float) -> Callable[[], object]:
     r = 25.0 + 2.0 * np.cos(3 * t)
     polygon = Polygon(np.column_stack([r * np.cos(t), r * np.sin(t)]), Bound(0.0, 0.0))
 
+    bore = disc("bore", "BORE", (0.0, 0.0), 5.0)
+    outlines = [LayerOutline("CUT", polygon), LayerOutline(bore.layer, bore.outline, bore.circle)]
+
     def work() -> None:
         with tempfile.TemporaryDirectory() as folder:
-            mesh, _ = extruded(polygon, bore=10.0, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+            mesh, _ = extruded(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
             write_stl(Path(folder) / "ring.stl", mesh)
 
     return work

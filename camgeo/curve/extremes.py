@@ -70,9 +70,7 @@ def surely_positive(figure: ShaftFigure, stretches: Array) -> bool:
 
     False leaves it open.
     """
-    share = np.linspace(0.0, 1.0, CELLS + 1)
-    knots = stretches[:, :1] * (1.0 - share) + stretches[:, 1:] * share
-    below, _ = figure(BallJet.variable(knots[:, :-1].ravel(), knots[:, 1:].ravel(), ORDER)).bounds()
+    below, _ = figure(BallJet.variable(*divided(stretches[:, 0], stretches[:, 1], CELLS), ORDER)).bounds()
     return bool((below[0] > 0.0).all())  # not where a bound is nan
 
 

@@ -8,13 +8,13 @@ those of H 4 and 2.
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.measures.forces import PER_MM, Turn
-from camgeo.measures.running import Running, State
+from camgeo.measures.running import Lost, Pull, Running, State, lost
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
+    from kin.dynamics.contact_forces import Elastic
     from kin.linkage.mechanism import LinkageMotion, Mechanism
-    from kin.linkage.statics import Coupler
+    from kin.linkage.statics import FrameForces
     from kin.numeric.arrays import Array
     from kin.numeric.monotone import Pieces
 
@@ -95,26 +96,56 @@ class FrameRunning(Running):
 
     def at(self, t: Array) -> State:
         """All of it at relative angles (n,)."""
-        from kin.linkage.statics import frame_forces
-
         motion = self.mechanism.at(t, 2)
         rows = motion.over_shaft(motion.output)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
-        given = frame_forces(self.mechanism, motion, force / PER_MM if self.turn.swings else force, self.coupler)
-        normal = np.maximum([given.across, -given.along, -given.across, given.along], 0.0)
+        given = self._given(motion, force, self.speed)
+        (one, three), (two, four) = map(self._faces, given.pairs)
+        normal = np.array([one, two, three, four])
         reactions = {"across": given.across, "along": given.along} | self._joints(motion, given.joint)
         return State(force, y, normal, PER_MM * given.torque, self._pressure(t, normal), reactions)
 
-    @cached_property
-    def coupler(self) -> Coupler | None:
-        """The body of the frame at this speed, None without mass."""
-        from kin.linkage.statics import Coupler
+    def _given(self, motion: LinkageMotion, force: Array, speed: float) -> FrameForces:
+        """What the cam gives the frame for F, and for the coupler at a speed, rad/s."""
+        from kin.linkage.statics import Coupler, frame_forces
 
         body = self.train.coupler
-        if body is None:
+        coupler = None
+        if body is not None:
+            coupler = Coupler(body.centre, PER_MM * body.mass * speed**2, body.inertia * speed**2 / PER_MM)
+        return frame_forces(self.mechanism, motion, force / PER_MM if self.turn.swings else force, coupler)
+
+    @cached_property
+    def pressed(self) -> Elastic | None:
+        """The faces of either pair under a preload, N and mm, None where there is play."""
+        from kin.dynamics.contact_forces import preloaded
+
+        given = self.design.exact.preload
+        if given is None or given.stiffness is None:
             return None
-        return Coupler(body.centre, PER_MM * body.mass * self.speed**2, body.inertia * self.speed**2 / PER_MM)
+        first, second = (PER_MM * stiffness for stiffness in given.stiffness)
+        return preloaded((np.ones(1), np.ones(1)), given.overlaps, (first, second))
+
+    def _faces(self, pair: Array) -> Array:
+        """What the faces of a pair bear, (2, n), the first where its force is above 0."""
+        return np.maximum([pair, -pair], 0.0) if self.pressed is None else self.pressed.split(pair)
+
+    def lost_rpm(self) -> list[Lost]:
+        """Of faces under preload the speed from which each is lost over the turn."""
+        pressed = self.pressed
+        if pressed is None:
+            return []
+
+        def pull(t: Array, rank: int) -> Pull:
+            motion = self.mechanism.at(t, 2)
+            rows = motion.over_shaft(motion.output)
+            moved = self._given(motion, self.inertia(rows, 1.0), 1.0).pairs[rank]
+            still = self._given(motion, self.rest(t, self.position(rows)[0]) + self.preload, 0.0).pairs[rank]
+            return Pull(moved, still, pressed.loses_first, pressed.loses_second)
+
+        first, second = (lost(self.turn, self.turn.names[k::2], partial(pull, rank=k)) for k in range(2))
+        return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
         """Size of the force in joint D, and what the slide gives its link across its line; none with dyads on it."""

@@ -17,7 +17,7 @@ from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.measures.forces import Turn
     from camgeo.recipe.dynamics import Dynamics
@@ -180,6 +180,38 @@ class Running(ABC):
         compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
         pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance))
         return pressure
+
+
+class Pull(NamedTuple):
+    """What two contacts bear (n,): per square of the speed, besides, and at which of it the first or second is lost."""
+
+    inertia: Array
+    rest: Array
+    loses_first: Array
+    loses_second: Array
+
+
+def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[Lost]:
+    """The speeds from which two contacts under preload are lost over the turn.
+
+    Omega^2 J + W reaches the force that takes a contact away first where J over what is left is greatest.
+    """
+
+    def shares(t: Array) -> Array:
+        one = pull(t)
+        upper, lower = one.loses_second - one.rest, one.rest - one.loses_first
+        return np.array([-one.inertia / lower, one.inertia / upper, upper, lower])
+
+    (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
+    found = []
+    for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
+        if left.value <= 0.0:  # at rest already
+            found.append(Lost(name, 0.0, left.at_deg))
+        elif share.value > 0.0:
+            found.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
+        else:
+            found.append(Lost(name, None, None))
+    return found
 
 
 def unbounded(formula: Formula) -> float | None:

@@ -9,21 +9,20 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.measures.frame_forces import frame_running
-from camgeo.measures.running import Lost, Running, State
+from camgeo.measures.running import Lost, Pull, Running, State, lost
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from camgeo.measures.forces import Turn
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
@@ -220,38 +219,6 @@ class FollowerRunning(Running):
             return Pull(self.inertia(rows, 1.0), rest, scale * pair.loses_first, scale * pair.loses_second)
 
         return lost(self.turn, self.turn.names, held)
-
-
-class Pull(NamedTuple):
-    """What two contacts bear (n,): per square of the speed, besides, and at which of it the first or second is lost."""
-
-    inertia: Array
-    rest: Array
-    loses_first: Array
-    loses_second: Array
-
-
-def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[Lost]:
-    """The speeds from which two contacts under preload are lost over the turn.
-
-    Omega^2 J + W reaches the force that takes a contact away first where J over what is left is greatest.
-    """
-
-    def shares(t: Array) -> Array:
-        one = pull(t)
-        upper, lower = one.loses_second - one.rest, one.rest - one.loses_first
-        return np.array([-one.inertia / lower, one.inertia / upper, upper, lower])
-
-    (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
-    found = []
-    for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
-        if left.value <= 0.0:  # at rest already
-            found.append(Lost(name, 0.0, left.at_deg))
-        elif share.value > 0.0:
-            found.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
-        else:
-            found.append(Lost(name, None, None))
-    return found
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:

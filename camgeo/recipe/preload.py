@@ -23,14 +23,11 @@ def check_preload(values: Values, reader: Reader) -> None:
     if cam.get("undercut") == "trim":
         remedy = "leave it out, or cam.preload: where metal is cut off nothing is preloaded"
         reader.fault_at("cam.undercut", "a preloaded cam is not trimmed", "trim", remedy)
-    if reader.kinds["linkage"]:
-        remedy = "leave linkage out, or cam.preload"
-        reader.fault_at(PATH, "the square frame of a linkage is not preloaded", None, remedy)
     spring = next((name for name in ("preload", "least_force") if name in dynamics), None)
     if "backlash" in dynamics:
         remedy = "leave cam.preload out, or dynamics"
         reader.fault_at("dynamics.backlash", "clearance beside an interference", None, remedy)
-    elif spring is not None:
+    elif spring is not None and not reader.kinds["linkage"]:  # under which it acts on the output
         remedy = "leave cam.preload out, or dynamics"
         reader.fault_at(f"dynamics.{spring}", "a spring beside a second contact that is preloaded", None, remedy)
     elif "stiffness" in dynamics:

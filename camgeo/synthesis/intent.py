@@ -32,7 +32,8 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
     exact = design.exact
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
-        linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell)
+        overlap = 0.0 if exact.preload is None else exact.preload.overlaps[0]
+        linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell, overlap)
     surfaces = tuple(
         SurfaceIntent(
             exact.gauges[one.surface.name],

@@ -25,12 +25,13 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.longest_window import dwells
 from kin.numeric.monotone import between, cells, pieces
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
+    from kin.follower.support import Bearing
     from kin.law.contacts import Unit
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
@@ -181,26 +182,28 @@ def judge_frame(
     swing: FrameSwing | None = None,
     band: float | None = None,
     over: Over = "shaft",
+    overlap: float = 0.0,
 ) -> LinkageVerdict:
     """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from shaft angles (n,).
 
     `swing` is the law prescribed for the frame, None where what the exact cam does is meant. `band`, rad or mm, asks
-    for dwells over the shaft angle or the relative one; None for none. Raises FrameError where the contour does not
+    for dwells over the shaft angle or the relative one; None for none. `overlap`, mm, is what the metal is meant to
+    overlap each face by, which the faces give way to. Raises FrameError where the contour does not
     drive it all round, or so suddenly that rounding hides the error, and BindingError where the intended cam does not
     drive it. Cost: a position of the linkage for each break of the contour as each face has it, in
     each way of resting.
     """
     intended = _Intended(mechanism) if swing is None else _Prescribed(mechanism, swing)
     try:
-        return _judged(contour, intended, shaft, tolerance, band=band, over=over)
+        return _judged(replace(bearing_of(contour), back=overlap), intended, shaft, tolerance, band=band, over=over)
     except UnsettledError as error:
         raise FrameError(f"the error of the output cannot be determined: {error}") from error
 
 
 def _judged(
-    contour: Contour, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
+    bearing: Bearing, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
 ) -> LinkageVerdict:
-    bearing, mechanism = bearing_of(contour), intended.mechanism
+    mechanism = intended.mechanism
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
     ways = [Resting.of(mechanism, bearing, rest) for rest in WAYS]
     centred = Resting.of(mechanism, bearing, CENTRED)
@@ -320,8 +323,9 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
 
 def _plays(centred: Resting) -> tuple[Play, Play]:
     """Play across and along the frame: one figure of the contour, a quarter turn on."""
-    bearing, breadth = centred.bearing, centred.mechanism.breadth
-    found = bearing.breadth_extremes(RESOLUTION * breadth)
+    bearing, side = centred.bearing, centred.mechanism.breadth
+    found = bearing.breadth_extremes(RESOLUTION * side)
+    breadth = side - 2.0 * bearing.back
 
     def play(turned: float) -> Play:
         least, most = (degrees(centred.shaft_at(at - turned)) for at in (found.greatest_at, found.least_at))

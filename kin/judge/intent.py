@@ -66,11 +66,13 @@ class LinkageIntent:
 
     swing   law that its frame has to follow; its lift's is the law if None
     dwell   of its output, which is found in each file and, if it must last, judged
+    overlap by which the metal is to overlap each face of the frame, mm
     """
 
     mechanism: Mechanism
     swing: FrameSwing | None = None
     dwell: DwellAsked | None = None
+    overlap: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -36,13 +36,16 @@ def judge_linkage(
     at_least = None if asked is None or asked.at_least is None else float(np.degrees(asked.at_least))
     try:
         off = _output_less_sure(mechanism, uneven)
-        if asked is None:
-            found = judge_frame(contour, mechanism, phi, limits.tolerance, swing=linkage.swing)
-        else:
-            band = _band_less_sure(asked, mechanism, off)
-            found = judge_frame(
-                contour, mechanism, phi, limits.tolerance, swing=linkage.swing, band=band, over=asked.over
-            )
+        found = judge_frame(
+            contour,
+            mechanism,
+            phi,
+            limits.tolerance,
+            swing=linkage.swing,
+            band=None if asked is None else _band_less_sure(asked, mechanism, off),
+            over="shaft" if asked is None else asked.over,
+            overlap=linkage.overlap,
+        )
         if uneven:
             found = replace(
                 found,

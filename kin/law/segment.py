@@ -7,6 +7,7 @@ One function object serves points (`kin.numeric.elementary.Jet`: exact derivativ
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import partial
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
@@ -126,22 +127,11 @@ class Power(Alike):
 
     def together(self, rows: Array) -> Stretch:
         """Polynomials by their coefficients."""
-        return _Horner(rows)
+        return partial(horner, rows)
 
     def __call__(self, u: Series, /) -> Series:
         """Give the polynomial."""
         return horner(self.coefficients, u)
-
-
-@dataclass(frozen=True, eq=False)
-class _Horner:
-    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
-
-    rows: Array
-
-    def __call__(self, u: Series, /) -> Series:
-        """Give each polynomial."""
-        return horner(self.rows, u)
 
 
 @dataclass(frozen=True)

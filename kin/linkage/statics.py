@@ -48,6 +48,11 @@ class FrameForces(NamedTuple):
     torque: Array
     joint: Array
 
+    @property
+    def pairs(self) -> tuple[Array, Array]:
+        """Of faces 1 and 3 and of faces 2 and 4, above 0 where face 1 or 2 pushes, N (n,)."""
+        return self.across, 0.0 - self.along
+
 
 def frame_forces(
     mechanism: Mechanism, motion: LinkageMotion, demand: Array, coupler: Coupler | None = None

@@ -180,7 +180,10 @@ PLACE = "give a list of two lengths [x, y] in mm"
         (
             "{kind: inverted-slider-crank, ground: 80, coupler: 70, rocker: -1}",
             [
-                ("2:52: linkage.coupler: unknown key; it belongs under linkage of kind four-bar or slider-crank"),
+                (
+                    "2:52: linkage.coupler: unknown key; it belongs under dynamics, or under linkage of kind "
+                    "four-bar or slider-crank"
+                ),
                 "2:73: linkage.rocker: below 0, given -1; give a length of at least 0 in mm",
             ],
         ),

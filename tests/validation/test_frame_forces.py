@@ -15,10 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.page_tables import Row
 from support.square_frame import Bars, axes, solve
 
 from camgeo.measures.figures import of_design
 from camgeo.measures.force_figures import extremes_of, forces_section
+from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.running_forces import running_of
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
@@ -50,6 +52,60 @@ def running(text, dynamics):
 
 def at(text, dynamics, *theta_deg):
     return running(text, dynamics).at(np.radians(np.array(theta_deg, dtype=float)))
+
+
+SOURCES = {
+    "f06": (FOUR_BAR, F06, "AS Figure 9, cam 2a; 12 N m, 0.02 kg m², 120 rpm"),
+    "f07": (FOUR_BAR, F07, "the same, its coupler 0.8 kg, 6e-4 kg m²"),
+    "f08": (INVERTED, F08, "AS Figure 13, cam 2a; 9 N m, 0.03 kg m², 100 rpm"),
+    "f09": (SLIDER, F09, "slider-crank, cam 2a; 200 N, 1.5 kg, 120 rpm"),
+}
+TURN = {  # greatest and least over the turn of f06, as its report has them
+    "across": (9.691172009, -10.134931131),
+    "along": (226.068193330, 132.737274408),
+    "torque": (3.032448252, -4.775890654),
+}
+AT = (  # case, theta, what, value
+    ("f06", 60, "across", 3.635095377),
+    ("f06", 60, "along", 222.464669181),
+    ("f06", 60, "torque", -3.938699874),
+    ("f06", 60, "joint", 222.494366113),
+    ("f07", 60, "across", 8.645901014),
+    ("f07", 60, "along", 228.108336195),
+    ("f07", 60, "torque", -3.991212461),
+    ("f07", 290, "torque", 0.020466756),
+    ("f08", 100, "across", 72.211346842),
+    ("f08", 300, "torque", -2.136467633),
+    ("f09", 60, "across", 3.439611483),
+    ("f09", 60, "along", 210.501225245),
+    ("f09", 60, "guide", -44.452328318),
+    ("f09", 60, "torque", -3.726889093),
+)
+
+
+def rows(workshop):
+    """Forces over the turn from reports, and at relative angles, by equilibrium in the plane and virtual work."""
+    report = workshop.written("forces-f06", f"name: forces-f06\n{FOUR_BAR}dynamics: {{{F06}}}\n").report["forces"]
+    found = []
+    for what, values in TURN.items():
+        one = report["torque"] if what == "torque" else next(r for r in report["reactions"] if r["reaction"] == what)
+        for word, key, value in zip(("greatest", "least"), ("max", "min"), values, strict=True):
+            found.append(_row(f"{word} {_named(what)}", "f06", what, value, one[key]))
+    runs = {case: running(text, dynamics) for case, (text, dynamics, _) in SOURCES.items()}
+    for case, theta, what, value in AT:
+        state = runs[case].at(np.radians([float(theta)]))
+        ours = state.torque if what == "torque" else state.reactions[what]
+        found.append(_row(f"{_named(what)} at θ = {theta}°", case, what, value, float(ours[0])))
+    return found
+
+
+def _named(what):
+    return REACTIONS.get(what, what)
+
+
+def _row(quantity, case, what, value, ours):
+    named = f"{quantity}, {'N m' if what == 'torque' else 'N'}, {case}"
+    return Row(named, SOURCES[case][2], f"{value:.9g}", value, ours, 1e-8 * max(1.0, abs(value)), ".10g")
 
 
 # --- worked cases -----------------------------------------------------------------------------------------------------
@@ -451,7 +507,8 @@ def test_report_page_table_and_figures(tmp_path):
     assert figures["contact-force-greatest"].surface == "face 4"
     assert figures["contact-pressure"].value == max(one["max"] for one in section["pressure"])
     page = next(tmp_path.rglob("*.html")).read_text(encoding="utf-8")
-    for words in ("force along the frame", "greatest force in joint D", "Forces of the frame"):
+    titles = ("Contact force, face 2 and face 4", "Contact pressure, face 1 and face 3", "Forces of the frame")
+    for words in (*titles, "Forces at joint D", "greatest force along the frame", "greatest force in joint D"):
         assert words in page
 
 
@@ -475,3 +532,84 @@ def test_a_slide_counts_in_newtons(tmp_path):
     assert float(row["along_N"]) == pytest.approx(201.285136179, rel=1e-9)
     assert float(row["guide_N"]) == pytest.approx(-34.445359550, rel=1e-9)
     assert float(row["torque_Nm"]) == pytest.approx(-3.623132451, rel=1e-9)
+
+
+# --- preload of both pairs --------------------------------------------------------------------------------------------
+
+PRESSED = FOUR_BAR.replace(
+    "8.5]}",
+    "8.5], preload: {interference: 0.02, stiffness: [2.0e7, 2.0e7]}}\nexport: {tolerance: 0.001, files: [dxf]}",
+    1,
+)
+UNEVEN = PRESSED.replace("[2.0e7, 2.0e7]", "[2.0e7, 6.0e7]")
+
+
+def test_faces_under_preload():
+    """f06: the frame 0.02 mm narrower both ways, 20 kN/mm each: 200 N on all four; at 60 degrees as printed."""
+    run = running(PRESSED, F06)
+    one, two, three, four = run.at(np.radians([60.0])).normal[:, 0]
+    assert [one, three, four, two] == pytest.approx(
+        [201.817547689, 198.182452311, 311.232334590, 88.767665409], abs=1e-9
+    )
+    bare = running(FOUR_BAR, F06).at(np.radians([60.0]))
+    assert (one - three, four - two) == pytest.approx(
+        (bare.reactions["across"][0], bare.reactions["along"][0]), abs=1e-11
+    )
+
+
+def test_faces_of_unequal_stiffness():
+    """N = P + V k1/(k1 + k2) on face 1, P - H k1/(k1 + k2) on face 2; a lost face bears nothing, the other all."""
+    state = running(UNEVEN, F06.replace("load: 12", "load: 30")).at(np.linspace(0.0, 6.2, 60))
+    across, along, preload = state.reactions["across"], state.reactions["along"], 0.02 * 2e4 * 6e4 / 8e4
+    assert state.normal[0] == pytest.approx(preload + across * 0.25, abs=1e-9)
+    assert state.normal[2] == pytest.approx(preload - across * 0.75, abs=1e-9)
+    held = along * 0.25 < preload
+    assert state.normal[1][held] == pytest.approx((preload - along * 0.25)[held], abs=1e-9)
+    assert state.normal[3][held] == pytest.approx((preload + along * 0.75)[held], abs=1e-9)
+    over = running(UNEVEN, F06.replace("load: 12", "load: 100")).at(np.linspace(0.0, 6.2, 60))
+    lost = over.reactions["along"] * 0.25 > preload
+    assert 40 < lost.sum() < 60
+    assert (over.normal[1][lost] == 0.0).all()
+    assert over.normal[3][lost] == pytest.approx(over.reactions["along"][lost], abs=1e-9)
+
+
+@pytest.mark.parametrize("text", [PRESSED, UNEVEN])
+def test_speeds_from_which_faces_are_lost(text):
+    """At that speed the least force of the face is 0, at that place; a little below it is above 0."""
+    lost = running(text, F07).lost_rpm()
+    assert [one.contact for one in lost] == ["face 1", "face 2", "face 3", "face 4"]
+    for rank, (_, rpm, at_deg) in enumerate(lost):
+        here = running(text, F07.replace("rpm: 120", f"rpm: {rpm!r}"))
+        assert here.state(np.radians([at_deg])).normal[rank, 0] == pytest.approx(0.0, abs=1e-6)
+        below = extremes_of(running(text, F07.replace("rpm: 120", f"rpm: {0.99 * rpm!r}")))
+        assert below.contacts[rank][0].value > 0.0
+
+
+def test_files_of_a_preloaded_frame(tmp_path):
+    """The metal is made larger and judged about that; a file of the nominal cam, and of one twice too large, fails."""
+    from camgeo import verify
+
+    def made(text, name):
+        recipe = read(f"name: {name}\n{text}".encode(), Path(f"{name}.yaml"))
+        outcome = pipeline.export(recipe, tmp_path)
+        return recipe, outcome, tmp_path / name / f"{name}.dxf"
+
+    recipe, outcome, drawing = made(PRESSED, "pressed")
+    assert outcome.ok
+    (file,) = outcome.report["linkage"]["files"]
+    for way in ("backlash_across", "backlash_along"):
+        assert file[way]["min"] <= -0.02 <= file[way]["max"]
+        assert file[way]["max"] - file[way]["min"] < 0.004
+    assert verify(recipe, drawing).ok
+    bare = PRESSED.replace(", preload: {interference: 0.02, stiffness: [2.0e7, 2.0e7]}", "")
+    for wrong in (bare, PRESSED.replace("0.02", "0.04")):
+        _, own, other = made(wrong, f"wrong-{len(wrong)}")
+        assert own.ok
+        failed = {check.name for check in verify(recipe, other).checks if not check.ok}
+        assert "linkage-error" in failed
+
+
+def test_a_spring_beside_a_preloaded_frame():
+    """It acts on the output, and so goes with the preload of the faces."""
+    sprung = running(PRESSED, F06 + ", preload: 3").at(np.radians([60.0]))
+    assert sprung.force - running(PRESSED, F06).at(np.radians([60.0])).force == pytest.approx([3.0], abs=1e-11)

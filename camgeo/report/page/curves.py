@@ -139,7 +139,6 @@ def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
 
 def forces(recipe: Recipe, design: Design) -> list[Plot]:
     """Return the plots of forces at the contacts and of the shaft's torque; none but of a rigid train."""
-    from camgeo.measures.frame_forces import REACTIONS
     from camgeo.measures.running_forces import running_of
     from camgeo.measures.units import pounds
 
@@ -152,17 +151,26 @@ def forces(recipe: Recipe, design: Design) -> list[Plot]:
         other = pounds(recipe.units, unit)
         return note if other is None else f"{note}; 1 {unit.replace('^2', '²')} is {other[1]:.6g} {other[0]}"
 
-    normal = tuple(Series(name, row) for name, row in zip(running.turn.names, state.normal, strict=True))
-    plots = [
-        Plot("Contact force", "N", normal, dwells=True, note=noted("N")),
-        Plot("Torque of the shaft", "N m", (Series("torque", state.torque),), dwells=True, note=noted("N m")),
-    ]
+    def opposite(title: str, unit: str, rows: Array) -> list[Plot]:
+        """Return a plot for one contact, or for two that stand opposite each other."""
+        series = [Series(name, row) for name, row in zip(running.turn.names, rows, strict=True)]
+        step = max(1, len(series) // 2)
+        groups = [tuple(series[k::step]) for k in range(step)]
+        titles = [title if step == 1 else f"{title}, {' and '.join(one.name for one in group)}" for group in groups]
+        return [
+            Plot(name, unit.replace("^2", "²"), group, dwells=True, note=noted(unit))
+            for name, group in zip(titles, groups, strict=True)
+        ]
+
+    plots = opposite("Contact force", "N", state.normal)
+    plots.append(Plot("Torque of the shaft", "N m", (Series("torque", state.torque),), dwells=True, note=noted("N m")))
     if recipe.linkage is not None:
-        series = tuple(Series(REACTIONS[name], row) for name, row in state.reactions.items())
-        plots.append(Plot("Forces of the frame", "N", series, dwells=True, note=noted("N")))
+        across, along, *joints = (Series(name, row) for name, row in state.reactions.items())
+        plots.append(Plot("Forces of the frame", "N", (across, along), dwells=True, note=noted("N")))
+        if joints:
+            plots.append(Plot("Forces at joint D", "N", tuple(joints), dwells=True, note=noted("N")))
     if state.pressure is not None:
-        series = tuple(Series(name, row) for name, row in zip(running.turn.names, state.pressure, strict=True))
-        plots.append(Plot("Contact pressure", "N/mm²", series, dwells=True, note=noted("N/mm^2")))
+        plots += opposite("Contact pressure", "N/mm^2", state.pressure)
     return plots
 
 
