@@ -126,8 +126,10 @@ def _motion_checks(
     checks = []
     if limits.motion is not None or not surface.trimmed:
         limit, room = limit_of(follower.motion_limit, limits.motion, limits.tolerance, slack)
-        # the implied limit is a theorem about contours; one that a user gives is held by all that may be
-        worst = motion.max if limits.motion is None else motion.bound
+        # the implied limit is a theorem about contours; one that a user gives is held by all that may be, and so is
+        # either where what the proof leaves open is more than rounding
+        proved = motion.extremes == "sampled" or motion.remainder <= SPLINE_SHARE * limit
+        worst = motion.max if limits.motion is None and proved else motion.bound
         at, detail = np.radians(motion.at_deg), _found(motion)
         direct = follower.direct_limit(limits.tolerance)
         vacuous = limits.motion is None and is_loose(limit, direct, partial(stroke_of, follower))

@@ -31,9 +31,9 @@ CAMS = {
 }
 
 
-def recipe(folder: Path, cam: str, spike: str = "") -> Path:
+def recipe(folder: Path, cam: str, spike: str = "", export: str = f"{TOLERANCE}, files: [dxf]") -> Path:
     path = folder / f"{'spike' if spike else 'plain'}.yaml"
-    text = f"cam: {{{cam.replace('SPIKE', spike)}}}\nexport: {{tolerance: {TOLERANCE}, files: [dxf]}}\n"
+    text = f"cam: {{{cam.replace('SPIKE', spike)}}}\nexport: {{tolerance: {export}}}\n"
     path.write_text(text + "verify: {angles: 90}\n")
     return path
 
@@ -80,3 +80,18 @@ def test_a_law_that_cannot_be_followed_says_so(monkeypatch: pytest.MonkeyPatch) 
     law = lift_from_formula(Formula("30 + cos(7*t)")).law
     with pytest.raises(UnsettledError, match="too rough to be followed to 1e-12"):
         cubic_cells(law, law.breaks, 1e-12)
+
+
+def test_what_the_proof_leaves_open_counts(tmp_path: Path) -> None:
+    """A spike of 1e-7 rad is not met by the search; what the motion may do there is not left out."""
+    export = "2e-5, files: [{dxf: {as: polyline}}]"
+    report = camgeo.export(recipe(tmp_path, CAMS["knife edge"], export=export), tmp_path / "out")
+    assert report.ok
+    assert report.path is not None
+    spiked = recipe(tmp_path, CAMS["knife edge"], " + 8e-5*exp((cos(t - 3.30303) - 1)/1e-7**2)", export)
+    verdict = camgeo.verify(spiked, report.path / "plain.dxf")
+    motion = next(check for check in verdict.checks if check.name == "motion")
+    measured = dict(verdict)["files"][0]["motion"]
+    assert measured["max"] < motion.limit < measured["max"] + measured["remainder"]
+    assert not motion.ok
+    assert "true within" in motion.detail
