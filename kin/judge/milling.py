@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left
+from kin.contour.least_distance import least_distance
 from kin.contour.nearest import nearest, signed_distance
 from kin.judge.check import Check, at_most, failed
 from kin.judge.cuts import across, at_the_floor, cuts_of, features_of, rounds, trace
-from kin.judge.gouge import least_distance
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError

@@ -385,7 +385,7 @@ def test_a_pass_a_micron_beside_another_costs_no_more(program, tmp_path, monkeyp
         asked.append(len(points))
         return signed_distance(chain, points)
 
-    monkeypatch.setattr("kin.judge.gouge.signed_distance", counted)
+    monkeypatch.setattr("kin.contour.least_distance.signed_distance", counted)
 
     def shifted(by):  # a centre of the first pass moved, within what controls take
         return nth(r"I(\S+) J", 12, lambda m: f"I{float(m[1]) + by:.5f} J")
