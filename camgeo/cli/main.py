@@ -116,7 +116,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     wing("study", "Error against run time of each output form; a recipe's margins.")
     wing("report", "An HTML page: the animated mechanism, its curves, its checks.")
     wing("laws", "The motion laws with their peak velocity, acceleration and jerk.")
-    command("schema", _schema, "The recipe's JSON schema.")
+    schema = command("schema", _schema, "The recipe's JSON schema.")
+    schema.add_argument("order", nargs="?", choices=("cam", "camshaft"), default="cam", help="of which recipe")
     return parser
 
 
@@ -361,13 +362,14 @@ def _new(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _schema(_arguments: argparse.Namespace) -> int:
+def _schema(arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
+    from camgeo.recipe.camshaft import SHAFT
     from camgeo.recipe.keys import RECIPE
     from camgeo.report.document import encoded
     from camgeo.schema.json_schema import json_schema
 
-    say_json(encoded(json_schema(RECIPE)))
+    say_json(encoded(json_schema({"cam": RECIPE, "camshaft": SHAFT}[arguments.order])))
     return OK
 
 

@@ -162,7 +162,11 @@ def test_laws_and_schema(capsys: pytest.CaptureFixture[str]) -> None:
     assert peaks["modified-constant-velocity"]["velocity"] == pytest.approx(1.275258, abs=1e-6)
     assert peaks["parabolic"]["jerk"] is None
     assert main(["schema"]) == 0
-    assert json.loads(capsys.readouterr().out)["type"] == "object"
+    assert json.loads(capsys.readouterr().out)["required"] == ["cam"]
+    assert main(["schema", "camshaft"]) == 0
+    shaft = json.loads(capsys.readouterr().out)
+    assert shaft["required"] == ["camshaft"]
+    assert set(shaft["properties"]["camshaft"]["properties"]) == {"shaft", "journals", "lobes", "engine"}
 
 
 @pytest.mark.parametrize("arguments", [[], ["export"], ["dance"], ["export", "x.yaml", "--tolerance", "-1"]])
