@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import NoReturn
 
+    from _typeshed import SupportsWrite
+
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Order, Recipe
@@ -53,11 +55,25 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints go the way of all others."""
+    """A parser whose help and complaints go the way of all others: one that cannot be written is told."""
+
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        if file is None:
+            say(self.format_help().removesuffix("\n"))
+        else:
+            file.write(self.format_help())
 
     def error(self, message: str) -> NoReturn:
         complain(f"{self.format_usage()}{self.prog}: error: {message}")
         raise SystemExit(WRONG)
+
+
+class _Version(argparse.Action):
+    """Say the version, and end."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        say(f"{parser.prog} {self.const}")
+        parser.exit()
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
@@ -74,7 +90,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
         "(disk, missing extra); 130 interrupted.",
     )
-    parser.add_argument("--version", action="version", version=f"camgeo {__version__}")
+    parser.add_argument("--version", action=_Version, nargs=0, const=__version__, help="the version")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:

@@ -63,7 +63,7 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
 
 @pytest.mark.thin(4)
 @FULL
-@pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["laws"]])
+@pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["--version"], ["laws"]])
 def test_a_full_standard_output_is_told(call: list[str]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = run(*call, capture_output=False, stdout=full, stderr=subprocess.PIPE)
