@@ -270,7 +270,7 @@ def test_the_camshaft_of_its_page_is_made_of_the_lobe_beside_it(workshop, tmp_pa
     assert report.ok
     told = {"phase", "position", "shaft", "journal", "bore", "thickness", "volume"}
     assert {check.name for check in report.checks} >= told
-    assert {path.suffix for path in report.path.iterdir()} == {".stl", ".step", ".svg", ".csv", ".html", ".json"}
+    assert {path.suffix for path in report.path.iterdir()} == {".stl", ".3mf", ".svg", ".csv", ".html", ".json"}
 
 
 def test_settings_are_read():
