@@ -79,6 +79,9 @@ def test_nothing_that_is_left_to_the_end_is_lost() -> None:
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")  # noqa: PTH110
 def test_an_output_that_cannot_be_written_changes_no_other_status() -> None:
+    """What is said is held back until the end, as without PYTHONUNBUFFERED."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    call = [sys.executable, "-c", SAID]
     with open("/dev/full", "w", encoding="utf-8") as full:  # noqa: PTH123
-        done = subprocess.run([sys.executable, "-c", SAID], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run(call, env=kept, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (done.returncode, done.stderr) == (1, "")
