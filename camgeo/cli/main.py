@@ -59,7 +59,7 @@ class _Parser(argparse.ArgumentParser):
 
     def print_help(self, file: SupportsWrite[str] | None = None) -> None:
         if file is None:
-            say(self.format_help().removesuffix("\n"))
+            say(self.format_help().removesuffix("\n"), at_once=True)
         else:
             file.write(self.format_help())
 
@@ -72,7 +72,7 @@ class _Version(argparse.Action):
     """Say the version, and end."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        say(f"{parser.prog} {self.const}")
+        say(f"{parser.prog} {self.const}", at_once=True)
         parser.exit()
 
 
