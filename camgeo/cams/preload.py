@@ -1,7 +1,7 @@
 """Preload by interference: metal grown towards every contact of a follower that is held from both sides.
 
 Both contacts together overlap the metal by the interference along their normals, so on one contour it grows by half of
-that all round, and of two discs the second by all of it (THEORY_FORCES.md, section 1). The motion is the one asked for:
+that all round, and of two discs the second by all of it. The motion is the one asked for:
 the overlap is taken up by what gives way at either contact.
 """
 

@@ -38,7 +38,7 @@ class PlacedLobe:
 
     @property
     def zero(self) -> float:
-        """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k (THEORY_FORCES: machines)."""
+        """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k."""
         return self.at - self.lobe.direction
 
     @property

@@ -90,7 +90,7 @@ def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
 def _bar(stretch: Stretch, y: float, colour: str, name: str) -> list[str]:
     """The bar of a stretch, in two where it passes 360 degrees, each with as much of its label as it has room for."""
     span, parts = WIDTH - LEFT - RIGHT, []
-    label = f"{stretch.phase} {stretch.begin:.4g}–{_end(stretch.end):.4g}"
+    label = f"{stretch.phase} {round(stretch.begin, 3):.4g}–{round(_end(stretch.end), 3):.4g}"
     for low, high in _split(stretch.begin, stretch.end):
         x, width = LEFT + span * low / 360.0, span * (high - low) / 360.0
         parts.append(

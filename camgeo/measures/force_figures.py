@@ -25,7 +25,11 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
-FORCES = (FORCE_LEAST, FORCE_GREATEST, TORQUE, PRESSURE, GUIDE_FORCE, MEAN_FORCE)
+FORCES = {
+    **dict.fromkeys((FORCE_LEAST, FORCE_GREATEST, GUIDE_FORCE, MEAN_FORCE), "N"),
+    TORQUE: "N m",
+    PRESSURE: "N/mm^2",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,10 +154,11 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
         return {}
     try:
         if running.jam_deg is not None:
-            return dict.fromkeys(FORCES, Measured(None, "N", running.jam_deg, detail="the stem jams in its guide"))
+            jam = "the stem jams in its guide"
+            return {name: Measured(None, unit, running.jam_deg, detail=jam) for name, unit in FORCES.items()}
         found = extremes_of(running)
     except RoughError:
-        return dict.fromkeys(FORCES, Measured(None, "N", detail=ABRUPT))
+        return {name: Measured(None, unit, detail=ABRUPT) for name, unit in FORCES.items()}
     names = running.turn.names
 
     def worst(of: Sequence[tuple[Extreme, Extreme]], unit: str) -> Measured:

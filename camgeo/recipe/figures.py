@@ -93,12 +93,14 @@ NEEDS: dict[Needs, str] = {
     "speed": "a follower without a linkage, and dynamics.rpm",
     "stiff": "cam.preload.stiffness",
     "forces": "dynamics without stiffness",
-    "material": "dynamics.material, and no stiffness",
+    "material": "dynamics.material, part.thickness or dynamics.width, and no stiffness",
     "reaction": "dynamics.guide, and no stiffness",
     "bearing": "a roller that a cam turns, and dynamics without stiffness",
     "density": "part.density, and in a sweep no linkage",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
+OF_PART: frozenset[Needs] = frozenset({"density", "material"})
+"""Needs for which the part counts as well, its material or its thickness."""
 
 
 _OPENINGS = ("bore", "hub", "bolts", "dowel", "lightening", "mark")
@@ -356,7 +358,8 @@ def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]
         case "forces":
             return "dynamics" in paths and "dynamics.stiffness" not in paths
         case "material":
-            return "dynamics.material" in paths and there("forces", offers, paths)
+            wide = not paths.isdisjoint({"dynamics.width", "part.thickness"})
+            return wide and "dynamics.material" in paths and there("forces", offers, paths)
         case "reaction":
             return "dynamics.guide" in paths and there("forces", offers, paths)
         case "bearing":

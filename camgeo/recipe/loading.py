@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from camgeo.recipe.recipe import file_bytes, is_of_a_camshaft, load_text, of_source, read
+from camgeo.recipe.recipe import file_bytes, is_meant_as_a_camshaft, load_text, of_source, read
 from camgeo.schema.errors import DeprecatedKeyWarning
 from camgeo.schema.yaml_source import read_source
 
@@ -45,7 +45,7 @@ def load_silent(path: str | PathLike[str]) -> Recipe:
 def load_order(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
     """Read the recipe of a cam or of a camshaft, whichever the file holds; raises RecipeErrors as `load` does."""
     source = read_source(file_bytes(path), str(path))
-    if is_of_a_camshaft(source):
+    if is_meant_as_a_camshaft(source):
         from camgeo.recipe.camshaft import read_camshaft
 
         return read_camshaft(source, Path(path))

@@ -23,7 +23,7 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part
 from camgeo.recipe.sweep import build_sweep
-from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
 from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
@@ -172,6 +172,13 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
 def is_of_a_camshaft(source: Source) -> bool:
     """Whether a text is the recipe of a camshaft, which has no cam of its own."""
     return isinstance(source.root, Mapping) and "camshaft" in entries(source.root)
+
+
+def is_meant_as_a_camshaft(source: Source) -> bool:
+    """Whether it is one, or has a slip in that word in the place of a cam."""
+    top = entries(source.root) if isinstance(source.root, Mapping) else {}
+    words = ("camshaft", *RECIPE.keys)
+    return "camshaft" in top or ("cam" not in top and any("camshaft" in suggestion(key, words) for key in top))
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:

@@ -128,7 +128,7 @@ def _motion_checks(
         limit, room = limit_of(follower.motion_limit, limits.motion, limits.tolerance, slack)
         # the implied limit is a theorem about contours; one that a user gives is held by all that may be, and so is
         # either where what the proof leaves open is more than rounding
-        proved = motion.extremes == "sampled" or motion.remainder <= SPLINE_SHARE * limit
+        proved = motion.extremes == "sampled" or motion.remainder <= max(SPLINE_SHARE * limit, 2.0 * room)
         worst = motion.max if limits.motion is None and proved else motion.bound
         at, detail = np.radians(motion.at_deg), _found(motion)
         direct = follower.direct_limit(limits.tolerance)

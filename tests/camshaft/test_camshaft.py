@@ -15,6 +15,8 @@ from camgeo.camshaft.events import stretches
 from camgeo.camshaft.timing import LEFT, RIGHT, WIDTH
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from camgeo.recipe.loading import load_order
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.judge.camshaft import verify_camshaft
 
@@ -543,3 +545,15 @@ def test_the_rings_of_many_lobes_stay_wide_enough_for_their_numbers(tmp_path: Pa
     side = float(re.findall(r'width="([\d.]+)"', text)[0])
     reach = max(float(radius) for radius in re.findall(r' r="([\d.]+)"', text))
     assert reach + 100 < side / 2
+
+
+@pytest.mark.parametrize("word", ["camshafxt", "cam_shaft", "Camshaft"])
+def test_a_slip_in_the_word_camshaft_is_named(word: str, tmp_path: Path) -> None:
+    path = tmp_path / "shaft.yaml"
+    path.write_text(f"{word}: {{lobes: []}}\n", encoding="utf-8")
+    with pytest.raises(RecipeErrors) as caught:
+        load_order(path)
+    assert f"shaft.yaml:1:1: {word}: unknown key; did you mean camshaft?" in str(caught.value)
+    path.write_text("cma: {kind: disc}\n", encoding="utf-8")
+    with pytest.raises(RecipeErrors, match=r"cma: unknown key; did you mean cam\?"):
+        load_order(path)

@@ -27,6 +27,15 @@ LINKED = """\
 cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 """
+PRELOADED = """\
+cam:
+  kind: constant-diameter
+  base_radius: 33
+  roller_radius: 8
+  motion: [{rise: 14, over: 180, law: modified-sine}]
+  preload: {interference: 0.02, stiffness: [5.0e+7, 4.0e+7]}
+dynamics: {mass: 1.5, rpm: %d}
+"""
 WANTED = (
     "cam: {kind: flat-pair, ratio: 2, arm: 60, delta: {harmonics: %d, law: [{rise: 0.5, over: 45, law: harmonic}, "
     "{return: 0.5, over: 45, law: harmonic}]}}\n"
@@ -67,6 +76,8 @@ def test_a_sound_recipe_has_none(text: str) -> None:
         (FLAT + "verify: {motion_error: 0.61}\n", ["loose-motion-error"]),
         (ROLLER + "verify: {motion_error: 1.99}\nlimits: {pressure-angle: {at_most: 80}}\n", []),
         (ROLLER + "verify: {motion_error: 2.01}\nlimits: {pressure-angle: {at_most: 80}}\n", ["loose-motion-error"]),
+        (PRELOADED % 2480, []),
+        (PRELOADED % 2490, ["lost-contact"]),
         (WANTED % 1, ["wanted-law"]),
         (WANTED % 1 + "limits: {law-error: {at_most: 3}}\n", []),
         (WANTED % 3, []),

@@ -95,3 +95,11 @@ def test_what_the_proof_leaves_open_counts(tmp_path: Path) -> None:
     assert measured["max"] < motion.limit < measured["max"] + measured["remainder"]
     assert not motion.ok
     assert "true within" in motion.detail
+
+
+@pytest.mark.slow
+def test_rounding_is_not_left_open(tmp_path: Path) -> None:
+    """At the finest tolerances what the proof leaves open is rounding, and a sound file passes."""
+    for tolerance in ("1.0e-9", "1.0e-10", "2.0e-11"):
+        report = camgeo.export(recipe(tmp_path, CAMS["roller"], export=f"{tolerance}, files: [dxf]"), tmp_path / "out")
+        assert report.ok, tolerance

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from camgeo.cli.main import main
 from camgeo.measures.running_forces import running_of
 from camgeo.output.pipeline import check
 from camgeo.recipe.dynamics import MATERIALS, Material
@@ -114,3 +116,29 @@ def test_an_elastic_train_has_no_pressure(key: str) -> None:
         read(CAM.replace("MATERIAL", f"{key}, stiffness: 1.0e6").encode(), Path("case.yaml"))
     for remedied in (key, "stiffness: 1.0e6"):
         read(CAM.replace("MATERIAL", remedied).encode(), Path("case.yaml"))
+
+
+def test_a_pressure_needs_a_width() -> None:
+    """Without one there is no figure: a limit of it is refused and does not pass unseen."""
+    limits = "limits: {contact-pressure: {at_most: 0.001}}\n"
+    bare = CAM.replace("MATERIAL", "material: steel").replace("part: {thickness: 12, bore: 20}\n", "")
+    with pytest.raises(
+        RecipeErrors, match=r"contact-pressure needs dynamics.material, part.thickness or dynamics.width"
+    ):
+        read((bare + limits).encode(), Path("cam.yaml"))
+    whole = CAM.replace("MATERIAL", "material: steel")
+    for wide in (bare.replace("material: steel", "material: steel, width: 12"), whole):
+        found = check(read((wide + limits).encode(), Path("cam.yaml"))).report
+        assert [entry["ok"] for entry in found["checks"] if entry["name"] == "limit:contact-pressure"] == [False]
+
+
+def test_a_sweep_ranks_by_the_pressure_over_the_part_s_thickness(tmp_path: Path) -> None:
+    more = "sweep: {vary: {cam.base_radius: [40, 45]}, rank: contact-pressure, keep: 2}\n"
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(CAM.replace("MATERIAL", "material: steel") + more, encoding="utf-8")
+    assert main(["sweep", str(recipe), "--out", str(tmp_path)]) == 0
+    lines = (tmp_path / "cam" / "sweep.csv").read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    pressures = [float(row["contact-pressure"]) for row in rows]
+    assert pressures == sorted(pressures)
+    assert all(0.0 < pressure < 1e4 for pressure in pressures)

@@ -1,6 +1,6 @@
 """Case d20: how a normal error of the metal moves the follower, as files show it that are made too small all round.
 
-First order (THEORY_DISC 3): flat d, tilted d/cos beta, roller d/cos alpha, arm d/(L cos alpha) and with a face d/reach.
+First order: flat d, tilted d/cos beta, roller d/cos alpha, arm d/(L cos alpha) and with a face d/reach.
 """
 
 import math

@@ -20,6 +20,7 @@ from camgeo.recipe.figures import (
     JAM_MARGIN,
     MASS,
     MEAN_FORCE,
+    OF_PART,
     ON_RETURN,
     ON_RISE,
     PEAKS,
@@ -157,13 +158,13 @@ class Ask:
         was computed as it is.
         """
         timed = any(FIGURES[name].needs in {"speed", "guide"} for name in figures)
-        weighed = any(FIGURES[name].needs == "density" for name in figures)
+        whole = any(FIGURES[name].needs in OF_PART for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
             self.recipe,
             name="",
             about="",
-            part=self.recipe.part if weighed else Part(),
+            part=self.recipe.part if whole else Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
             dynamics=self.recipe.dynamics if timed else None,

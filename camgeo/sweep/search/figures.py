@@ -80,6 +80,8 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
     given |= {path for path in recipe.marks if path.partition(".")[0] == "dynamics"}
     if recipe.part.density is not None and recipe.linkage is None:
         given.add("part.density")
+    if recipe.part.thickness is not None:
+        given.add("part.thickness")
     given |= {NEEDS["wanted"], NEEDS["stiff"]}.intersection(recipe.marks)
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 

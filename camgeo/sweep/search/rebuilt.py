@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.checks.declared import BENT, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
-from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.figures import FIGURES, OF_PART
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
@@ -70,17 +70,17 @@ def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | 
 def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:
     """Figures by name, (m,) each, lengths in mm and angles in degrees, and what is wrong (m,).
 
-    Of the part there is nothing but the contour, as a bore has no bearing on these, unless its mass is wanted.
+    Of the part there is nothing but the contour, as a bore has no bearing on these, unless a figure is of the part too.
     """
     from camgeo.measures.figures import of_design
     from camgeo.synthesis.design import designed
 
-    m, weighed = len(values), any(FIGURES[name].needs == "density" for name in names)
+    m, whole = len(values), any(FIGURES[name].needs in OF_PART for name in names)
     figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
             made = replace(recipe_with(recipe, paths, row), manufacture=None, wheel=None)
-            made = made if weighed else replace(made, part=Part())
+            made = made if whole else replace(made, part=Part())
             design = designed(made)
         except RecipeErrors:
             continue
