@@ -223,6 +223,7 @@ def _watch(arguments: argparse.Namespace) -> int:
             complain(found.message)
             return None, found.message
         _show(dict(found.report), verbose=arguments.verbose)
+        sys.stdout.flush()  # a pipe hears of each saving too
         assert found.report.path is not None
         return (found.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
