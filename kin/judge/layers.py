@@ -155,10 +155,21 @@ def between_sections(
             meant_so = (low >= lean.low - slack) & (high <= lean.high + slack) & (reach <= lean.reach + slack)
         rows = rows[~meant_so]
     for low, high, _ in rows[:MOST_NAMED].tolist():
-        near = (lean.kind for lean in leaning if low < lean.high + slack and lean.low - slack < high)
+        bottom, top = _together(solid.leaning, low, high, slack)
+        near = (lean.kind for lean in leaning if bottom < lean.high + slack and lean.low - slack < top)
         fault = f"walls lean between z = {low:.9g} and {high:.9g} mm, where none should"
         told.append((next(near, "thickness"), fault))
     return told
+
+
+def _together(rows: Array, low: float, high: float, slack: float) -> tuple[float, float]:
+    """Between which heights walls lean one above the other, of those that do so between two heights."""
+    while True:
+        touching = rows[(rows[:, 0] <= high + slack) & (rows[:, 1] >= low - slack)]
+        bottom, top = float(touching[:, 0].min(initial=low)), float(touching[:, 1].max(initial=high))
+        if (bottom, top) == (low, high):
+            return low, high
+        low, high = bottom, top
 
 
 def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: float, perimeter: float) -> float:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.intersections import crossings
+from kin.contour.nearest import signed_distance
 from kin.judge.bore import bore_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
@@ -276,7 +277,18 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
             checks.append(_thickness_check(solid, part.thickness, limits.tolerance))
             checks.append(volume_check(solid.volume, solid.thickness, contours, part, limits.tolerance))
     chains = scaled(solid.chains, 1.0, mirrored=part.mirrored)
-    return _Read(checks, found.surfaces, chains, solid.units_mm or units or 1.0, solid.uneven)
+    return _Read(checks, found.surfaces, chains, solid.units_mm or units or 1.0, _uneven(solid, part, contours))
+
+
+def _uneven(solid: AnySolid, part: PartIntent, contours: Sequence[Contour]) -> float:
+    """By how much a part's contours differ from section to section, mm: not by what rounding does to hub and bore."""
+    layers = [layer for layer in part.layers if layer.outline is None]
+    if not solid.uneven or not layers or any(surface.z is not None for surface in part.surfaces):
+        return solid.uneven
+    axis = np.zeros((1, 2))
+    inner = min(abs(float(signed_distance(contour.as_arcs()[0], axis)[0])) for contour in contours)
+    low, high = min(layer.low for layer in layers), max(layer.high for layer in layers)
+    return solid.uneven_between(low, high, inner - solid.uneven)
 
 
 def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> Parted:

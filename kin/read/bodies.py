@@ -19,6 +19,32 @@ __all__ = ["MOST_BODIES", "Sought", "beside", "missing"]
 MOST_BODIES = 5  # that are named in a message
 
 
+def no_rows(columns: int) -> Array:
+    """Where no wall of a solid leans."""
+    return np.empty((0, columns))
+
+
+class Slivered:
+    """What of a solid's walls leans no farther than the rounding of its file explains.
+
+    `slivers` (k, 4): least and greatest height, reach from the axis, and by how much, mm.
+    """
+
+    if TYPE_CHECKING:
+        slivers: Array
+
+    @property
+    def uneven(self) -> float:
+        """By how much at most a point of the mesh is off a prism, or walls that stand upright, mm; 0 to the bit."""
+        return self.uneven_between(-np.inf, np.inf)
+
+    def uneven_between(self, low: float, high: float, beyond: float = 0.0) -> float:
+        """The same of what reaches in between two heights, and as far from the axis as `beyond`, mm."""
+        rows = self.slivers
+        there = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
+        return float(rows[there, 3].max(initial=0.0))
+
+
 class Sought(NamedTuple):
     """What is sought of one body: its sections at heights, mm, and how many others a closed chain may lie inside."""
 

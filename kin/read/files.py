@@ -76,7 +76,7 @@ def read_solid(
         sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
         faces=tuple(units * z for z in found.faces),
         leaning=units * found.leaning,
-        uneven=units * found.uneven,
+        slivers=units * found.slivers,
     )
 
 
@@ -114,4 +114,5 @@ def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySoli
         sections=tuple(Section(one.chains, z) for z, one in zip(heights, solid.sections, strict=False)),
         faces=tuple(z - level for z in solid.faces),
         leaning=solid.leaning - [level, level, 0.0],
+        slivers=solid.slivers - [level, level, 0.0, 0.0],
     )

@@ -192,7 +192,7 @@ def test_slivers_side_by_side_lean_together(needles: int, leans: bool) -> None:
     upright = np.array([[[0.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, 0.0, 10.0]]])
     found = walls(welded(np.concatenate([fan, upright])), 0.006)
     assert np.unique(found.leaning[:, :2], axis=0).tolist() == ([[0.0, 10.0]] if leans else [])
-    assert (0.004 < found.by < 0.006) is not leans
+    assert (0.004 < found.slivers[:, 3].max(initial=0.0) < 0.006) is not leans
 
 
 class _Solid:

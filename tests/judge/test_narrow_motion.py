@@ -52,8 +52,9 @@ def test_a_spike_that_the_file_lacks(tmp_path: Path, name: str, width: float) ->
     verdict = camgeo.verify(spiked, report.path / "plain.dxf")
     motion = next(check for check in verdict.checks if check.name == "motion")
     assert not motion.ok
-    if name in {"flat", "support"} and motion.value is not None:  # the narrowest is too rough to be measured
-        assert motion.value == pytest.approx(HIGH, rel=0.05)
+    if name in {"flat", "support"}:
+        # the narrowest is refused as rougher than rounding, before it is measured
+        assert motion.value == (None if width < 1e-4 else pytest.approx(HIGH, rel=0.05))
 
 
 @given(place=st.floats(0.5, 5.5), exponent=st.floats(-5.0, -1.0))

@@ -204,7 +204,7 @@ VARIANTS = {
     "dowel moved": ("circle: 34, hole: 3, at: 20", "circle: 34, hole: 3, at: 20.1", {"holes"}),
     "screw turned": ("diameter: 3.4, at: 90", "diameter: 3.4, at: 90.2", {"set-screw"}),
     "screw wider": ("diameter: 3.4", "diameter: 3.46", {"set-screw"}),
-    "screw higher": ("diameter: 3.4, at: 90", "diameter: 3.4, at: 90, height: 3.06", {"set-screw", "thickness"}),
+    "screw higher": ("diameter: 3.4, at: 90", "diameter: 3.4, at: 90, height: 3.06", {"set-screw"}),
     "no screw": ("set_screw: {diameter: 3.4, at: 90}, ", "", {"set-screw", "volume"}),
     "chamfer too wide": ("chamfer: 0.5", "chamfer: 0.53", {"chamfer", "volume"}),
     "no chamfer": ("chamfer: 0.5, ", "", {"chamfer", "volume"}),

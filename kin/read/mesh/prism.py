@@ -49,10 +49,13 @@ class Evened(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """Triangles that lean (k, 3): least and greatest height, distance from the axis, mm; by how much others may."""
+    """Triangles that lean (k, 3): least and greatest height, distance from the axis, mm; those that rounding explains.
+
+    `slivers` (k, 4) are the latter: the same, and by how much they lean, mm.
+    """
 
     leaning: Array
-    by: float
+    slivers: Array
 
 
 def walls(mesh: Mesh, apart: float) -> Walls:
@@ -72,7 +75,9 @@ def walls(mesh: Mesh, apart: float) -> Walls:
     if float(z[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(np.hypot(x, y).sum()):
         sliver[:] = False
     reach = np.hypot(corners[:, :, 0], corners[:, :, 1]).max(axis=1)
-    return Walls(np.column_stack([low, high, reach])[lean & ~sliver], float(width[sliver].max(initial=0.0)))
+    return Walls(
+        np.column_stack([low, high, reach])[lean & ~sliver], np.column_stack([low, high, reach, width])[sliver]
+    )
 
 
 def upright(corners: Corners) -> Upright:

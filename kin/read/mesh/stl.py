@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +14,7 @@ from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass, field
-from kin.read.bodies import MOST_BODIES, beside
+from kin.read.bodies import MOST_BODIES, Slivered, beside, no_rows
 from kin.read.errors import ReadError
 from kin.read.mesh.prism import Outline, evened, rounding, upright, walls
 from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
@@ -49,11 +50,6 @@ MOST_STEPS = 8
 NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
-def nothing_leans() -> Array:
-    """No rows of `Solid.leaning`."""
-    return np.empty((0, 3))
-
-
 @dataclass(frozen=True, eq=False)
 class Section(Nest):
     """A section at a height, mm."""
@@ -62,7 +58,7 @@ class Section(Nest):
 
 
 @dataclass(frozen=True, eq=False)
-class Solid(Nest):
+class Solid(Nest, Slivered):
     """A part as an STL or 3MF file holds it, mm.
 
     chains              polygons of the section at `height`
@@ -72,7 +68,8 @@ class Solid(Nest):
                         (`kin.read.mesh.prism`)
     leaning             triangles neither level nor upright, to that rounding (k, 3): least and greatest height, reach
                         from the axis
-    uneven              by how much at most a point of the mesh is off such a prism or such walls, mm; 0 to the bit
+    slivers             where a point of the mesh is off such a prism or such walls through that rounding (k, 4): as
+                        `leaning`, and by how much, mm
     volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
@@ -96,8 +93,8 @@ class Solid(Nest):
     form: Form
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
-    leaning: Array = field(default_factory=nothing_leans)
-    uneven: float = 0.0
+    leaning: Array = field(default_factory=partial(no_rows, 3))
+    slivers: Array = field(default_factory=partial(no_rows, 4))
     units_mm: float | None = None
 
     def section(self, z: float) -> Section:
@@ -149,16 +146,16 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
     found = upright(corners)
-    read, uneven = found.mesh, 0.0  # faults are those of the mesh as it is in the file
+    read, leaning, slivers = found.mesh, no_rows(3), no_rows(4)  # faults are those of the mesh as it is in the file
     if not found.prism:
         moved = evened(corners)
         again = None if moved is None else upright(moved.corners)
         if moved is not None and again is not None and again.prism:
-            corners, uneven, found = moved.corners, moved.by, again
-    mesh, outline, leaning = found.mesh, found.outline, nothing_leans()
+            corners, slivers, found = moved.corners, np.array([[z_min, z_max, np.inf, moved.by]]), again
+    mesh, outline = found.mesh, found.outline
     if not found.prism:
         _refuse_apart(read, path, deepest)
-        leaning, uneven = walls(mesh, 2.0 * rounding(corners))
+        leaning, slivers = walls(mesh, 2.0 * rounding(corners))
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
@@ -191,7 +188,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         sections=tuple(sections),
         faces=tuple(levels.tolist()),
         leaning=leaning,
-        uneven=uneven,
+        slivers=slivers,
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +17,8 @@ import numpy as np
 
 from kin.numeric.distinct import distinct
 from kin.numeric.quadrature import gauss
-from kin.numeric.records import dataclass, replace
-from kin.read.bodies import MOST_BODIES, Sought, beside, missing
+from kin.numeric.records import dataclass, field, replace
+from kin.read.bodies import MOST_BODIES, Slivered, Sought, beside, missing, no_rows
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section
@@ -47,7 +47,7 @@ MOST_NAMED = 3  # edges in a message
 
 
 @dataclass(frozen=True, eq=False)
-class StepSolid(Nest):
+class StepSolid(Nest, Slivered):
     """A part as a STEP file holds it, mm; `Solid` of an STL has the same in triangles.
 
     chains              of the section at `height`
@@ -77,8 +77,7 @@ class StepSolid(Nest):
     misfit: float
     schema: str
     units_mm: float
-
-    uneven = 0.0  # its numbers are doubles: walls stand upright or they do not
+    slivers: Array = field(default_factory=partial(no_rows, 4))  # none: its numbers are doubles
 
     @property
     def thickness(self) -> float:
