@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose help and complaints go the way of all others: one that cannot be written is told."""
+    """A parser whose help and complaints go the way of all others, that they cannot be written too."""
 
     def print_help(self, file: SupportsWrite[str] | None = None) -> None:
         if file is None:

@@ -28,7 +28,7 @@ def pounds(units: str, unit: str) -> tuple[str, float] | None:
 
 
 def with_pounds(units: str, value: float | None, unit: str) -> str:
-    """A unit, and behind it the value in pounds where that is told: `N (115.2 lbf)`."""
+    """A unit, and behind it the value in pounds where the check has it: `N (115.2 lbf)`."""
     other = pounds(units, unit)
     return unit if other is None or value is None else f"{unit} ({value * other[1]:.6g} {other[0]})"
 

@@ -246,7 +246,9 @@ FIGURES: dict[str, Figure] = {
     FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.FORCE, "most", "forces"),
     FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.FORCE, "least", "forces"),
     TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", "forces"),
-    PRESSURE: Figure("greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material"),
+    PRESSURE: Figure(
+        "greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material", per="N/mm^2"
+    ),
     GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", "reaction"),
     MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", "bearing"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),

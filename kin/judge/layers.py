@@ -137,7 +137,7 @@ def between_sections(
 
     All sections between two heights are the same if there is no face between them, and no wall leans. Where one face is
     meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
-    from one height to another is told by two sections between them.
+    from one height to another is known by two sections between them.
     """
     places, found = np.array(meant), np.array(solid.faces)
     told, slack = [], tolerance + SAME

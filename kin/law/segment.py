@@ -40,7 +40,7 @@ class Round(ABC):
 
 
 class Alike(ABC):
-    """A stretch that is told by a few numbers; all of a kind are worked out together."""
+    """A stretch that a few numbers describe; all of a kind are worked out together."""
 
     @property
     @abstractmethod

@@ -304,7 +304,7 @@ def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[
 
 
 def test_waves_of_a_base_circle_are_a_dwell() -> None:
-    """Forty waves of 0.3 micrometres beside a lift of 8 mm; those of 30 are told."""
+    """Forty waves of 0.3 micrometres beside a lift of 8 mm; those of 30 are drawn."""
     motion = "{formula: 8*((1 - cos(t))/2)**8 + %s*cos(40*t)}"
     text = f"cam: {{kind: disc, base_radius: 60, follower: {{kind: flat}}, motion: {motion}}}\n"
     small, large = (stretches(designed(camgeo.load(text % wave), Clock()).exact, 0.0) for wave in ("0.0003", "0.03"))

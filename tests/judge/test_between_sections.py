@@ -224,7 +224,7 @@ def test_what_may_lean_and_what_may_not(lean: Lean, named: str | None) -> None:
     ("faces", "double"), [((0.0, 9.0), False), ((0.0, 8.991, 9.0), True), ((0.0, 8.9, 9.0), False)]
 )
 def test_one_face_where_one_is_meant(faces: tuple[float, ...], double: bool) -> None:
-    """Two within the tolerance are a fin; what is farther off is told by the checks on faces."""
+    """Two within the tolerance are a fin; what is farther off is for the checks on faces."""
 
     class Faced(_Solid):
         leaning = np.empty((0, 3))

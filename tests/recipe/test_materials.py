@@ -1,4 +1,4 @@
-"""Materials of contacts: by name or by their figures, the pressure that follows, and a limit that is told alone."""
+"""Materials of contacts: by name or by their figures, the pressure that follows, and a limit that is stated alone."""
 
 from __future__ import annotations
 
@@ -139,6 +139,6 @@ def test_a_sweep_ranks_by_the_pressure_over_the_part_s_thickness(tmp_path: Path)
     assert main(["sweep", str(recipe), "--out", str(tmp_path)]) == 0
     lines = (tmp_path / "cam" / "sweep.csv").read_text(encoding="utf-8").splitlines()
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    pressures = [float(row["contact-pressure"]) for row in rows]
+    pressures = [float(row["contact-pressure_N_per_mm2"]) for row in rows]
     assert pressures == sorted(pressures)
     assert all(0.0 < pressure < 1e4 for pressure in pressures)

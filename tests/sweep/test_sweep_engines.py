@@ -6,6 +6,7 @@ import hashlib
 import json
 import logging
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -167,16 +168,11 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("camgeo.sweep.search.job.__version__", "99.0")
-    how, error, text = {
-        "processes": (How(2), VersionsError, "^a worker has other versions than this run"),
-        "dask": (
-            How(scheduler=cluster.scheduler_address),
-            engines.EngineError,
-            r"^the worker at tcp://.* has camgeo .*, numpy .*, this run camgeo 99\.0, numpy",
-        ),
-    }[engine]
-    with pytest.raises(error, match=text):
+    how = How(2) if engine == "processes" else How(scheduler=cluster.scheduler_address)
+    with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
+    if engine == "dask":
+        assert re.search(r"tcp://.* has camgeo .*, numpy .*, this run camgeo 99\.0, numpy", str(caught.value))
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.common import workers
-from camgeo.sweep.search.job import result, versions
+from camgeo.sweep.search.job import VersionsError, result, versions
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -72,8 +72,9 @@ def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Genera
 def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
     """Let the workers of the Dask scheduler at `address` compute; they need camgeo, and no shared disk.
 
-    Raises ModuleNotFoundError without the package distributed, and EngineError where the scheduler does not answer or
-    goes away, has no workers or such of other versions, or a chunk is lost again and again.
+    Raises ModuleNotFoundError without the package distributed, VersionsError for workers of other versions, and
+    EngineError where the scheduler does not answer or goes away, has no workers or such without camgeo, or a chunk is
+    lost again and again.
     """
     from distributed import Client, wait
 
@@ -108,7 +109,7 @@ def _demand_versions(workers: Mapping[str, dict[str, str] | Exception], ours: di
             raise EngineError(f"the worker at {worker} cannot run camgeo: {theirs}")
         if theirs != ours:
             text, own = (", ".join(f"{name} {version}" for name, version in each.items()) for each in (theirs, ours))
-            raise EngineError(f"the worker at {worker} has {text}, this run {own}")
+            raise VersionsError(f"a worker has other versions than this run: {worker} has {text}, this run {own}")
 
 
 @contextmanager
