@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.recipe.figures import Limit
+from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
 from camgeo.sweep.screen.certify import error_of
 from camgeo.sweep.search.figures import Evaluator

@@ -28,7 +28,7 @@ from camgeo.recipe.figures import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
 
 MORE_HARMONICS = "a higher delta.harmonics, up to 31, or the same motion as cam.law"

@@ -63,37 +63,37 @@ def extremes_of(running: Running) -> Extremes:
     )
 
 
-def float_check(running: Running, found: Extremes) -> Check | None:
+def float_check(running: Running, extremes: Extremes) -> Check | None:
     """Whether the force along the travel holds a single contact on the cam; None of one that two contacts hold."""
-    if len(found.contacts) > 1:
+    if len(extremes.contacts) > 1:
         return None
-    least, most = found.along
+    least, most = extremes.along
     detail = f"greatest {most.value:.6g}; of a rigid follower"
     held, unit = least.value >= 0.0, running.turn.unit
     return Check(FLOAT.name, held, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
 
 
-def forces_section(running: Running, found: Extremes) -> dict[str, object]:
+def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
     """The report's section."""
     names, turn = running.turn.names, running.turn
     section: dict[str, object] = {
         "rpm": running.train.rpm,
-        "contacts": [{"contact": name, **_range(one, "N")} for name, one in zip(names, found.contacts, strict=True)],
-        "torque": _range(found.torque, "N m"),
+        "contacts": [{"contact": name, **_range(one, "N")} for name, one in zip(names, extremes.contacts, strict=True)],
+        "torque": _range(extremes.torque, "N m"),
     }
     if running.train.least_force is not None:
         section |= {"preload": running.preload, "preload_unit": turn.unit}
     ends = {"guide_a": "near", "guide_b": "far"}
-    if guide := [{"end": ends[name], **_range(one, "N")} for name, one in found.reactions.items() if name in ends]:
+    if guide := [{"end": ends[name], **_range(one, "N")} for name, one in extremes.reactions.items() if name in ends]:
         section["guide"] = guide
-    elif found.reactions:
-        section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in found.reactions.items()]
-    if found.pressure:
+    elif extremes.reactions:
+        section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in extremes.reactions.items()]
+    if extremes.pressure:
         bearable = running.most_pressure
         section["pressure"] = [
             {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}
             | ({} if bearable is None else {"limit": bearable, "share_of_limit": most.value / bearable})
-            for name, (_, most) in zip(names, found.pressure, strict=True)
+            for name, (_, most) in zip(names, extremes.pressure, strict=True)
         ]
     section |= running.own_section()
     if lost := running.lost_rpm():
@@ -184,8 +184,8 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     return figures
 
 
-def _range(found: tuple[Extreme, Extreme], unit: str) -> dict[str, object]:
-    least, most = found
+def _range(extremes: tuple[Extreme, Extreme], unit: str) -> dict[str, object]:
+    least, most = extremes
     return {
         "min": least.value,
         "max": most.value,

@@ -92,8 +92,8 @@ class Turn(ABC):
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
         """Least and greatest of such functions over the turn, none sampled past."""
 
-        def placed(found: tuple[float, float]) -> Extreme:
-            return Extreme(found[0], self.degrees(found[1]))
+        def placed(extreme: tuple[float, float]) -> Extreme:
+            return Extreme(extreme[0], self.degrees(extreme[1]))
 
         return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
 

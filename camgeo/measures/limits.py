@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.check import Sense

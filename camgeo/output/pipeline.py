@@ -142,12 +142,12 @@ def judged(
     return document(recipe, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped)))
 
 
-def _alone(files: FileSet, meant: ShaftIntent) -> list[Skipped]:
+def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
     """What is not judged of a set that lacks a disc."""
-    lacking = [part.name for rank, part in enumerate(meant.parts) if not {rank, None} & files.discs]
+    lacking = [part.name for rank, part in enumerate(intent.parts) if not {rank, None} & files.discs]
     names = " and ".join(path.name for _, path, _ in files.files)
     why = f"{names} is judged alone: {' and '.join(lacking)} is not among the files that are given"
-    return [(closure.name, why) for closure in meant.closures if lacking]
+    return [(closure.name, why) for closure in intent.closures if lacking]
 
 
 def _produced(

@@ -100,7 +100,11 @@ OWN_MATERIAL = Table(
         Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST),
         Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
         Field(
-            "limit", Kind.NUMBER, "pressure that it bears, N/mm², stated beside the pressure and not judged", above=0, at_most=MOST
+            "limit",
+            Kind.NUMBER,
+            "pressure that it bears, N/mm²: reported, and not judged",
+            above=0,
+            at_most=MOST,
         ),
     )
 )

@@ -2,53 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
-from camgeo.schema.errors import suggestion
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
-from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys, scalars
+from camgeo.schema.fields import Kind
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.schema.fields import Schema
-    from camgeo.schema.reader import Reader, Values
-    from camgeo.schema.yaml_source import Node
-
 
 Value = TypeVar("Value")
-
-
-@dataclass(frozen=True)
-class Limit:
-    """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle.
-
-    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `at_lift`
-    is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is
-    the recipe's key of the upper bound below `limits`, empty for the figure's own; `place` the entry of the figure's
-    list, such as duration[1], empty where it has none.
-    """
-
-    figure: str
-    at_least: float | None = None
-    at_most: float | None = None
-    rpm: float | None = None
-    at_lift: float | None = None
-    key: str = ""
-    place: str = ""
-
-    @property
-    def lift(self) -> float:
-        """Lift, mm, at which a lobe's figure is held."""
-        return AT_LIFT[self.figure] if self.at_lift is None else self.at_lift
-
-    def field(self, sense: str) -> str:
-        """Give the recipe's field of a bound, `at_least` or `at_most`."""
-        own = f"{self.place or self.figure}.{sense}"
-        return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{own}"
 
 
 Own: TypeAlias = Literal[
@@ -141,7 +104,6 @@ MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "u
 DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA = "duration", "lobe-centre", "ramp-velocity", "lift-area"
 
 
-MOST_LIFTS = 20  # at which a recipe bounds one figure
 AT_LIFT = {DURATION: 1.27, LOBE_CENTRE: 1.27, RAMP_VELOCITY: 0.1524, LIFT_AREA: 0.0}
 """Lifts, mm, at which figures of lobes are taken unless a limit says another: 0.050 and 0.006 in, and all of it."""
 
@@ -307,43 +269,6 @@ FIGURES: dict[str, Figure] = {
 }
 
 
-def bounds(figure: Figure) -> Table:
-    """Give the table of the limits of a figure; in a recipe's own limits some have a key more."""
-    return Table(
-        tuple(
-            Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
-            for name, about in (("at_least", "least value accepted"), ("at_most", "greatest value accepted"))
-        )
-    )
-
-
-_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
-_RETURN = Field(
-    "on_return",
-    Kind.NUMBER,
-    "greatest value on the return, where at_most is that on the rise alone",
-    default="at_most",
-    at_least=-(MOST**2),
-    at_most=MOST**2,
-    unit=Kind.ANGLE,
-)
-
-
-def _at_lift(lift: float) -> Field:
-    about = "lift at which it is taken, from the lowest"
-    return Field("at_lift", Kind.LENGTH, about, default=f"{lift:g} mm", at_least=0, at_most=MOST)
-
-
-def own_bounds(name: str) -> Table:
-    """Give the table of the limits of a figure in a recipe's own `limits`."""
-    more = {
-        PRESSURE_ANGLE: (_RETURN,),
-        **dict.fromkeys(AT_SPEED, (_RPM,)),
-        **{figure: (_at_lift(lift),) for figure, lift in AT_LIFT.items()},
-    }.get(name, ())
-    return Table((*bounds(FIGURES[name]).fields, *more))
-
-
 ALL = "parts: all"
 
 
@@ -385,133 +310,3 @@ def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]
         case "all":
             return ALL in paths
     return True
-
-
-def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read limits by the figures that they bound, those in `field.choices`; lengths in mm, angles in degrees."""
-    if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
-        return None
-    given = entries(node)
-    limits = []
-    former = dict(field.former_choices)
-    for word, key in keys(node).items():
-        name, below = former.get(word, word), join(path, word)
-        if name != word:
-            reader.notice(key.mark, reader.written(below), name)
-            if name in given:
-                reader.fault(key.mark, below, f"the former name of {name}, which is given too", None, "leave it out")
-                continue
-            reader.renamed[join(path, name)] = below
-        if name not in field.choices:
-            known = tuple(here for here in of_recipe(reader) if here in field.choices)
-            remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
-            reader.fault(key.mark, below, "unknown figure", None, remedy)
-            continue
-        value = given[word]
-        if field is LIMITS and name in AT_LIFT and isinstance(value, Sequence):
-            for i, item in enumerate(reader.items(_bounded(field, name), value, below, MOST_LIFTS)):
-                own = _read_limit(reader, field, name, item, join(below, i))
-                limits += [{**limit, "place": f"{name}[{i}]"} for limit in own]
-        else:
-            limits += _read_limit(reader, field, name, value, below)
-    return limits
-
-
-def _bounded(field: Field, name: str) -> Field:
-    return Field("", Kind.TABLE, "", table=own_bounds(name) if field is LIMITS else bounds(FIGURES[name]))
-
-
-def _read_limit(reader: Reader, field: Field, name: str, node: Node, path: str) -> list[Values]:
-    """Read the bounds of one figure: one limit, or those of the rise and of the return; none where there is a fault."""
-    faults = len(reader.errors)
-    values = reader.field(_bounded(field, name), node, path)
-    if values is None or len(reader.errors) > faults:
-        return []
-    stated = {key: values.pop(key) for key in ("rpm", "at_lift") if key in values}
-    on_return = values.pop("on_return", None)
-    if not values and on_return is None:
-        reader.fault(node.mark, path, "no bound", None, "give at_least, at_most or both")
-    factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
-    if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
-        none = "no design" if field is not LIMITS else "nothing"
-        reader.fault_at(f"{path}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
-    said = {bound: factor * value for bound, value in values.items()}
-    if on_return is None:
-        return [{"figure": name, "at": path, **said, **stated}]
-    if "at_least" in values:
-        reader.fault_at(f"{path}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
-        return []
-    both = ((ON_RISE, "at_most", said.get("at_most")), (ON_RETURN, "on_return", on_return))
-    return [
-        {"figure": figure, "at": path, "at_most": most, "key": f"{name}.{bound}"}
-        for figure, bound, most in both
-        if most is not None
-    ]
-
-
-def _limits_schema(field: Field) -> Schema:
-    tables = {name: own_bounds(name) if field is LIMITS else bounds(FIGURES[name]) for name in field.choices}
-    limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
-    for name in AT_LIFT if field is LIMITS else ():  # one lift, or a list of them
-        item = limits[name]
-        limits[name] = {**item, "type": ["object", "array"], "items": item, "minItems": 1, "maxItems": MOST_LIFTS}
-    for former, name in field.former_choices:
-        limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
-    return {"type": "object", "properties": limits, "additionalProperties": False}
-
-
-FORM = Form(
-    "limits",
-    "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
-    read_limits,
-    _limits_schema,
-)
-
-
-LIMITS = Field(
-    "limits",
-    Kind.OWN,
-    "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
-    default="none",
-    choices=tuple(FIGURES),
-    former_choices=tuple(PRESENT.items()),
-    form=FORM,
-)
-
-
-def of_recipe(reader: Reader) -> tuple[str, ...]:
-    """Name the figures that the recipe being read has."""
-    given = set(reader.marks)
-    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
-        given.add(ALL)
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.offers, given))
-
-
-def check_limits(limits: list[Values], reader: Reader) -> None:
-    """Note limits of figures that the recipe has not."""
-    here, bounded = of_recipe(reader), dict[tuple[str, str, float | None], str]()
-    for limit in limits:
-        for bound in ("at_least", "at_most"):
-            key = limit["figure"], bound, limit.get("at_lift", AT_LIFT.get(limit["figure"]))
-            if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
-                other, path = sorted((bounded[key], limit["at"]), key=len)
-                how = "at the same lift" if "place" in limit else "with on_return"
-                reader.fault_at(path, f"{other} {how} bounds it too", None, "leave one of the two out")
-        name, needs = limit["figure"], FIGURES[limit["figure"]].needs
-        if needs and name not in here and not ("rpm" in limit and "linkage" not in reader.marks):
-            remedy = f"the figures of this recipe are {either(here, 'and')}"
-            path, what = limit["at"], name
-            if "key" in limit:  # one that a key of another figure gives
-                path, what, remedy = (
-                    f"{path}.on_return",
-                    "on_return",
-                    "give at_most alone, which holds on the return too",
-                )
-            reader.fault_at(path, f"{what} needs {NEEDS[needs]}", None, remedy)
-
-
-def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
-    """Make the limits of values in which there is no fault."""
-    given = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
-    return tuple(Limit(**limit) for limit in given)

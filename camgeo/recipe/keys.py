@@ -10,7 +10,7 @@ from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.dynamics import DYNAMICS, check_guide, check_train
 from camgeo.recipe.export import EXPORT, check_files
-from camgeo.recipe.figures import LIMITS, check_limits
+from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
 from camgeo.recipe.part import PART, check_part

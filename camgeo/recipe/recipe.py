@@ -17,8 +17,8 @@ from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.dynamics import Dynamics, build_train
 from camgeo.recipe.export import build_export
-from camgeo.recipe.figures import Limit, build_limits
 from camgeo.recipe.keys import RECIPE, UNITS, read_values
+from camgeo.recipe.limits import Limit, build_limits
 from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part

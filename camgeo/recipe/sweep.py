@@ -7,7 +7,8 @@ from collections import Counter
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES as EVERY
-from camgeo.recipe.figures import FORM, NEEDS, PRESENT, Limit, build_limits, there
+from camgeo.recipe.figures import NEEDS, PRESENT, there
+from camgeo.recipe.limits import FORM, Limit, build_limits
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import (
     MOST_AXES,

@@ -131,7 +131,7 @@ def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lea
 
 
 def between_sections(
-    solid: AnySolid, meant: Sequence[float], leaning: Sequence[Lean], tolerance: float
+    solid: AnySolid, levels: Sequence[float], leaning: Sequence[Lean], tolerance: float
 ) -> list[tuple[str, str]]:
     """Tell, by the check that reports it, what makes sections differ of which one is seen between two faces `meant`.
 
@@ -139,9 +139,9 @@ def between_sections(
     meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
     from one height to another is known by two sections between them.
     """
-    places, found = np.array(meant), np.array(solid.faces)
+    places, found = np.array(levels), np.array(solid.faces)
     told, slack = [], tolerance + SAME
-    for z in meant:
+    for z in levels:
         here = found[(np.abs(found[:, None] - places).min(axis=1) == np.abs(found - z)) & (np.abs(found - z) <= slack)]
         if here.size and float(np.ptp(here)) > SAME:
             fault = f"faces at z = {here.min():.9g} and {here.max():.9g} mm, where one is expected"

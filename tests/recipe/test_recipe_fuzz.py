@@ -17,8 +17,8 @@ from support.places import SHIPPED as SHIPPED_FILES
 
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
-from camgeo.recipe.figures import bounds
 from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.loading import read
 from camgeo.recipe.starter import KINDS, starter

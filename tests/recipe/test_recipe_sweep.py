@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo.recipe.figures import NEEDS, Limit
+from camgeo.recipe.figures import NEEDS
 from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 from camgeo.schema.edit import with_values

@@ -16,7 +16,7 @@ from support.heavy import parquet
 from support.sweepers import GRID, MEANS, ask, hills
 
 from camgeo.common.errors import SurroundingsError
-from camgeo.recipe.figures import Limit
+from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load, read
 from camgeo.sweep.search import gather as gathering
 from camgeo.sweep.search import outputs

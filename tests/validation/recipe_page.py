@@ -8,8 +8,9 @@ from pathlib import Path
 from camgeo.cams.disc import FOLLOWERS
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
-from camgeo.recipe.figures import FIGURES, NEEDS, bounds
+from camgeo.recipe.figures import FIGURES, NEEDS
 from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.sweep import RANGE
 from camgeo.schema.fields import Kind

@@ -16,7 +16,7 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.gather import Gathered
     from kin.numeric.arrays import Array, Indices, Mask

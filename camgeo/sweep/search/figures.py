@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import Cam
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.sweep.screen.screen import Screen
     from kin.linkage.four_bar import Linkage

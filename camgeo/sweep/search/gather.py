@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.sweep.search.plan import Axis, Plan
 
     Floats: TypeAlias = NDArray[np.float64]

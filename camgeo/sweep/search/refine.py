@@ -26,7 +26,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.sweep.search.ask import Ask
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.limits import Limit
     from camgeo.sweep.search.gather import Gathered, Ranking
 
 # hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
