@@ -125,7 +125,7 @@ def test_sweeps_name_the_unit_of_forces() -> None:
     text = metric(INCHES) + "sweep: {vary: {cam.base_radius: [38, 40]}, rank: contact-force-greatest}\n"
     ask = Ask.of(read(text.encode(), "sweep.yaml"))
     names = ("contact-force-greatest", "shaft-torque", "contact-pressure")
-    assert [ask.units(names)[name].name for name in names] == ["N", "N m", ""]
+    assert [ask.units(names)[name].name for name in names] == ["N", "N m", "N/mm^2"]
     json.dumps({name: unit.name for name, unit in ask.units(("mass", "inertia")).items()})
 
 
