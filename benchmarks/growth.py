@@ -31,9 +31,9 @@ from camgeo.api.loading import load
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import extruded
-from camgeo.files.stl import write_stl
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
+from camgeo.formats.stl import write_stl
 from camgeo.output.job import Job
 from camgeo.output.pipeline import export
 from camgeo.recipe.part import Part

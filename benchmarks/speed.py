@@ -23,11 +23,11 @@ import numpy as np
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
-from camgeo.files.stl import write_stl
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
+from camgeo.formats.stl import write_stl
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.part.shapes import disc

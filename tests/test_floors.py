@@ -42,6 +42,7 @@ FLOORS = {
         measures
         synthesis
         checks
+        formats
         files
         curve.undercut fit
         recipe

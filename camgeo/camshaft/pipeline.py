@@ -190,7 +190,7 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
     recipe, tolerance, mm = job.recipe, job.tolerance(request), job.unit(request)
     if request.kind == "step":
         from camgeo.camshaft.body import camshaft_outlines, circle
-        from camgeo.files.step import write_stack
+        from camgeo.formats.step import write_stack
 
         stretches, bound, pieces = camshaft_outlines(recipe, job.lobes, job.fits_of, 0.5 * tolerance)
         with job.clock.stage("write step"):
@@ -205,17 +205,17 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
         mesh, bound, pieces = camshaft_mesh(recipe, job.lobes, job.fits_of, tolerance=tolerance, precision=precision)
     with job.clock.stage(f"write {request.kind}"):
         if request.kind == "stl":
-            from camgeo.files.stl import write_stl
+            from camgeo.formats.stl import write_stl
 
             write_stl(path, mesh, mm=mm, about=recipe.name)
         elif request.kind == "3mf":
-            from camgeo.files.three_mf import Item, write_3mf
+            from camgeo.formats.three_mf import Item, write_3mf
 
             write_3mf(path, [Item("camshaft", mesh)], title=recipe.name, mm=mm, about=recipe.about)
         else:
             import numpy as np
 
-            from camgeo.files.glb import Actor, write_glb
+            from camgeo.formats.glb import Actor, write_glb
 
             pose = np.zeros((STEPS + 1, 3))
             pose[:, 2] = (1.0 if recipe.rotation == "ccw" else -1.0) * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS

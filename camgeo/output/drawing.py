@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.files.dxf import Reference
     from camgeo.fit.pieces import Outline
+    from camgeo.formats.dxf import Reference
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from kin.judge.check import Check
@@ -62,11 +62,11 @@ def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Pa
     outlines = [*contours_of(job.design, contours), *rim_of(body), *openings_of(body)]
     remarks = part_geometry.remarks(body, recipe.mm)
     if request.kind == "svg":
-        from camgeo.files.svg import write_svg
+        from camgeo.formats.svg import write_svg
 
         write_svg(path, outlines, remarks=remarks, mm=recipe.mm, name=recipe.name, about=recipe.about)
         return
-    from camgeo.files.dxf import write_dxf
+    from camgeo.formats.dxf import write_dxf
 
     write_dxf(
         path,
@@ -82,8 +82,8 @@ def _write(job: Job, contours: Sequence[Outline], request: FileRequest, path: Pa
 
 def _reference(job: Job, tolerance: float) -> list[Reference]:
     """Centre, base or prime circle, the pitch curve, and paths of points of links: to look at, not to cut."""
-    from camgeo.files.dxf import Circle, Line, Point, Trace
     from camgeo.fit.arcs import fit_arcs
+    from camgeo.formats.dxf import Circle, Line, Point, Trace
     from camgeo.synthesis.part.walls import Looks, distance_inside
 
     recipe, cam = job.recipe, job.recipe.cam

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.assembly.body import PrintBody
     from camgeo.files.mesh import Mesh
-    from camgeo.files.three_mf import Item
+    from camgeo.formats.three_mf import Item
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from kin.judge.check import Check
@@ -84,7 +84,7 @@ def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
 
 
 def _stl(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.files.stl import write_stl
+    from camgeo.formats.stl import write_stl
     from kin.read.mesh.stl import triangles_of
 
     mm = job.recipe.told_for(request).mm
@@ -109,7 +109,7 @@ def _stl(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> M
 
 
 def _three_mf(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.files.three_mf import Item, write_3mf
+    from camgeo.formats.three_mf import Item, write_3mf
     from kin.read.mesh.threemf import read_placed
 
     recipe = job.recipe
@@ -135,7 +135,7 @@ def _three_mf(job: Job, request: FileRequest, path: Path, parts: Sequence[Part])
 
 
 def _glb(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.files.glb import Actor, write_glb
+    from camgeo.formats.glb import Actor, write_glb
 
     actors = []
     for part in parts:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def make_stl(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one disc."""
-    from camgeo.files.stl import write_stl
+    from camgeo.formats.stl import write_stl
 
     mesh, facts = cam_mesh(job, request)
     with job.clock.stage("write stl"):
@@ -34,7 +34,7 @@ def make_stl(job: Job, request: FileRequest, path: Path) -> Made:
 
 def make_3mf(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge all discs, each in its place."""
-    from camgeo.files.three_mf import Item, write_3mf
+    from camgeo.formats.three_mf import Item, write_3mf
 
     meshed = cam_meshes(job, request)
     items = [Item(name, mesh, place) for name, mesh, _, place in meshed]

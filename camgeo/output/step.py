@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def make_step(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
-    from camgeo.files.step import StepBody, write_step, written_off
+    from camgeo.formats.step import StepBody, write_step, written_off
 
     recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
     with job.refusals(request):

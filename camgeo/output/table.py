@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.files.table import write_table
+from camgeo.formats.csv import write_table
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 

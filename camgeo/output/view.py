@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.units import UNIT_MM
-from camgeo.files.glb import Actor, write_glb
+from camgeo.formats.glb import Actor, write_glb
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.solid import cam_meshes

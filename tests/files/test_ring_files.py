@@ -9,10 +9,10 @@ from support.parts import files_of, found, recipe_of
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.files.dxf import write_dxf
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
+from camgeo.formats.dxf import write_dxf
 from camgeo.machining.compensation import compensated
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text

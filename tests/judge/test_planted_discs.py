@@ -24,8 +24,8 @@ from support.stepfiles import washer
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.moving_frame import Oscillating
-from camgeo.files.dxf import write_dxf as drawn_spline
 from camgeo.fit.spline import fit_spline
+from camgeo.formats.dxf import write_dxf as drawn_spline
 from kin.follower.guide import Line
 from kin.follower.roller import Roller
 from kin.judge.holes import round_hole

@@ -10,8 +10,8 @@ from support.heavy import lib3mf, trimesh
 from support.parts import failures, recipe_of
 
 from camgeo.assembly.body import Plate, PrintBody
-from camgeo.files import stl, three_mf
 from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.formats import stl, three_mf
 from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.output.parts import make_parts

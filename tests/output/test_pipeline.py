@@ -237,8 +237,8 @@ UNUSED = {
     "kin.law": "formula.formula frame_swing reuleaux routes transmission_law",
     "kin.read": "drawing.svg gcode mesh.threemf step",
 }
-OF_DXF = "camgeo.files.dxf camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
-OF_STL = "camgeo.files.stl camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
+OF_DXF = "camgeo.formats.dxf camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
+OF_STL = "camgeo.formats.stl camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
 
 
 @pytest.mark.thin(2)

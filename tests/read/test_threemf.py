@@ -19,10 +19,10 @@ from camgeo.cli.main import main
 from camgeo.files.mesh import Mesh
 from camgeo.files.precision import DECIMALS
 from camgeo.files.prism import extruded
-from camgeo.files.three_mf import Item, write_3mf
 from camgeo.files.triangulate import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
+from camgeo.formats.three_mf import Item, write_3mf
 from camgeo.output.pipeline import judged
 from camgeo.schema.errors import RecipeErrors
 from kin.read.errors import ReadError

@@ -20,9 +20,9 @@ from camgeo.files.curves import FLATTEST, misfit
 from camgeo.files.errors import MissingExtraError
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.solid import Solid
-from camgeo.files.step import StepBody, write_step
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.formats.step import StepBody, write_step
 from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.output.part_geometry import contours_of, rim_of, solid_of

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.ring import ArcChain, radius_of, steps_along
-from camgeo.files.dxf import UNITS
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
+from camgeo.formats.dxf import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,8 +15,8 @@ from support.parts import CAM, failures
 
 from camgeo.cli.main import main
 from camgeo.files.layer_outline import LayerOutline
-from camgeo.files.svg import write_svg
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
+from camgeo.formats.svg import write_svg
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
 from camgeo.recipe.loading import read

@@ -9,8 +9,8 @@ from support.heavy import trimesh
 from support.parts import recipe_of
 
 from camgeo.cli.main import main
-from camgeo.files.glb import PERIOD, Actor, write_glb
 from camgeo.files.mesh import Mesh
+from camgeo.formats.glb import PERIOD, Actor, write_glb
 from camgeo.output.job import Job
 from camgeo.output.view import make_view
 from camgeo.recipe.export import FileRequest

@@ -12,13 +12,13 @@ from support.cases import examples
 from support.heavy import manifold3d, trimesh
 from support.outlines import bored
 
-from camgeo.files import stl
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
 from camgeo.files.triangulate import clipped, disc, ring, sides, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
+from camgeo.formats import stl
 
 NONE = Bound(0.0, 0.0)
 fit_tolerance, single_precision_bound = SINGLE.fit_tolerance, SINGLE.bound

@@ -15,9 +15,9 @@ from support.outlines import bored
 from support.places import TESTS
 from support.splines import closed_spline, periodic_spline
 
-from camgeo.files.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
+from camgeo.formats.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
 
 NONE = Bound(0.0, 0.0)
 TWO = (13.000000000000004, 13.000000000000005)  # differ in mm, the same in inches
@@ -173,7 +173,7 @@ sys.path[:0] = sys.argv[2:]
 from test_dxf import ARCS, MODERN, POLYGON, REFERENCE, VERSIONS
 from support.outlines import bored
 from support.splines import closed_spline
-from camgeo.files.dxf import write_dxf
+from camgeo.formats.dxf import write_dxf
 for version in VERSIONS:
     write_dxf(Path(sys.argv[1], f"arcs-{version}.dxf"), bored(ARCS, 10.0), reference=REFERENCE, version=version,
               name="cam", about="W Figure 9")
