@@ -30,7 +30,7 @@ from peer import PEERS
 
 from camgeo.common import clock
 from camgeo.recipe.loading import load, load_text
-from camgeo.sweep.study.tolerance_ladder import Rung, climb
+from camgeo.capabilities.study.tolerance_ladder import Rung, climb
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
 from kin.judge.intent import Limits

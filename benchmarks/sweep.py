@@ -6,7 +6,7 @@ Speed is processor time, the least of several repeats, as a ratio too: to bare k
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
 OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `screen` holds
 estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what it measured
-stands in `camgeo.sweep.screen.errors`. `accuracy` does so for four-bars.
+stands in `camgeo.capabilities.sweep.screen.errors`. `accuracy` does so for four-bars.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ import numpy as np
 from camgeo.cams.flat_faced import breadth_of
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
-from camgeo.sweep.screen.certify import error_of
-from camgeo.sweep.search.figures import Evaluator
-from camgeo.sweep.search.rebuilt import recipe_with
+from camgeo.capabilities.sweep.screen.certify import error_of
+from camgeo.capabilities.sweep.search.figures import Evaluator
+from camgeo.capabilities.sweep.search.rebuilt import recipe_with
 from camgeo.synthesis.linkage import mechanism_of
 from kin.law.sources.laws import NAMES
 
@@ -124,7 +124,7 @@ sweep:
 RUN = """
 import sys, time
 from camgeo.cli.main import main
-from camgeo.sweep.search import search
+from camgeo.capabilities.sweep.search import search
 spent = []
 def timed(*arguments, compute=search.compute, **named):
     begun = time.process_time()

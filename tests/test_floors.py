@@ -31,9 +31,9 @@ FLOORS = {
     """,
     "camgeo": """
         __main__
+        capabilities
         cli
         pytest_plugin testing
-        sweep
         api
         camshaft
         output
@@ -52,13 +52,12 @@ FLOORS = {
         common version
     """,
 }
-WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep", "camgeo.camshaft"}
+WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.capabilities", "camgeo.camshaft"}
 # Modules of core rooms that stand for a wing, imported only when a recipe or a command asks for it.
 DOORS = {
     "camgeo.output.parts",
     "camgeo.output.mechanism",
     "camgeo.output.gcode",
-    "camgeo.cli.study",
     "camgeo.api.camshaft",
 }
 HEAVY = {

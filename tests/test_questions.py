@@ -74,7 +74,7 @@ def families() -> dict[str, Family]:
                 # one table each from class to maker, and its look-ups
                 "camgeo/assembly/linked.py": 3,
                 "camgeo/report/page/linked.py": 2,
-                "camgeo/sweep/search/linkages.py": 2,
+                "camgeo/capabilities/sweep/search/linkages.py": 2,
             },
         ),
         "cams": Family(
@@ -395,8 +395,8 @@ WHERE_ONE_IS_ALL = {
     "camgeo/output/job.py": 2,
     "camgeo/output/table.py": 1,
     "camgeo/measures/remarks.py": 1,  # limits that a tolerance implies
-    "camgeo/sweep/study/margins.py": 1,
-    "camgeo/sweep/search/cams.py": 1,  # support functions
+    "camgeo/capabilities/study/margins.py": 1,
+    "camgeo/capabilities/sweep/search/cams.py": 1,  # support functions
     "camgeo/camshaft/lobes.py": 1,  # a lobe is a cam of one surface; others are refused
     "camgeo/camshaft/pipeline.py": 1,
 }
@@ -492,7 +492,7 @@ def missing() -> dict[str, set[str]]:
     """Names of the kinds that the tables lack."""
     from camgeo.assembly.linked import MAKERS
     from camgeo.report.page import linked
-    from camgeo.sweep.search.linkages import ENGINES
+    from camgeo.capabilities.sweep.search.linkages import ENGINES
 
     loops = kinds(four_bar) | kinds(dyad)
     wanted = {"page": (linked.MAKERS, loops), "bodies": (MAKERS, loops), "sweep": (ENGINES, kinds(four_bar))}

@@ -98,11 +98,11 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         added.set_defaults(run=run)
         return added
 
-    def wing(name: str, text: str) -> None:
+    def wing(name: str, text: str, module_name: str) -> None:
         """Add a command that has a module of its own, which is imported where it is called."""
         added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
         if name in words:
-            module = import_module(f"camgeo.cli.{name}")
+            module = import_module(module_name)
             module.add_arguments(added)
             added.set_defaults(run=module.run)
 
@@ -125,13 +125,15 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
     verify.add_argument("--second-opinion", action="store_true", help=text)
-    wing("sweep", "Many designs of one recipe, ranked; the best become recipes.")
+    wing("sweep", "Many designs of one recipe, ranked; the best become recipes.", "camgeo.capabilities.sweep.command")
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE")
-    wing("study", "Error against run time of each output form; a recipe's margins.")
-    wing("report", "An HTML page: the animated mechanism, its curves, its checks.")
-    wing("laws", "The motion laws with their peak velocity, acceleration and jerk.")
+    wing(
+        "study", "Error against run time of each output form; a recipe's margins.", "camgeo.capabilities.study.command"
+    )
+    wing("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
+    wing("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
     schema.add_argument("order", nargs="?", choices=("cam", "camshaft"), default="cam", help="of which recipe")
     return parser

@@ -28,7 +28,7 @@ from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
-from camgeo.sweep.search.figures import REASONS, asked_of
+from camgeo.capabilities.sweep.search.figures import REASONS, asked_of
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 

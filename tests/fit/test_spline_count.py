@@ -20,7 +20,7 @@ from camgeo.fit.spans import plane
 from camgeo.fit.spline import fit_spline
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load, load_text
-from camgeo.sweep.study.least_pieces import least_pieces, least_spline
+from camgeo.capabilities.study.least_pieces import least_pieces, least_spline
 from camgeo.synthesis.design import designed
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 

@@ -220,7 +220,7 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
         "heavy |= {'OCP', 'zipfile'}\n"
         "heavy |= {f'kin.{name}' for name in ('clearance', 'dynamics', 'linkage.mechanism', 'judge.milling')}\n"
         "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
-        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page', 'sweep', 'machining.milling')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page', 'capabilities', 'machining.milling')}\n"
         "heavy |= {f'camgeo.output.{name}' for name in ('gcode', 'mechanism', 'parts', 'step', 'view')}\n"
         f"heavy.add('camgeo.output.drawing' if {kind!r} == 'stl' else 'camgeo.output.solid')\n"
         "print(sorted(heavy & set(sys.modules)))"
@@ -230,7 +230,7 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
 
 
 UNUSED = {
-    "camgeo": "assembly cli.laws cli.report cli.study cli.sweep cli.watch machining report.page schema.edit sweep",
+    "camgeo": "assembly capabilities.study.command capabilities.sweep.search cli.laws cli.report cli.watch machining report.page schema.edit",
     "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
     "camgeo.synthesis": "linkage motion_table part.lightening view",
     "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",

@@ -9,9 +9,9 @@ import pytest
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.sweep.study.document import document
-from camgeo.sweep.study.margins import margins
-from camgeo.sweep.study.tolerance_ladder import Ended, Rung
+from camgeo.capabilities.study.document import document
+from camgeo.capabilities.study.margins import margins
+from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

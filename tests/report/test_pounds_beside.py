@@ -14,7 +14,7 @@ from camgeo.recipe.loading import read
 from camgeo.report.document import summary, table
 from camgeo.report.failure import headline
 from camgeo.report.page import tables
-from camgeo.sweep.search.ask import Ask
+from camgeo.capabilities.sweep.search.ask import Ask
 
 if TYPE_CHECKING:
     from pathlib import Path

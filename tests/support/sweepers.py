@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.recipe.loading import read
-from camgeo.sweep.search.ask import Ask
-from camgeo.sweep.search.figures import Evaluator
-from camgeo.sweep.search.gather import REASON
-from camgeo.sweep.search.job import Job
-from camgeo.sweep.search.plan import Axis, Plan, steps
-from camgeo.sweep.search.search import Means
+from camgeo.capabilities.sweep.search.ask import Ask
+from camgeo.capabilities.sweep.search.figures import Evaluator
+from camgeo.capabilities.sweep.search.gather import REASON
+from camgeo.capabilities.sweep.search.job import Job
+from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.search.search import Means
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,0 +1,1 @@
+"""What stands beside the core: each folder one capability, which registers itself by a record."""

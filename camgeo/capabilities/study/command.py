@@ -1,0 +1,130 @@
+"""The command `camgeo study`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.cli.arguments import add_out, decimal
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.progress import Progress
+from camgeo.common.terminal import complain, say, say_json
+from camgeo.files.errors import install
+from camgeo.capabilities.study import FORMS
+
+if TYPE_CHECKING:
+    import argparse
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+    from camgeo.synthesis.design import Design
+
+REPORT, PICTURE = "study.json", "study.png"
+PATIENCE = 2.0  # seconds of a run, fit, write and judge together, after which a ladder goes no further
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
+    add_out(parser)
+    parser.add_argument("--form", action="append", default=[], choices=FORMS, help="this form only; repeatable")
+    text = "seconds of a run (fit, write and judge) after which a form's ladder goes no further (default: %(default)s)"
+    parser.add_argument("--patience", type=_seconds, default=PATIENCE, metavar="S", help=text)
+    parser.add_argument("--json", action="store_true", help="study.json, for machines")
+
+
+def _seconds(text: str) -> float:
+    import argparse
+
+    try:
+        value = decimal(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= 1e5:
+        raise argparse.ArgumentTypeError(f"a number of seconds above 0, not {text}")
+    return value
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
+    from camgeo.cli.recipes import load
+    from camgeo.common.errors import SurroundingsError
+    from camgeo.schema.errors import RecipeErrors
+    from camgeo.capabilities.study.document import document, table
+    from camgeo.capabilities.study.margins import margins
+    from camgeo.synthesis.design import designed
+
+    try:
+        recipe = load(arguments.recipe)
+        design = designed(recipe)
+        progress = Progress(recipe.name)
+        try:
+            found = _climbed(recipe, design, arguments, progress)
+        finally:
+            progress.clear()
+        failed = [check for check in design.checks if not check.ok]
+        skipped = [] if design.contours else [("files", "a check of the exact contour fails")]
+        if recipe.part.thickness is None:
+            skipped.append(("stl", "part.thickness is not given"))
+        study = document(recipe, found, margins(recipe, design), skipped, failed)
+        ok = not failed and all(row["ok"] for row in study["rows"])
+        _write(recipe, study, Path(arguments.out), ok=ok)
+    except RecipeErrors as errors:
+        complain(str(errors))
+        return WRONG
+    except (SurroundingsError, OSError) as error:
+        complain(f"camgeo: {error}")
+        return SURROUNDINGS
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        say_json(encoded(study))
+    else:
+        say(f"{recipe.name}\n{table(study)}")
+    return OK if ok else FAILED
+
+
+def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
+    """All rungs of all forms."""
+    import tempfile
+
+    from camgeo.capabilities.study.tolerance_ladder import climb
+
+    if not design.contours:
+        return []
+    forms = [form for form in arguments.form or FORMS if form != "stl" or recipe.part.thickness is not None]
+    found: list[Rung | Ended] = []
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        for form in forms:
+            found += climb(recipe, design, form, Path(folder), patience=arguments.patience, listener=progress)
+    return found
+
+
+def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> None:
+    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is reported.
+
+    A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
+    `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
+    """
+    from camgeo.output.output_folder import Family, RunFolder
+    from camgeo.report.document import encoded
+    from camgeo.report.listed import listed
+
+    files: dict[str, bytes] = {}
+    with RunFolder(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
+        try:
+            from camgeo.capabilities.study.picture import picture
+
+            if study["rows"]:
+                drawn = picture(study)
+                (run.folder / PICTURE).write_bytes(drawn)
+                files[PICTURE] = drawn
+        except ModuleNotFoundError as error:
+            why = f"the package {error.name} is missing: {install('study')}"
+            study["skipped"].append({"what": PICTURE, "why": why})
+        study["files"] = [listed(name, data) for name, data in files.items()]
+        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8", newline="\n")
+        if ok:
+            run.commit(files)
+        else:
+            run.reject()

@@ -1,0 +1,132 @@
+"""A study as plain data for study.json, in the recipe's units, and as a table for a terminal."""
+
+from __future__ import annotations
+
+import platform
+from typing import TYPE_CHECKING
+
+from camgeo.measures.units import in_units
+from camgeo.report.document import aligned
+from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+from camgeo.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.checks.remedies import Entry
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.capabilities.study.margins import Margin
+    from kin.judge.check import Check
+
+
+def document(
+    recipe: Recipe,
+    steps: Sequence[Rung | Ended],
+    margins: Sequence[Margin],
+    skipped: Sequence[tuple[str, str]],
+    failed: Sequence[Check] = (),
+) -> Entry:
+    """The study, keys as the contract of study.json fixes them, and more; `failed` are checks of the exact cam."""
+    length = in_units(recipe, None, "mm")[1]
+    rungs = [rung for rung in steps if isinstance(rung, Rung)]
+    return {
+        "recipe": recipe.name,
+        "camgeo": __version__,
+        "units": recipe.units,
+        "machine": {"python": platform.python_version(), "system": platform.system(), "processor": platform.machine()},
+        "rows": [_row(recipe, rung) for rung in rungs],
+        "ended": [
+            {"form": end.form, "tolerance": end.tolerance / recipe.mm, "unit": length, "why": end.why}
+            for end in steps
+            if isinstance(end, Ended)
+        ],
+        "margins": [_margin(recipe, margin) for margin in margins],
+        "failed": [{"name": check.name, "why": check.detail} for check in failed],
+        "skipped": [{"what": what, "why": why} for what, why in skipped],
+    }
+
+
+def _row(recipe: Recipe, rung: Rung) -> Entry:
+    mm = recipe.mm
+    motion, unit = in_units(recipe, rung.motion_error, rung.motion_unit)
+    entry: Entry = {
+        "form": rung.form,
+        "tolerance": rung.tolerance / mm,
+        "geometry_error": None if rung.geometry_error is None else rung.geometry_error / mm,
+        "proved": None if rung.proved is None else rung.proved / mm,
+        "motion_error": motion,
+        "motion_unit": unit,
+        "seconds": rung.seconds,
+        "stages": rung.stages,
+        "pieces": rung.pieces,
+        "least_pieces": rung.least_pieces,
+        "ratio": rung.ratio,
+        "bytes": rung.bytes,
+        "ok": rung.ok,
+        "failed": list(rung.failed),
+    }
+    if rung.output_error is not None:
+        entry["output_error"], entry["output_unit"] = in_units(recipe, rung.output_error, rung.output_unit)
+    return entry
+
+
+def _margin(recipe: Recipe, margin: Margin) -> Entry:
+    value, unit = in_units(recipe, margin.value, margin.unit)
+    if margin.unit == "deg/mm":
+        value, unit = margin.value * recipe.mm, f"deg/{in_units(recipe, None, 'mm')[1]}"
+    return {
+        "name": margin.name,
+        "value": value,
+        "unit": unit,
+        "of": margin.of,
+        "kind": "factor" if margin.grows else "margin",
+    }
+
+
+def table(study: Entry) -> str:
+    """Rows, where the ladders ended, and the margins, as aligned text."""
+    linkage = any("output_error" in row for row in study["rows"])
+    head = [
+        "form",
+        "tolerance",
+        "geometry",
+        "motion",
+        *(["output"] if linkage else []),
+        "fit ms",
+        "write ms",
+        "judge ms",
+    ]
+    rows: list[Sequence[str]] = [[*head, "pieces", "least", "ratio", "bytes", ""]]
+    for row in study["rows"]:
+        errors = [
+            f"{row['tolerance']:.0e}",
+            _short(row["geometry_error"]),
+            _with(row["motion_error"], row["motion_unit"]),
+        ]
+        if linkage:
+            errors.append(_with(row.get("output_error"), row.get("output_unit", "")))
+        times = [f"{1e3 * row['stages'][stage]:.2f}" for stage in ("fit", "write", "judge")]
+        least = "" if row["least_pieces"] is None else f"{row['least_pieces']:.1f}"
+        ratio = "" if row["ratio"] is None else f"{row['ratio']:.3f}"
+        failed = "" if row["ok"] else f"FAILED {', '.join(row['failed'])}"
+        rows.append([row["form"], *errors, *times, str(row["pieces"]), least, ratio, str(row["bytes"]), failed])
+    text = aligned(rows)
+    ended = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
+    text += "\n\n" + "\n".join(ended)
+    if study["failed"]:
+        told = [f"{item['name']}: {item['why']}" if item["why"] else item["name"] for item in study["failed"]]
+        text += "\n\n" + "\n".join(f"FAILED before any file: {line}" for line in told)
+    margins: list[Sequence[str]] = [("margin", "value", "", "at 0; or what grows by it")]
+    margins += [(m["name"], f"{m['value']:.6g}", m["unit"], m["of"]) for m in study["margins"]]
+    text += "\n\n" + aligned(margins)
+    if study["skipped"]:
+        text += "\n\n" + "\n".join(f"skipped {item['what']}: {item['why']}" for item in study["skipped"])
+    return text
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"
+
+
+def _with(value: float | None, unit: str) -> str:
+    return f"{_short(value)} {unit}".rstrip()

@@ -1,0 +1,179 @@
+"""A ladder of tolerances for each output form: error of the file read back, run time, pieces and bytes.
+
+Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
+it warm: the exact curve and its bounds are made once and are separated as the stages of the design. A ladder ends
+where the form cannot hold the tolerance, which is reported with the reason and what can be held, or at a run (fit,
+write and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance:
+it has one rung.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from typing import TYPE_CHECKING
+
+from camgeo.output.dispatch import make
+from camgeo.output.job import Job
+from camgeo.recipe.export import FileRequest
+from camgeo.schema.errors import RecipeErrors
+from camgeo.capabilities.study.least_pieces import least_pieces
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from camgeo.measures.file_result import FileResult
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+FIRST_EXPONENT, LAST_EXPONENT = -1, -12  # of ten: the rungs, in the recipe's unit
+EXACT_EXPONENT = -9  # the one rung of an exact spline: below what others reach, above rounding
+REPEATS = 5
+QUICK = 0.3  # seconds: longer runs are repeated twice only, and runs above SLOW once, as the first run is cold
+SLOW = 2.0
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One form at one tolerance; lengths in mm.
+
+    geometry_error  two-sided distance of the file's contour from the exact one, as the judge measured it
+    proved          what the fit proved of it
+    motion_error    greatest error of the follower by contact, in `motion_unit`
+    output_error    of a linkage's output, in `output_unit`; None without one
+    seconds         median of the repeats, the sum of `stages`: fit, write, judge
+    least_pieces    theory's count; None for a form without one
+    failed          the checks on the file that do not hold
+    """
+
+    form: str
+    tolerance: float
+    geometry_error: float | None
+    proved: float | None
+    motion_error: float | None
+    motion_unit: str
+    output_error: float | None
+    output_unit: str
+    seconds: float
+    stages: dict[str, float]
+    pieces: int | None
+    least_pieces: float | None
+    bytes: int
+    failed: tuple[str, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check on the file holds."""
+        return not self.failed
+
+    @property
+    def ratio(self) -> float | None:
+        """Pieces over the theoretical least."""
+        return None if not self.least_pieces or self.pieces is None else self.pieces / self.least_pieces
+
+
+@dataclass(frozen=True)
+class Ended:
+    """Where a form's ladder ended: at which tolerance (mm), and why."""
+
+    form: str
+    tolerance: float
+    why: str
+
+
+def climb(
+    recipe: Recipe,
+    design: Design,
+    form: str,
+    folder: Path,
+    *,
+    patience: float,
+    listener: Callable[[str], None] | None = None,
+) -> Iterator[Rung | Ended]:
+    """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended.
+
+    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `listener` hears
+    of every rung before it begins. ValueError for a form there is not.
+    """
+    exact = form == "exact"
+    first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
+    for exponent in range(first, last - 1, -1):
+        tolerance = 10.0**exponent * recipe.mm
+        if listener is not None:
+            listener(f"{form} within {10.0**exponent:.0e}")
+        try:
+            rung = _rung(recipe, design, form, tolerance, folder)
+        except RecipeErrors as errors:
+            yield Ended(form, tolerance, "; ".join(error.problem for error in errors.errors))
+            return
+        yield rung
+        if rung.seconds > patience:
+            why = f"fit, write and judge took {rung.seconds:.3g} s, longer than {patience:.3g} s"
+            yield Ended(form, tolerance / 10.0, why)
+            return
+    why = "exact to rounding: the same file at every tolerance" if exact else "the ladder's last rung"
+    yield Ended(form, 10.0 ** (last - 1) * recipe.mm, why)
+
+
+def request_of(form: str, tolerance: float) -> FileRequest:
+    """The file that stands for a form, within a tolerance in mm; ValueError for a form there is not."""
+    if form == "stl":
+        return FileRequest("stl", tolerance=tolerance)
+    if form in {"polyline", "arcs", "spline", "exact"}:
+        return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)  # type: ignore[arg-type] # one of these
+    raise ValueError(f"unknown form: {form}")
+
+
+def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: Path) -> Rung:
+    request = request_of(form, tolerance)
+    path = folder / f"{form}.{request.kind}"
+    begun = time.perf_counter()
+    first, _, failed = _once(recipe, design, request, path)
+    taken = time.perf_counter() - begun
+    repeats = REPEATS if taken < QUICK else 2 if taken < SLOW else 1
+    runs = [_once(recipe, design, request, path)[1] for _ in range(repeats)]
+    medians = {name: statistics.median(run[name] for run in runs) for name in runs[0]}
+    motion = first.motion
+    output = None if first.linkage is None else first.linkage.error
+    return Rung(
+        form=form,
+        tolerance=tolerance,
+        geometry_error=first.measured_error,
+        proved=None if first.bound is None else first.bound.worst,
+        motion_error=None if motion is None else motion.max,
+        motion_unit="" if motion is None else motion.unit,
+        output_error=None if output is None else output.max,
+        output_unit="" if output is None else output.unit,
+        seconds=math.fsum(medians.values()),
+        stages=medians,
+        pieces=first.pieces,
+        least_pieces=_least_pieces(design, form, tolerance),
+        bytes=path.stat().st_size,
+        failed=failed,
+    )
+
+
+def _least_pieces(design: Design, form: str, tolerance: float) -> float | None:
+    """Theory's count for all contours of a design; None for a form without one."""
+    counts = [least_pieces(form, contour, tolerance) for _, contour in design.contours]
+    known = [count for count in counts if count is not None]
+    return sum(known) if known else None
+
+
+def _once(
+    recipe: Recipe, design: Design, request: FileRequest, path: Path
+) -> tuple[FileResult, dict[str, float], tuple[str, ...]]:
+    """Fit, write and judge once: the file, the seconds of each stage, the checks that do not hold."""
+    if not design.contours:
+        raise ValueError(f"{recipe.name}: there is no contour to be drawn")
+    recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
+    job = Job.of(recipe, design)
+    (file,), checks = make(job, request, path)
+    stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
+    for name, seconds in job.clock.stages:
+        step = name.split()[0]
+        stages["write" if step == "mesh" else step] += seconds  # a solid's triangles are made to be written
+    return file, stages, tuple(check.name for check in checks if not check.ok)

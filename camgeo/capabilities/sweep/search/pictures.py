@@ -1,0 +1,181 @@
+"""Pictures of a sweep: the map of its figure, and the output curves of the best designs. PNG and SVG, as bytes.
+
+Drawn with matplotlib's own defaults, whatever the user's are, and without a date, so the same sweep gives the same
+bytes. Colours are separated by those who see few: viridis, and the set of Okabe and Ito.
+"""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from camgeo.capabilities.sweep.search.gather import KEPT, NONE, OUTSIDE, STUCK
+from kin.numeric.records import dataclass
+from kin.read.home import prepare_home
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from camgeo.capabilities.sweep.search.gather import Cells
+
+    Floats: TypeAlias = NDArray[np.float64]
+
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
+_PLAIN = {OUTSIDE: ("#d9d9d9", "breaks a limit"), STUCK: ("#8c8c8c", "does not turn")}
+_DOTS = 150  # per inch, of the PNG
+_TITLE, _NOTES = 75, 100  # letters in a line
+_FEW = 60  # values up to which a curve shows each as a point
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A design's output over the shaft angle (degrees), and its longest dwell, (start, length) in degrees, if any."""
+
+    label: str
+    shaft: Floats
+    output: Floats
+    dwell: tuple[float, float] | None = None
+
+
+def draw_map(
+    title: str, cells: Cells, label: str, names: Sequence[str], best: Floats, *, notes: str = ""
+) -> dict[str, bytes]:
+    """The figure of the ranking over the cells' one or two axes: {"png": ..., "svg": ...}.
+
+    `label` and `names` are those of the figure and the axes, with units; `best` (n, 2) the places of the best designs,
+    the first first. Raises ModuleNotFoundError without matplotlib.
+    """
+    flat = len(cells.axes) == 2
+    with _sheet() as (figure, axes):
+        handles = _draw_cells(figure, axes, cells, label) if flat else _draw_curve(axes, cells)
+        if len(best):
+            x, y = best.T
+            ring: dict[str, Any] = {"linestyle": "", "markeredgecolor": "black"}
+            if len(best) > 1:
+                text = "best designs"
+                handles += axes.plot(x[1:], y[1:], "o", markersize=5, markerfacecolor="white", label=text, **ring)
+            handles += axes.plot(x[:1], y[:1], "*", markersize=15, markerfacecolor="#D55E00", label="the best", **ring)
+        axes.set_xlabel(names[0])
+        axes.set_ylabel(names[1] if flat else label)
+        for axis, ticks in zip(cells.axes, (axes.set_xticks, axes.set_yticks), strict=False):
+            if axis.words:
+                ticks(list(axis.values), axis.words)
+        _head(axes, title, notes)
+        if handles:
+            figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+        return _encoded(figure)
+
+
+def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "") -> dict[str, bytes]:
+    """Output of the best designs over a turn of the shaft, the first drawn strongest, its dwell marked."""
+    with _sheet() as (figure, axes):
+        for number, curve in enumerate(curves):
+            axes.plot(
+                curve.shaft,
+                curve.output,
+                "-" if number < len(_COLOURS) else "--",
+                color=_COLOURS[number % len(_COLOURS)],
+                linewidth=1.0 if number else 2.2,
+                label=curve.label,
+                zorder=2 if number else 3,
+            )
+        if curves and curves[0].dwell is not None:
+            start, length = curves[0].dwell
+            for turn in (-360.0, 0.0):  # a dwell may run through zero
+                ends = np.clip((start % 360.0 + turn, start % 360.0 + turn + length), 0.0, 360.0)
+                if ends[1] > ends[0]:
+                    axes.axvspan(*ends, color=_COLOURS[0], alpha=0.13, linewidth=0, zorder=1)
+        axes.set_xlim(0.0, 360.0)
+        axes.set_xticks(range(0, 361, 45))
+        axes.set_xlabel("shaft angle (deg)")
+        axes.set_ylabel(label)
+        axes.grid(color="#e6e6e6", linewidth=0.6)
+        _head(axes, title, notes)
+        figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize="small")
+        return _encoded(figure)
+
+
+def _draw_cells(figure: Figure, axes: Axes, cells: Cells, label: str) -> list[Artist]:
+    """Cells of two axes in colour, those without a kept design in grey."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    x, y = cells.edges
+    handles: list[Artist] = []
+    for state, (colour, text) in _PLAIN.items():
+        where = np.where(cells.state == state, 1.0, np.nan).T
+        if np.isfinite(where).any():
+            axes.pcolormesh(x, y, where, cmap=ListedColormap([colour]), rasterized=True)
+            handles.append(Patch(facecolor=colour, label=text))
+    if (cells.state == KEPT).any():
+        mesh = axes.pcolormesh(x, y, cells.best.T, cmap="viridis", rasterized=True)
+        figure.colorbar(mesh, ax=axes, label=label, pad=0.02)
+    axes.set_xlim(x[0], x[-1])
+    axes.set_ylim(y[0], y[-1])
+    return handles
+
+
+def _draw_curve(axes: Axes, cells: Cells) -> list[Artist]:
+    """The figure over one axis, broken where no design is kept; what becomes of those is drawn as a band of grey."""
+    x, best, state = cells.centres[0], cells.best[:, 0], cells.state[:, 0]
+    seen = state != NONE
+    marker = "." if len(x) <= _FEW else ""
+    axes.plot(x[seen], best[seen], "-", marker=marker, color=_COLOURS[0], linewidth=1.6)
+    handles: list[Artist] = []
+    for kind, (colour, text) in _PLAIN.items():
+        bands = [(cells.edges[0][i], cells.edges[0][i + 1] - cells.edges[0][i]) for i in np.flatnonzero(state == kind)]
+        if bands:
+            across = axes.get_xaxis_transform()
+            handles.append(
+                axes.broken_barh(bands, (0.0, 1.0), color=colour, linewidth=0, transform=across, zorder=0, label=text)
+            )
+    axes.set_xlim(cells.edges[0][0], cells.edges[0][-1])
+    axes.grid(color="#e6e6e6", linewidth=0.6)
+    return handles
+
+
+@contextmanager
+def _sheet() -> Iterator[tuple[Figure, Axes]]:
+    """An empty picture under matplotlib's defaults."""
+    prepare_home()
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams["svg.hashsalt"] = "camgeo"
+        mpl.rcParams["axes.formatter.useoffset"] = False
+        figure = Figure(figsize=(8.0, 5.8), layout="constrained")
+        yield figure, figure.add_subplot()
+
+
+def _head(axes: Axes, title: str, notes: str) -> None:
+    # broken into lines: whoever lays the picture out makes room for the longest
+    title = textwrap.fill(title, _TITLE)
+    lines = textwrap.wrap(notes, _NOTES)
+    axes.set_title(title + "\n" * len(lines), loc="left", fontweight="bold", fontsize="medium")
+    if lines:
+        axes.text(0.0, 1.02, "\n".join(lines), transform=axes.transAxes, fontsize="small", color="#404040")
+
+
+def _encoded(figure: Figure) -> dict[str, bytes]:
+    """The picture as PNG and SVG, without date or program."""
+    leave_out: dict[str, Mapping[str, None]] = {
+        "png": {"Software": None},
+        "svg": {"Date": None, "Creator": None},
+    }
+    files = {}
+    for kind, metadata in leave_out.items():
+        stream = io.BytesIO()
+        figure.savefig(stream, format=kind, dpi=_DOTS, metadata=metadata)
+        files[kind] = stream.getvalue()
+    return files

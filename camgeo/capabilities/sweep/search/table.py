@@ -1,0 +1,98 @@
+"""The table of a sweep: the designs kept, best first, as CSV and as Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from camgeo.recipe.figures import FORMER
+from camgeo.capabilities.sweep.search.gather import MOST_ROWS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from camgeo.capabilities.sweep.search.ask import Unit
+    from camgeo.capabilities.sweep.search.gather import Gathered, Ranking
+    from camgeo.capabilities.sweep.search.plan import Axis, Plan
+    from camgeo.capabilities.sweep.search.recipes import Best
+
+    Marks: TypeAlias = dict[str, NDArray[np.bool_]]
+    Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64] | NDArray[np.str_]]
+
+
+def with_polished(designs: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, Marks]:
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and what is told of each of them.
+
+    `polished` (n,): such a design has the index of the one that it comes from, whose own row stays. `certified` (n,),
+    where figures are estimates: those of this one are exact; such designs stand in front.
+    """
+    new = [design for design in best if design.polished]
+    index = np.append([design.index for design in new], designs.index).astype(np.int64)
+    values = np.vstack([*(list(design.values.values()) for design in new), designs.values])
+    figures = {
+        name: np.append([design.figures[name] for design in new], column) for name, column in designs.figures.items()
+    }
+    polished = np.arange(len(index)) < len(new)
+    exact = np.arange(len(index)) < len(new) + (
+        len(index) if designs.certificate is None else designs.certificate.designs
+    )
+    order = np.lexsort((index, ~polished, -ranking.score(figures), ~exact))[:MOST_ROWS]
+    rows = {name: column[order] for name, column in figures.items()}
+    marks = {"polished": polished[order]} | ({} if designs.certificate is None else {"certified": exact[order]})
+    return replace(designs, index=index[order], values=values[order], figures=rows), marks
+
+
+def columns(plan: Plan, designs: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
+    """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
+
+    Renamed figures, and forces, whose heads had no unit, stand under their former heads too, behind all others; last
+    marks, 0 or 1.
+    """
+    figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
+    former = {FORMER[name]: name for name in figures if name in FORMER}
+    return {
+        "place": np.arange(1, designs.rows + 1),
+        "index": designs.index,
+        **{axis.path: _told(axis, designs.values[:, i]) for i, axis in enumerate(plan.axes)},
+        **{_head(name, units[name].name): values for name, values in figures.items()},
+        **{_head(old, units[name].name): figures[name] for old, name in former.items()},
+        **{name: values for name, values in figures.items() if units[name].name.startswith("N")},
+        **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},
+    }
+
+
+def _told(axis: Axis, values: NDArray[np.float64]) -> NDArray[np.float64] | NDArray[np.str_]:
+    """The values of an axis as the recipe has them."""
+    return np.array(axis.words)[values.astype(np.int64)] if axis.words else values
+
+
+def _head(figure: str, unit: str) -> str:
+    """Head of a figure's column: `dwell_deg`, `size_mm`; without a unit the figure's name."""
+    suffix = unit.replace("/", "_per_").replace("^", "")
+    return f"{figure}_{suffix}" if suffix else figure
+
+
+def as_csv(heads: Columns) -> bytes:
+    """The table as CSV, every number as short as reads back exactly."""
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(zip(*(column.tolist() for column in heads.values()), strict=True))
+    return stream.getvalue().encode()
+
+
+def as_parquet(heads: Columns, about: Mapping[str, str]) -> bytes:
+    """The table as Parquet, `about` among the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    table = pa.table({name: pa.array(column) for name, column in heads.items()})
+    sink = pa.BufferOutputStream()
+    parquet.write_table(table.replace_schema_metadata(dict(about)), sink, compression="zstd")
+    return bytes(sink.getvalue().to_pybytes())

@@ -1,1 +1,0 @@
-"""Search among designs, and study of one."""

@@ -1,0 +1,211 @@
+"""`camgeo study`: the rungs of its ladders against the files' own figures, where they end, and the margins."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from support.places import RECIPES
+
+from camgeo.cli import main
+from camgeo.recipe.loading import load, read
+from camgeo.capabilities.study.least_pieces import least_pieces
+from camgeo.capabilities.study.margins import Margin, margins
+from camgeo.capabilities.study.tolerance_ladder import Ended, Rung, climb
+from camgeo.synthesis.design import designed
+
+
+def named(recipe_name: str) -> dict[str, Margin]:
+    recipe = load(RECIPES / f"{recipe_name}.yaml")
+    return {margin.name: margin for margin in margins(recipe, designed(recipe))}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, Path]:
+    out = tmp_path_factory.mktemp("out")
+    recipe = out / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8}\nverify: {angles: 90}\n")
+    assert main.main(["study", str(recipe), "--out", str(out), "--patience", "0.5", "--json"]) == 0
+    return json.loads((out / "cam" / "study.json").read_text(encoding="utf-8")), out / "cam"
+
+
+@pytest.mark.slow
+def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict, Path]) -> None:
+    found, folder = study
+    assert (folder / "study.png").stat().st_size > 10_000
+    assert {end["form"] for end in found["ended"]} == {"polyline", "arcs", "spline", "exact", "stl"}
+    stl = next(end for end in found["ended"] if end["form"] == "stl")
+    assert stl["tolerance"] == pytest.approx(1e-6)
+    assert "single precision" in stl["why"]
+    for form in ("polyline", "arcs", "spline", "stl"):
+        rows = [row for row in found["rows"] if row["form"] == form]
+        assert len(rows) >= 3
+        assert [row["tolerance"] for row in rows] == pytest.approx([10.0 ** -(k + 1) for k in range(len(rows))])
+        for row in rows:
+            assert row["ok"]
+            # with many pieces the tolerance is used, with few a whole number of them may leave some of it
+            least = 0.9 if row["pieces"] > 100 and form != "spline" else 0.2
+            assert least * row["tolerance"] <= row["geometry_error"] <= row["tolerance"] * (1 + 1e-6)
+            assert row["geometry_error"] <= row["proved"] + 1e-10
+            assert row["seconds"] == pytest.approx(math.fsum(row["stages"].values()))
+            assert set(row["stages"]) == {"fit", "write", "judge"}
+        assert [row["pieces"] for row in rows] == sorted(row["pieces"] for row in rows)
+
+
+@pytest.mark.slow
+def test_pieces_against_theory(study: tuple[dict, Path]) -> None:
+    rows = {(row["form"], round(-math.log10(row["tolerance"]))): row for row in study[0]["rows"]}
+    # 241.25 vertices for p = 25 + 2 cos 3t at 0.001 mm, 242 of them reached (docs/validation.md)
+    assert rows["polyline", 3]["least_pieces"] == pytest.approx(241.25, abs=0.01)
+    assert rows["polyline", 3]["pieces"] == 242
+    assert 1.0 <= rows["spline", 6]["pieces"] / rows["spline", 6]["least_pieces"] <= 1.2
+
+
+@pytest.mark.slow
+def test_an_exact_spline_has_one_rung(study: tuple[dict, Path], tmp_path: Path) -> None:
+    found = study[0]
+    (row,) = [row for row in found["rows"] if row["form"] == "exact"]
+    assert row["ok"]
+    assert row["pieces"] == 4
+    assert row["least_pieces"] is None
+    assert row["geometry_error"] < 1e-12
+    (end,) = [end for end in found["ended"] if end["form"] == "exact"]
+    assert "the same file at every tolerance" in end["why"]
+    recipe = load(RECIPES / "reuleaux.yaml")
+    (refused,) = climb(recipe, designed(recipe), "exact", tmp_path, patience=1.0)
+    assert isinstance(refused, Ended)
+    assert "pieced together from 6 stretches" in refused.why
+
+
+def test_least_arcs_against_the_closed_form_of_a_three_lobed_cam() -> None:
+    # kappa = 1/rho, ds = rho dt, rho = 25 - 16 cos 3t: the integral of (|rho'|/124.7 e)^(1/3) dt over a turn
+    recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}", Path("cam.yaml"))
+    contour = designed(recipe).only_surface.contour
+    assert contour is not None
+    steps = 200_000
+    sine = [abs(math.sin(3.0 * 2.0 * math.pi * (k + 0.5) / steps)) for k in range(steps)]
+    integral = math.fsum((48.0 * s / (124.7 * 1e-6)) ** (1 / 3) for s in sine) * 2.0 * math.pi / steps
+    # the trapezoids of Density see the cube root's vertical tangent at the six extrema of curvature to a part in 400
+    assert least_pieces("arcs", contour, 1e-6) == pytest.approx(integral, rel=2.5e-3)
+
+
+def test_a_dwell_counts_as_one_arc_at_least() -> None:
+    recipe = load(RECIPES / "reuleaux.yaml")
+    contour = designed(recipe).only_surface.contour
+    assert contour is not None
+    assert least_pieces("arcs", contour, 1e-3) == 6.0
+    assert least_pieces("exact", contour, 1e-3) is None
+
+
+def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
+    recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}", Path("cam.yaml"))
+    found = list(climb(recipe, designed(recipe), "arcs", tmp_path, patience=1e-9))
+    assert [type(item) for item in found] == [Rung, Ended]
+    assert isinstance(found[1], Ended)
+    assert found[1].why.startswith("fit, write and judge took")
+    assert "longer than" in found[1].why
+
+
+def test_margins_of_a_four_bar() -> None:
+    found = named("as-figure-9-2a")
+    assert found["binding"].value == pytest.approx(51.5953, abs=1e-3)
+    assert found["reversal"].value == pytest.approx(0.7446, abs=1e-4)
+    assert found["motion-condition"].value == pytest.approx(1.0, rel=1e-6)
+    assert found["output-condition"].value == pytest.approx(1.0346, abs=1e-3)
+    assert found["output-condition"].grows
+
+
+def test_margins_of_a_ring_are_those_of_its_hollows() -> None:
+    """A hollow of the pitch curve must be wider than the roller; without one nothing undercuts."""
+    text = "cam: {kind: disc, base_radius: 36, track: internal, follower: {kind: roller, radius: 9}, motion: "
+    text += "[{rise: %s, over: 60, law: cycloidal}, {return: %s, over: 60, law: cycloidal}, {dwell: 240}]}\n"
+    text += "part: {outer: 160}\n"
+    recipe = read((text % (20, 20)).encode(), Path("ring.yaml"))
+    bent = next(check for check in designed(recipe).checks if check.name == "pitch-radius")
+    assert bent.value is not None
+    assert math.isfinite(bent.value)
+    (margin,) = (margin for margin in margins(recipe, designed(recipe)) if margin.name == "undercut")
+    assert margin.value == pytest.approx(bent.value - 9.0, rel=1e-12)
+    recipe = read((text % (0.5, 0.5)).encode(), Path("ring.yaml"))
+    assert not any(margin.name.startswith("undercut") for margin in margins(recipe, designed(recipe)))
+
+
+def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
+    # lambda = 2: D = m^2 cos 2t, sin psi = D/l^2, so the square root's edge is acos(m^2/l^2) away
+    found = named("w-ellipse")
+    recipe = load(RECIPES / "w-ellipse.yaml")
+    cam: Any = recipe.cam
+    ratio = max(abs(c) for _, c in cam.route.cos) / cam.arm**2
+    assert found["square-root"].value == pytest.approx(math.degrees(math.acos(ratio)), abs=1e-6)
+    assert found["turning-through"].value > 0.0
+
+
+def test_margins_of_a_roller_to_the_shaft_and_to_a_stretched_arm() -> None:
+    recipe = load(RECIPES / "w-figure-9.yaml")
+    base = designed(recipe).only_surface.surface.base
+    distance = np.hypot(*base.sample(np.linspace(0.0, 2.0 * math.pi, 20_001)).point.T)
+    found = named("w-figure-9")
+    assert found["shaft"].value == pytest.approx(distance.min(), rel=1e-5)
+    assert found["stretched"].value == pytest.approx(2.0 * vars(recipe.cam)["arm"] - distance.max(), rel=1e-4)
+
+
+def test_a_cam_at_the_brink_of_undercut_has_hardly_any_margin() -> None:
+    recipe = read(b"cam: {kind: support, p: 16.000001 + 2*cos(3*t)}", Path("cam.yaml"))
+    found = {margin.name: margin for margin in margins(recipe, designed(recipe))}
+    assert found["undercut"].value == pytest.approx(1e-6, rel=1e-3)
+
+
+def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 10 + 2*cos(3*t)}\n")
+    assert main.main(["study", str(recipe), "--out", str(tmp_path)]) == 1
+    text = capsys.readouterr().out
+    assert "a check of the exact contour fails" in text
+    assert "undercut" in text
+
+
+@pytest.mark.slow
+def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(
+        "cam: {kind: support, p: 25 + cos(3*t), shaft: [12, 6]}\n"
+        "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 20}\n"
+    )
+    call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]
+    assert main.main(call) == main.main(["check", str(recipe)]) == 1
+    assert "FAILED before any file: mobility" in capsys.readouterr().out
+    found = json.loads((tmp_path / "cam.rejected" / "study.json").read_text(encoding="utf-8"))
+    assert found["failed"][0]["name"] == "mobility"
+    assert next(margin["value"] for margin in found["margins"] if margin["name"] == "binding") < 0.0
+
+
+@pytest.mark.slow
+def test_a_study_that_fails_leaves_the_last_good_one(tmp_path: Path) -> None:
+    recipe = tmp_path / "cam.yaml"
+    call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]
+    # a ladder that ends for want of time is no failure
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}\n")
+    assert main.main(call) == 0
+    good = (tmp_path / "cam" / "study.json").read_bytes()
+    assert not (tmp_path / "cam.rejected").exists()
+    for worse in ("p: 10 + 2*cos(3*t)}\n", "p: 25 + 2*cos(3*t)}\nverify: {angles: 8, motion_error: 1e-9}\n"):
+        recipe.write_text("cam: {kind: support, " + worse)
+        assert main.main(call) == 1
+        assert (tmp_path / "cam" / "study.json").read_bytes() == good
+        rejected = json.loads((tmp_path / "cam.rejected" / "study.json").read_text(encoding="utf-8"))
+        assert rejected["failed"] or not all(row["ok"] for row in rejected["rows"])
+
+
+def test_a_wrong_call_and_a_wrong_recipe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, q: 10}\n")
+    assert main.main(["study", str(recipe), "--out", str(tmp_path)]) == 2
+    assert "cam.yaml:1:" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as caught:
+        main.main(["study", str(recipe), "--patience", "0"])
+    assert caught.value.code == 2
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cam.yaml"]

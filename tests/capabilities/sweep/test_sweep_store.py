@@ -1,0 +1,239 @@
+"""Chunks on disk: whole or not there, and nobody else's."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from support.sweepers import GRID, ask, calls, fail, hills, job
+
+from camgeo.common.errors import SurroundingsError
+from camgeo.recipe.loading import read
+from camgeo.capabilities.sweep.search import job as jobs
+from camgeo.capabilities.sweep.search import store
+from camgeo.capabilities.sweep.search.ask import Ask
+from camgeo.capabilities.sweep.search.gather import Ranking
+from camgeo.capabilities.sweep.search.job import Job, VersionsError, result
+from camgeo.capabilities.sweep.search.plan import Axis, Plan
+from camgeo.capabilities.sweep.search.run import How, chunks_of, compute, gathered
+from camgeo.capabilities.sweep.search.store import ChunkError, Chunks, decode, encode
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BEST = Ranking("dwell", most=True)
+
+
+@pytest.fixture
+def filled(tmp_path: Path) -> Chunks:
+    chunks = chunks_of(job(), tmp_path)
+    compute(job(), chunks, How(1))
+    return chunks
+
+
+def test_what_is_written_is_read_to_the_last_bit() -> None:
+    figures = {"a": np.array([np.nan, -0.0, 5e-324, 1 / 3]), "b": np.array([np.inf, 1.0, 2.0, 3.0])}
+    again = decode(encode("key", 4, 8, figures), "key", 4, 8)
+    assert list(again) == ["a", "b"]
+    assert all(again[name].tobytes() == values.tobytes() for name, values in figures.items())
+
+
+def test_arrays_of_another_length_or_type_are_refused() -> None:
+    with pytest.raises(ValueError, match="a of designs 0 to 3"):
+        encode("key", 0, 3, {"a": np.zeros(2)})
+    with pytest.raises(ValueError, match="a of designs 0 to 2"):
+        encode("key", 0, 2, {"a": np.zeros(2, np.float32)})
+
+
+def test_every_cut_and_every_changed_byte_is_noticed() -> None:
+    data = encode("key", 0, 3, {"a": np.arange(3.0)})
+    for length in range(len(data)):
+        with pytest.raises(ChunkError, match="torn or changed"):
+            decode(data[:length], "key", 0, 3)
+    for place in range(len(data)):
+        changed = data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :]
+        with pytest.raises(ChunkError, match="torn or changed"):
+            decode(changed, "key", 0, 3)
+    with pytest.raises(ChunkError, match="torn or changed"):
+        decode(data + b"\0", "key", 0, 3)
+
+
+@pytest.mark.parametrize("mine", [("other", 0, 3), ("key", 3, 6), ("key", 0, 4)])
+def test_a_sound_chunk_of_another_place_is_noticed(mine: tuple[str, int, int]) -> None:
+    with pytest.raises(ChunkError, match="of another sweep, or another chunk of this one"):
+        decode(encode("key", 0, 3, {"a": np.arange(3.0)}), *mine)
+
+
+@pytest.mark.parametrize("fault", ["torn", "empty", "changed", "planted", "foreign", "gone"])
+def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path: Path, fault: str) -> None:
+    sound = {path.name: path.read_bytes() for path in filled.folder.iterdir()}
+    path, data = filled.path(5), filled.path(5).read_bytes()
+    if fault == "torn":
+        path.write_bytes(data[:-100])
+    elif fault == "empty":
+        path.write_bytes(b"")
+    elif fault == "changed":
+        path.write_bytes(data[:200] + bytes([data[200] ^ 64]) + data[201:])
+    elif fault == "planted":
+        path.write_bytes(filled.path(6).read_bytes())
+    elif fault == "foreign":
+        path.write_bytes(encode("f" * 64, *GRID.span(5), hills("", GRID.values(*GRID.span(5)))))
+    else:
+        path.unlink()
+    told = tmp_path / "calls"
+    told.mkdir()
+    work = compute(job(scene=f"calls={told};"), filled, How(1))
+    assert work.computed == 64
+    assert work.reused == GRID.count - 64
+    assert work.damaged == (fault != "gone")
+    assert calls(told) == [repr(GRID.values(*GRID.span(5))[0].tolist())]
+    assert {path.name: path.read_bytes() for path in filled.folder.iterdir()} == sound
+
+
+def test_a_chunk_that_is_spoilt_before_it_is_gathered_is_computed_again(filled: Chunks) -> None:
+    expected = gathered(job(), filled, BEST)
+    filled.path(2).write_bytes(b"torn")
+    filled.path(3).unlink()
+    again = gathered(job(), filled, BEST)
+    assert again.index.tolist() == expected.index.tolist()
+    assert again.counts == expected.counts
+
+
+def _pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def _device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without pipes among its files")
+@pytest.mark.parametrize("fresh", [False, True])
+@pytest.mark.parametrize(
+    ("place", "kind"), [(_pipe, "a pipe or a device"), (_device, "a pipe or a device"), (Path.mkdir, "a folder")]
+)
+def test_what_is_no_file_is_not_opened_but_told(
+    filled: Chunks, tmp_path: Path, place: Callable[[Path], None], kind: str, fresh: bool
+) -> None:
+    path = filled.path(1)
+    path.unlink()
+    place(path)
+    with pytest.raises(SurroundingsError, match=rf"chunk-0000001.bin: {kind}, where .*: move it or remove it"):
+        compute(job(compute=fail), filled, How(1), fresh=fresh)
+    with pytest.raises(SurroundingsError, match=kind):
+        filled.read(1)
+    path.rename(tmp_path / "elsewhere")  # as the message says
+    assert compute(job(), filled, How(1), fresh=fresh).damaged == 0
+
+
+def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = filled.path(1)
+    with path.open("r+b") as stream:
+        stream.truncate(1 << 27)
+    work = compute(job(), filled, How(1))
+    assert (work.damaged, work.computed) == (1, filled.plan.chunk)
+    monkeypatch.setattr(store, "_MOST_BYTES", 64)
+    with pytest.raises(ChunkError, match="torn or changed"):
+        filled.read(1)
+
+
+@pytest.mark.parametrize("place", ["out", "out/sweep", "out/sweep/KEY"])
+def test_a_file_in_the_place_of_a_folder_is_told_before_anything_is_computed(place: str, tmp_path: Path) -> None:
+    chunks = chunks_of(job(), tmp_path / "out")
+    path = tmp_path / place.replace("KEY", chunks.folder.name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("mine")
+    with pytest.raises(SurroundingsError, match=r"not a folder, where .*: move it or remove it") as refused:
+        compute(job(compute=fail), chunks, How(1))
+    assert refused.value.path == path
+    path.rename(tmp_path / "elsewhere")  # as the message says
+    assert compute(job(), chunks, How(1)).computed == GRID.count
+
+
+def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:
+    before = filled.path(1).read_bytes()
+    with pytest.raises(ChunkError):
+        filled.write(1, filled.path(2).read_bytes())
+    assert filled.path(1).read_bytes() == before
+
+
+def test_nothing_is_computed_twice(filled: Chunks) -> None:
+    assert compute(job(), filled, How(1)).computed == 0
+
+
+def test_fresh_computes_all_again(filled: Chunks) -> None:
+    assert compute(job(), filled, How(1), fresh=True).computed == GRID.count
+
+
+def test_what_killed_runs_left_is_cleared_away_and_what_others_write_is_not(filled: Chunks) -> None:
+    old, young, own = (filled.folder / name for name in (".chunk-0000001.1.part", ".chunk-0000002.1.part", "mine.txt"))
+    for path in (old, young, own):
+        path.write_bytes(b"")
+    os.utime(old, (time.time() - 7200, time.time() - 7200))
+    filled.open(fresh=True)
+    assert sorted(path.name for path in filled.folder.iterdir()) == [young.name, own.name]
+
+
+# --- the key ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = job()
+    axes = (GRID.axes[0], Axis("linkage.ground", 95.0, 110.0, GRID.axes[1].values))
+    others = [
+        job(Plan(axes, "grid", 825)),
+        job(Plan(GRID.axes, "random", 825)),
+        job(Plan(GRID.axes, "random", 825, 1)),
+        Job(GRID, "another", hills),
+        job(compute=fail),
+    ]
+    for package in (jobs, np):
+        monkeypatch.setattr(package, "__version__", "99.0")
+        others_key = job().key
+        monkeypatch.undo()
+        assert others_key != plain.key
+    assert len({plain.key, *(other.key for other in others)}) == 6
+    key = plain.key
+    monkeypatch.setattr(jobs, "REVISION", 99)
+    assert job().key != key
+
+
+def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
+    def key(recipe: Ask) -> str:
+        return Job(recipe.plan, recipe.scene(recipe.figures), hills).key
+
+    plain = key(ask())
+    for same in (
+        ask("a comment"),
+        ask(margin=3.0),
+        ask(rank="margin"),
+        ask(refine="true"),
+        ask(path="other/name.yaml"),
+    ):
+        assert key(same) == plain
+    longer = ask()
+    train = "dynamics: {mass: 0.4, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
+    assert key(Ask.of(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
+    text = longer.recipe.text.replace("coupler: 70", "coupler: 71")
+    assert key(Ask.of(read(text.encode(), "four-bar.yaml"))) != plain
+
+
+def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
+    def key(limits: str, rank: str = "dwell") -> str:
+        text = ask(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)
+        asked = Ask.of(read(text.encode(), "four-bar.yaml"))
+        return Job(asked.plan, asked.scene(asked.figures), hills).key
+
+    plain = key("margin: {at_least: 1}")
+    assert key("swing: {at_least: 20}, size: {at_most: 44}, dwell: {at_least: 9}") == plain
+    assert key("margin: {at_least: 1}", "transmission-angle") == plain
+    assert key("force-angle: {at_least: 9}") == key("margin: {at_least: 1}", "force-angle") != plain
+
+
+def test_a_worker_of_other_versions_is_refused() -> None:
+    with pytest.raises(VersionsError, match=r"a worker has other versions than this run, .*: camgeo .*, numpy "):
+        result(job(), 0, "0" * 64)
