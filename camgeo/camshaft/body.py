@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 LOOKS = 4  # places on each arc at which it is looked at
+SAME = 1e-9  # mm, and of bulges: outlines as near as this are one
 BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
 _Outline = TypeVar("_Outline", Polygon, ArcSpline)
 
@@ -95,16 +96,26 @@ def camshaft_outlines(
         parts.append((outline, lobe.lobe.low, lobe.lobe.high))
     parts += [(circle(bar.diameter), bar.low, bar.high) for bar in journals]
     levels = sorted({shaft.low, shaft.high, *(z for _, low, high in parts for z in (low, high))})
-    stretches = []
+    stretches: list[tuple[ArcSpline, float, float]] = []
     for low, high in pairwise(levels):
         own = next((outline for outline, a, b in parts if a <= low and high <= b), circle(shaft.diameter))
-        stretches.append((own, low, high))
+        if stretches and _same(stretches[-1][0], own):  # there is no face between the two
+            stretches[-1] = (*stretches[-1][:2], high)
+        else:
+            stretches.append((own, low, high))
     for (below, _, z), (above, _, _) in pairwise(stretches):
         least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
         if max(least) < min(most):
             told = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
             raise RegionError(f"{told}; leave a gap between them, or give stl or 3mf")
     return stretches, bound, count
+
+
+def _same(one: ArcSpline, other: ArcSpline) -> bool:
+    """Whether two outlines are one, but for the rounding of the angles that they are turned by."""
+    return one.points.shape == other.points.shape and bool(
+        np.abs(one.points - other.points).max() <= SAME and np.abs(one.bulges - other.bulges).max() <= SAME
+    )
 
 
 def _reach(outline: ArcSpline) -> tuple[float, float]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +12,9 @@ import numpy as np
 from camgeo.camshaft.events import event, stretches, valves_of
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
+from camgeo.recipe.camshaft import of_a_lobe
+from camgeo.recipe.part import THINNEST
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.numeric.records import dataclass, field, replace
 
@@ -19,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.camshaft.events import Event, Stretch, Valves
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.recipe.camshaft import CamshaftRecipe, Engine, Lobe
+    from camgeo.recipe.camshaft import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.synthesis.design import Design
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
@@ -64,16 +69,44 @@ class PlacedLobe:
 
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
     """Design each lobe, those of one recipe once; raises RecipeErrors as `designed` does, or for what is no lobe."""
+    _demand_thick(recipe)
     designs: dict[str, Design] = {}
     lobes = []
     for i, lobe in enumerate(recipe.lobes):
         key = str(lobe.recipe.path)
         if key not in designs:
-            designs[key] = designed(lobe.recipe, clock)
+            try:
+                designs[key] = designed(lobe.recipe, clock)
+            except RecipeErrors as errors:
+                raise of_a_lobe(recipe, f"camshaft.lobes[{i}].recipe", errors) from None
             _demand_one_outside(recipe, designs[key], i)
         design = designs[key]
         lobes.append(PlacedLobe(lobe, design, _angle(recipe, lobe, design, i)))
     return tuple(lobes)
+
+
+def _demand_thick(recipe: CamshaftRecipe) -> None:
+    """Raise RecipeErrors where two faces along the shaft are no farther apart than a file's tolerance.
+
+    Each may be off by the tolerance, so no file could tell whether there is anything between them.
+    """
+    tolerances = [recipe.export.tolerance, *(file.tolerance or 0.0 for file in recipe.export.files)]
+    least = max(THINNEST, *tolerances)
+    more = f"more than {least / recipe.mm:.6g} {recipe.units}"
+    shaft, *journals = recipe.bars
+    paths = [f"camshaft.lobes[{i}]" for i in range(len(recipe.lobes))]
+    paths += [f"camshaft.journals[{i}]" for i in range(len(journals))]
+    parts: list[Lobe | Bar] = [*recipe.lobes, *journals]
+    faces = [(shaft.low, "the shaft's lower end", ""), (shaft.high, "the shaft's upper end", "")]
+    for path, part in zip(paths, parts, strict=True):
+        if (long := part.high - part.low) <= least:
+            problem = f"{part.name} is too thin, {long / recipe.mm:.3g} {recipe.units} long"
+            raise recipe.error(f"{path}.length", problem, None, f"give a length of {more}, or leave it out")
+        faces += [(part.low, part.name, f"{path}.z"), (part.high, part.name, f"{path}.z")]
+    for (low, below, first), (high, above, second) in pairwise(sorted(faces, key=itemgetter(0))):
+        if 0.0 < (gap := high - low) <= least:
+            problem = f"{below} and {above} are {gap / recipe.mm:.3g} {recipe.units} apart, which is too thin"
+            raise recipe.error(second or first, problem, None, f"let them meet, or set them {more} apart")
 
 
 def _demand_one_outside(recipe: CamshaftRecipe, design: Design, index: int) -> None:

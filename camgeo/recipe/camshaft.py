@@ -11,25 +11,29 @@ from camgeo.motions.lift_table import read_path
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import FILES, build_export, export_of
 from camgeo.recipe.keys import RECIPE, UNITS
-from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, read
-from camgeo.schema.errors import RecipeErrors
+from camgeo.recipe.part import LEAST_SIZE
+from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
+from camgeo.schema.errors import RecipeErrors, suggestion
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import Mapping, Scalar, entries, join
+from camgeo.schema.yaml_source import Mapping, Scalar, entries, join, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
+    from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Values
     from camgeo.schema.yaml_source import Node, Source
 
 MOST_LOBES = 64
 MOST_CYLINDERS = 16
+ROUNDING = 1e-9  # mm: far above what sums of heights are rounded by, far below any length that is made
 LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are told
 TURN = 2.0 * math.pi
 
@@ -280,7 +284,11 @@ def _check(values: Values, reader: Reader) -> None:
         return
     if not shaft.get("from", 0.0) < shaft["to"]:
         reader.fault_at("camshaft.shaft.to", "not above its lower end", None, "give a greater height")
-    if not shaft.get("bore", 0.0) < shaft["diameter"]:
+    for key in ("diameter", "bore"):
+        if (size := shaft.get(key, LEAST_SIZE)) < LEAST_SIZE:
+            remedy = f"give at least {LEAST_SIZE / reader.mm:.3g} {reader.units}"
+            reader.fault_at(f"camshaft.shaft.{key}", "smaller than a file can hold", f"{size / reader.mm:g}", remedy)
+    if "bore" in shaft and not shaft["bore"] <= shaft["diameter"] - 2.0 * LEAST_SIZE:
         reader.fault_at("camshaft.shaft.bore", "not below the diameter", None, "give a smaller bore, or leave it out")
     for i, journal in enumerate(camshaft.get("journals", [])):
         if not journal["diameter"] > shaft["diameter"]:
@@ -292,18 +300,21 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
     """Make the recipe of values in which there is no fault; the lobes' recipes are read here."""
     camshaft, mm = values["camshaft"], UNITS[values.get("units", "mm")]
     shaft, rotation = camshaft["shaft"], values.get("rotation", "cw")
+    rows, bars = camshaft["lobes"], camshaft.get("journals", [])
     low, high = shaft.get("from", 0.0), shaft["to"]
+    level = Levels([low, high, *(row["z"] for row in (*rows, *bars))])
+    low, high = level(low), level(high)
     journals = [
-        Bar(f"journal {i + 1}", row["z"], row["z"] + row["length"], row["diameter"])
-        for i, row in enumerate(camshaft.get("journals", []))
+        Bar(f"journal {i + 1}", level(row["z"]), level(row["z"] + row["length"]), row["diameter"])
+        for i, row in enumerate(bars)
     ]
     cams: dict[str, Recipe] = {}
-    for i, row in enumerate(camshaft["lobes"]):
+    for i, row in enumerate(rows):
         if row["recipe"] not in cams:
             cams[row["recipe"]] = _cam(document, row["recipe"], f"camshaft.lobes[{i}].recipe")
-    names = _names(camshaft["lobes"], cams)
+    names = _names(rows, cams)
     lobes = []
-    for i, (row, name) in enumerate(zip(camshaft["lobes"], names, strict=True)):
+    for i, (row, name) in enumerate(zip(rows, names, strict=True)):
         cam = cams[row["recipe"]]
         long = row.get("length", cam.part.thickness)
         if long is None:
@@ -311,8 +322,8 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
             raise document.error(where, "missing, as the lobe's recipe has no thickness", None, remedy)
         own = replace(cam, rotation=rotation, units=values.get("units", "mm"), mm=mm)
         stated = {key: row[key] for key in ("at", "cylinder", "valve", "direction") if key in row}
-        lobes.append(Lobe(name, own, row["z"], row["z"] + long, **stated))
-    _demand_apart(document, lobes, journals, (low, high))
+        lobes.append(Lobe(name, own, level(row["z"]), level(row["z"] + long), **stated))
+    _demand_apart(document, lobes, journals, (low, high), values.get("units", "mm"))
     return CamshaftRecipe(
         name=values["name"],
         about=values.get("about", ""),
@@ -329,6 +340,27 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
     )
 
 
+class Levels:
+    """Heights along a shaft, mm, of which two that differ by no more than rounding are one.
+
+    A lobe that ends where the next begins is given by a sum, such as 20.1 + 12.3, that need not round to the 32.4 of
+    the next. Heights that are stated come first, so that a sum is taken for one of them and not the other way round.
+    """
+
+    def __init__(self, stated: Iterable[float]) -> None:
+        self._heights: list[float] = []
+        for height in stated:
+            self(height)
+
+    def __call__(self, height: float) -> float:
+        """Give the first height that was met within ROUNDING of this one; this one where there is none."""
+        met = next((other for other in self._heights if abs(other - height) <= ROUNDING), None)
+        if met is not None:
+            return met
+        self._heights.append(height)
+        return height
+
+
 def _engine(values: Values | None) -> Engine | None:
     if values is None:
         return None
@@ -338,14 +370,36 @@ def _engine(values: Values | None) -> Engine | None:
 
 
 def _cam(document: Document, name: str, field: str) -> Recipe:
-    """Read a lobe's recipe; raises RecipeErrors with its faults, or at the field for a cam that is no lobe."""
-    path = document.path.parent / name
+    """Read a lobe's recipe; raises RecipeErrors at the field, with each of its faults or for what is no lobe's.
+
+    Of a file that is no recipe nothing is repeated: whoever reads the message need not be allowed to read the file.
+    """
+    path, remedy = document.path.parent / name, "give the recipe of a cam"
     if not path.is_file():
         raise document.error(field, "no such file", f"'{name}'", f"give the path of a recipe from {path.parent}")
-    recipe = read(file_bytes(path), path)
+    try:
+        source = read_source(file_bytes(path), str(path))
+        top = entries(source.root) if isinstance(source.root, Mapping) else {}
+        if "camshaft" in top:
+            raise document.error(field, "a camshaft is no lobe", f"'{name}'", remedy)
+        if not any(key in RECIPE.keys or suggestion(key, RECIPE.keys) for key in top):
+            raise document.error(field, "no recipe", f"'{name}'", remedy)
+        recipe = of_source(source, path)
+    except RecipeErrors as errors:
+        raise of_a_lobe(document, field, errors) from None
     if recipe.linkage is not None:
         raise document.error(field, "a lobe drives no linkage", f"'{name}'", "give a recipe without one")
     return recipe
+
+
+def of_a_lobe(document: Document, field: str, errors: RecipeErrors) -> RecipeErrors:
+    """Give the faults of a lobe's recipe as faults of the camshaft's field that names it; its own stay as they are."""
+    own = str(document.path)
+    placed = (
+        [error] if error.file == own else document.error(field, error.statement, error.value, error.remedy).errors
+        for error in errors.errors
+    )
+    return RecipeErrors(error for faults in placed for error in faults)
 
 
 def _names(rows: list[Values], cams: dict[str, Recipe]) -> list[str]:
@@ -356,18 +410,23 @@ def _names(rows: list[Values], cams: dict[str, Recipe]) -> list[str]:
     return [f"{name} {names[: i + 1].count(name)}" if names.count(name) > 1 else name for i, name in enumerate(names)]
 
 
-def _demand_apart(document: Document, lobes: list[Lobe], journals: list[Bar], ends: tuple[float, float]) -> None:
+def _demand_apart(
+    document: Document, lobes: list[Lobe], journals: list[Bar], ends: tuple[float, float], units: Length
+) -> None:
     """Raise RecipeErrors where a lobe or a journal reaches beyond the shaft, or into another."""
     fields = [f"camshaft.lobes[{i}].z" for i in range(len(lobes))]
     fields += [f"camshaft.journals[{i}].z" for i in range(len(journals))]
     parts: list[Lobe | Bar] = [*lobes, *journals]
     placed = list(zip(fields, parts, strict=True))
-    low, high = ends
+
+    def span(low: float, high: float) -> str:
+        return f"from {low / UNITS[units]:.9g} to {high / UNITS[units]:.9g}"
+
     for field, part in placed:
-        if part.low < low or part.high > high:
-            span = f"it reaches from {part.low:.9g} to {part.high:.9g} mm, the shaft from {low:.9g} to {high:.9g} mm"
-            raise document.error(field, span, None, "give another z, or a longer shaft")
+        if part.low < ends[0] or part.high > ends[1]:
+            problem = f"it reaches {span(part.low, part.high)} {units}, the shaft {span(*ends)} {units}"
+            raise document.error(field, problem, None, "give another z, or a longer shaft")
     for (_, part), (field, other) in combinations(placed, 2):
         if part.low < other.high and other.low < part.high:
-            span = f"{other.name} overlaps {part.name}, which reaches from {part.low:.9g} to {part.high:.9g} mm"
-            raise document.error(field, span, None, "give another z or a shorter length")
+            problem = f"{other.name} overlaps {part.name}, which reaches {span(part.low, part.high)} {units}"
+            raise document.error(field, problem, None, "give another z or a shorter length")

@@ -32,14 +32,18 @@ class RecipeError:
     value: str | None = None
     remedy: str = ""
 
-    def __str__(self) -> str:
-        """Write the fault on one line: file:line:column: path: problem, given value; remedy."""
+    @property
+    def statement(self) -> str:
+        """Its place and what is wrong there: file:line:column: path: problem."""
         file = escaped(self.file)
         place = f"{file}:{self.line}:{self.column}" if self.line else file
-        field = f" {self.path}:" if self.path else ""
+        return f"{place}: {self.path}: {self.problem}" if self.path else f"{place}: {self.problem}"
+
+    def __str__(self) -> str:
+        """Write the fault on one line: file:line:column: path: problem, given value; remedy."""
         given = f", given {self.value}" if self.value is not None else ""
         remedy = f"; {self.remedy}" if self.remedy else ""
-        return f"{place}:{field} {self.problem}{given}{remedy}"
+        return f"{self.statement}{given}{remedy}"
 
     def without_place(self, file: str) -> RecipeError:
         """Give the fault of a text without lines that anybody has seen, under another name than a file's."""

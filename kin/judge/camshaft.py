@@ -133,7 +133,7 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
             rounds.setdefault(part.name, []).append(replace(checked, surface=part.name))
             continue
         surface, found = _lobe(outline, part, phi, solid.uneven)
-        found.append(_position(solid, part))
+        found.append(_position(solid, intent, part))
         checks += [replace(check, surface=part.name) for check in found]
         surfaces.append(surface)
     checks += [_worst(same) for same in rounds.values() if same]
@@ -204,14 +204,26 @@ def _best_turn(gauge: Follower, angle: Array, measured: Array) -> float:
     return turned
 
 
-def _position(solid: AnySolid, lobe: LobeIntent) -> Check:
-    """Check that a lobe has its faces where they are meant to be."""
+def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Check:
+    """Check that a lobe has its faces where they are meant to be.
+
+    Where it meets another lobe or a journal and the solid has no face between the middles of the two, both have one
+    section, which is judged as that of either: equal bodies side by side have no face to look for.
+    """
     faces = np.array(solid.faces)
     if not faces.size:
         return failed("position", "the solid has no horizontal face", unit="mm", limit=lobe.limits.tolerance)
-    nearest = [float(faces[np.abs(faces - z).argmin()]) for z in (lobe.low, lobe.high)]
-    off = max(abs(nearest[0] - lobe.low), abs(nearest[1] - lobe.high))
-    detail = f"faces at z = {nearest[0]:.9g} and {nearest[1]:.9g} mm, {lobe.low:.9g} and {lobe.high:.9g} mm are meant"
+    meant = [lobe.low, lobe.high]
+    for (low, z, below), (_, high, above) in pairwise(intent.stretches):
+        between = (faces > 0.5 * (low + z)) & (faces < 0.5 * (z + high))
+        if lobe in (below, above) and intent.bars[0] not in (below, above) and not between.any():
+            meant.remove(z)
+    nearest = [float(faces[np.abs(faces - z).argmin()]) for z in meant]
+    off = max((abs(face - z) for face, z in zip(nearest, meant, strict=True)), default=0.0)
+    named, right = (" and ".join(f"{z:.9g}" for z in heights) for heights in (nearest, meant))
+    detail = (
+        f"faces at z = {named} mm, {right} mm are meant" if meant else "it has no face of its own beside its equals"
+    )
     checked = at_most("position", off, lobe.limits.tolerance, "mm", detail=detail, slack=SAME)
     return less_sure(checked, solid.uneven)
 

@@ -15,6 +15,7 @@ from camgeo.camshaft.events import stretches
 from camgeo.camshaft.timing import LEFT, RIGHT, WIDTH
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from camgeo.recipe.camshaft import Levels
 from camgeo.recipe.loading import load_order
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -443,6 +444,119 @@ def test_a_disc_is_no_camshaft(tmp_path: Path, solid: tuple[Path, camgeo.Report]
     assert not camgeo.verify(right, one.path / "one.stl").ok
 
 
+# --- face to face -----------------------------------------------------------------------------------------------------
+
+
+def test_every_sum_of_tenths_of_a_millimetre_meets_the_tenth_that_it_is() -> None:
+    """Of all z to 30 and lengths to 20 mm, a sixth of the sums is not the float of the next body's z."""
+    z, long = (tenths.ravel() for tenths in np.meshgrid(np.arange(1, 301), np.arange(1, 201)))
+    sums, stated = z / 10 + long / 10, (z + long) / 10
+    off = sums != stated
+    assert 0.08 < np.mean(sums > stated) < off.mean() < 0.2
+    level = Levels(np.unique(stated).tolist())
+    assert list(map(level, sums[off].tolist())) == stated[off].tolist()
+
+
+def test_a_height_that_is_stated_takes_the_sums_about_it() -> None:
+    level = Levels([32.4, 6.2])
+    assert level(20.1 + 12.3) == 32.4 != 20.1 + 12.3
+    assert level(1.1 + 5.1) == 6.2 != 1.1 + 5.1
+    assert level(6.2 + 1e-8) == 6.2 + 1e-8
+
+
+FLUSH = {  # lobes, journals and where the shaft ends: sums that round up and down, beside one another and at the end
+    "up": ("at: 0, z: 20.1, length: 12.3", "at: 90, z: 32.4, length: 12", "", 60.0),
+    "down": ("at: 0, z: 1.1, length: 5.1", "at: 90, z: 6.2, length: 12", "", 60.0),
+    "a journal at the end, up": ("at: 0, z: 1, length: 5", "at: 90, z: 9, length: 5", "{z: 20.1, length: 12.3}", 32.4),
+    "a journal at the end, down": ("at: 0, z: 1, length: 5", "at: 90, z: 9, length: 5", "{z: 24.9, length: 5.2}", 30.1),
+    "a lobe at the end": ("at: 0, z: 1, length: 5", "at: 90, z: 20.1, length: 12.3", "", 32.4),
+    "a journal between lobes": (
+        "at: 0, z: 1.1, length: 5.1",
+        "at: 90, z: 11.3, length: 5",
+        "{z: 6.2, length: 5.1}",
+        60,
+    ),
+}
+
+
+@pytest.mark.parametrize(("first", "second", "journal", "end"), FLUSH.values(), ids=FLUSH)
+def test_bodies_that_meet_face_to_face(tmp_path: Path, first: str, second: str, journal: str, end: float) -> None:
+    bar = f"  journals: [{journal[:-1]}, diameter: 30}}]\n" if journal else ""
+    body = f"  shaft: {{diameter: 24, to: {end}}}\n{bar}"
+    path = shaft(tmp_path, f"recipe: intake.yaml, {first}\nrecipe: intake.yaml, {second}", files="[3mf]", body=body)
+    report = camgeo.check(path)
+    assert report.ok
+    assert {check.name for check in report.checks} >= {"phase", "position", "thickness", "volume"}
+
+
+def test_equal_lobes_side_by_side_are_one_stretch(tmp_path: Path) -> None:
+    """They have no face between them: their position is that of the faces at either end, in every solid."""
+    pytest.importorskip("OCP")
+    lobes = "at: 30, z: 20.1, length: 12.3\nat: -330, z: 32.4, length: 12\nat: 30, z: 44.4, length: 3"
+    rows = "\n".join(f"recipe: intake.yaml, {row}" for row in lobes.splitlines())
+    body = "  shaft: {diameter: 24, to: 60}\n"
+    report = camgeo.export(shaft(tmp_path, rows, files="[stl, 3mf, step]", body=body), tmp_path / "out")
+    assert report.ok
+    assert sum(check.name == "position" for check in report.checks) == 9
+    assert report.path is not None
+    other = shaft(tmp_path, rows.replace("length: 3", "length: 3.02"), body=body)
+    assert failing(camgeo.verify(other, report.path / "shaft.3mf")) == {"position, intake 3", "thickness"}
+    turned = shaft(tmp_path, rows.replace("at: -330", "at: -329"), body=body)
+    assert {"phase, intake 2", "contour, intake 2"} <= failing(camgeo.verify(turned, report.path / "shaft.3mf"))
+
+
+def test_equal_lobes_of_a_solid_need_no_face_and_others_do(tmp_path: Path) -> None:
+    """A file in which the second lobe is as the first, where it is meant to be turned, has no face there."""
+    rows = "recipe: intake.yaml, at: 30, z: 20, length: 10\nrecipe: intake.yaml, at: {}, z: 30, length: 10"
+    body = "  shaft: {diameter: 24, to: 60}\n"
+    made = camgeo.export(shaft(tmp_path, rows.format(30), body=body), tmp_path / "out")
+    assert made.path is not None
+    fails = failing(camgeo.verify(shaft(tmp_path, rows.format(120), body=body), made.path / "shaft.stl"))
+    assert {"phase, intake 2", "contour, intake 2", "motion, intake 2"} <= fails
+
+
+THIN = {
+    "a gap between lobes": (
+        "at: 0, z: 1.1, length: 5.1\nat: 90, z: 6.2000001, length: 12",
+        "camshaft.lobes[1].z: intake 1 and intake 2 are 1e-07 mm apart, which is too thin; let them ",
+    ),
+    "a gap before the end": (
+        "at: 0, z: 1, length: 5\nat: 90, z: 20, length: 39.995",
+        "camshaft.lobes[1].z: intake 2 and the shaft's upper end are 0.005 mm apart, which is too thin; let them ",
+    ),
+    "a gap at the lower end": (
+        "at: 0, z: 0.001, length: 5\nat: 90, z: 20, length: 5",
+        "camshaft.lobes[0].z: the shaft's lower end and intake 1 are 0.001 mm apart, which is too thin; let them ",
+    ),
+    "a lobe": (
+        "at: 0, z: 1, length: 0.0000000001\nat: 90, z: 20, length: 5",
+        "camshaft.lobes[0].length: intake 1 is too thin, 0 mm long; give a length of more than 0.01 mm, or ",
+    ),
+}
+
+
+@pytest.mark.parametrize(("rows", "message"), THIN.values(), ids=THIN)
+def test_what_is_thinner_than_the_tolerance_is_refused_by_name(tmp_path: Path, rows: str, message: str) -> None:
+    lobes = "\n".join(f"recipe: intake.yaml, {row}" for row in rows.splitlines())
+    body = "  shaft: {diameter: 24, to: 60}\n"
+    with pytest.raises(camgeo.RecipeErrors, match=re.escape(message)):
+        camgeo.check(shaft(tmp_path, lobes, body=body))
+
+
+@pytest.mark.parametrize("z", ["6.2", "6.2101"], ids=["they meet", "farther apart"])
+def test_what_would_do_for_a_thin_gap_does(tmp_path: Path, z: str) -> None:
+    rows = f"recipe: intake.yaml, at: 0, z: 1.1, length: 5.1\nrecipe: intake.yaml, at: 90, z: {z}, length: 12"
+    assert camgeo.check(shaft(tmp_path, rows, body="  shaft: {diameter: 24, to: 60}\n")).ok
+
+
+def test_a_thin_gap_is_held_where_the_tolerance_is_finer(tmp_path: Path) -> None:
+    rows = "recipe: intake.yaml, at: 0, z: 1, length: 5\nrecipe: intake.yaml, at: 90, z: 6.001, length: 5"
+    path = shaft(tmp_path, rows, files="[3mf, step]", body="  shaft: {diameter: 24, to: 60}\n")
+    path.write_text(path.read_text().replace("tolerance: 0.01", "tolerance: 0.0009"))
+    pytest.importorskip("OCP")
+    assert camgeo.check(path).ok
+
+
 # --- what is refused --------------------------------------------------------------------------------------------------
 
 
@@ -454,6 +568,18 @@ REFUSED = {
     "no file": (
         ("recipe: nope.yaml, at: 0, z: 30", ""),
         "shaft.yaml:5:16: camshaft.lobes[0].recipe: no such file, given 'nope.yaml'; give the path of a recipe from ",
+    ),
+    "no recipe": (
+        ("recipe: secrets.txt, at: 0, z: 30", ""),
+        "shaft.yaml:5:16: camshaft.lobes[0].recipe: no recipe, given 'secrets.txt'; give the recipe of a cam\n",
+    ),
+    "a camshaft": (
+        ("recipe: shaft.yaml, at: 0, z: 30", ""),
+        "shaft.yaml:5:16: camshaft.lobes[0].recipe: a camshaft is no lobe, given 'shaft.yaml'; give the recipe",
+    ),
+    "a fault of a lobe's own": (
+        ("recipe: slip.yaml, at: 0, z: 30", ""),
+        "shaft.yaml:5:16: camshaft.lobes[0].recipe: SLIP:3:16: cam.base_radius: not above 0, given -18; give ",
     ),
     "no engine": (
         ("recipe: intake.yaml, cylinder: 1, valve: intake, z: 30", ""),
@@ -479,11 +605,26 @@ def test_one_line_with_place_and_remedy(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], recipe: tuple[str, str], message: str
 ) -> None:
     path = shaft(tmp_path, *recipe)
+    (tmp_path / "secrets.txt").write_text("root:x:0:0:root:/root:/bin/bash\n")
+    (tmp_path / "slip.yaml").write_text(INTAKE.replace("18", "-18"))
+    message = message.replace("SLIP", str(tmp_path / "slip.yaml"))
     assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     assert message in told
     assert told.count("\n") == 1
     assert not (tmp_path / "out" / "shaft").exists()
+
+
+def test_an_inch_shaft_tells_inches_and_its_lobes_are_in_their_own_unit(tmp_path: Path) -> None:
+    """A lobe's recipe without `units` is in mm wherever it stands; the report is in the shaft's unit."""
+    body = "  shaft: {diameter: 1, to: 2}\n"
+    lobe = "recipe: intake.yaml, at: 0, z: {}, length: 0.5"
+    report = camgeo.check(shaft(tmp_path, lobe.format(1), extra="units: inch\n", files="[csv]", body=body))
+    (check,) = (check for check in report.checks if check.name == "shaft")
+    assert check.value == pytest.approx(18 / 25.4)
+    assert check.unit == "in"
+    with pytest.raises(camgeo.RecipeErrors, match=r"it reaches from 1\.6 to 2\.1 inch, the shaft from 0 to 2 inch"):
+        camgeo.check(shaft(tmp_path, lobe.format(1.6), extra="units: inch\n", body=body))
 
 
 @pytest.mark.parametrize("kind", ["dxf", "gcode"])
