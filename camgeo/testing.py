@@ -364,6 +364,11 @@ def _solid(path: Path) -> AnySolid:
 
 
 def _is_solid(path: Path) -> bool:
-    from kin.read.files import SOLIDS, kind_of
+    """Whether a file is a solid, not a drawing; raises CallError for one that is neither."""
+    from kin.read.files import DRAWINGS, SOLIDS, SUFFIXES
 
-    return kind_of(path) in SOLIDS
+    kind = SUFFIXES.get(path.suffix.lower())
+    if kind not in SOLIDS | DRAWINGS:
+        known = ", ".join(suffix for suffix, of_kind in SUFFIXES.items() if of_kind in SOLIDS | DRAWINGS)
+        raise CallError(f"{path.name}: a contour is read from one of {known}")
+    return kind in SOLIDS

@@ -32,4 +32,4 @@ def write_stl(path: Path, mesh: Mesh, *, mm: float = 1.0, about: str = "") -> No
     with path.open("wb") as stream:
         stream.write(header)
         stream.write(len(records).to_bytes(4, "little"))
-        records.tofile(stream)
+        stream.write(records.data)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 UNITS = {"mm": 1.0, "in": 25.4}
+SHOWN = 80  # characters of a header in a message
 FULL = 1e-9  # degrees within which a table closes
 FINE = 1e-3  # of the tolerance: what pieces of the metal are left out by
 LEAST_ROWS, MOST_ROWS = 8, 400_000
@@ -85,8 +86,11 @@ def _rows(path: Path, grinding: Grinding) -> tuple[Array, Array, float, float]:
     word, _, unit = kind.partition("_")
     radius = grinding.wheel if word == "x" else grinding.roller
     if "c_deg" not in names or unit not in UNITS or radius is None:
-        wanted = "columns c_deg and x_mm or x_in with manufacture.wheel, or lift_mm or lift_in with its roller"
-        raise ReadError("unsupported", f"no table of a grinder: {wanted} are expected", path)
+        wheel = "c_deg and x_mm or x_in with manufacture.wheel"
+        roller = "c_deg and lift_mm or lift_in with the lift table's roller"
+        there = ", ".join(name for name in names if name)[:SHOWN] or "none"
+        message = f"of a CSV the columns {wheel}, or {roller}, are judged; its columns are {there}"
+        raise ReadError("unsupported", message, path)
     columns = names.index("c_deg"), names.index(kind)
     try:
         rows = [line.split(",") for line in lines[1:]]

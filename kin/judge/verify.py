@@ -44,10 +44,11 @@ NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
 MOST_NAMED = 5  # faults named in a message
 OTHERS = (
-    ("inches", 25.4),
-    ("centimetres", 10.0),
-    ("metres", 1000.0),
-)  # what an STL, which has no unit, may be drawn in
+    ("inches", 25.4, "inch"),
+    ("centimetres", 10.0, "cm"),
+    ("metres", 1000.0, "m"),
+    ("mm", 1.0, "mm"),
+)  # what a file that states no unit may be drawn in, in mm, and what says so
 
 
 class UnitsError(KinError, ValueError):
@@ -165,7 +166,7 @@ def _of_table(path: Path, part: PartIntent, limits: Limits, units: float | None)
     from kin.judge.grinding import ground
 
     if part.grinding is None or len(part.surfaces) > 1:
-        raise ReadError("unsupported", "a table is judged that grinds one surface", path)
+        raise ReadError("unsupported", "of a CSV the table that grinds a cam of one surface is judged", path)
     made = ground(path, part.grinding, limits.tolerance)
     _demand_same(made.units, units, path)
     chains = scaled((made.chain,), 1.0, mirrored=part.mirrored)
@@ -189,17 +190,26 @@ def _units_check(stated: float | None, units: float | None, part: PartIntent, pa
     meant = part.mm
     if stated is None and units is None:
         told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
-        return failed("units", f"{told}; give it by --units, such as --units mm", limit=UNITS_SHARE)
+        large = _size(part, parts)
+        by_size = (one for one in OTHERS if abs(large * one[1] / meant - 1.0) <= SIZE_SHARE)
+        name, _, word = next(by_size, ("", 1.0, "mm"))
+        told += f"; by its size it is drawn in {name}" if name else ""
+        return failed("units", f"{told}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
     if stated is None:
         return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {units:.9g} mm is given")
     off = abs(stated / meant - 1.0)
     detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is expected"
     if off > UNITS_SHARE:
-        chain, exact = parts.surfaces[0], part.surfaces[0].gauge.envelope
-        large = float(np.abs(chain.contour.vertices).max() / np.abs(exact.points(SIZED)).max())
+        large = _size(part, parts)
         if abs(large * meant / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
             return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
+
+
+def _size(part: PartIntent, parts: Parted) -> float:
+    """Size of the first surface as a share of the exact one's."""
+    exact = part.surfaces[0].gauge.envelope.points(SIZED)
+    return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
 
 def _closed_check(drawing: Drawing, parts: Parted) -> Check:
@@ -329,8 +339,8 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
     """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is expected"
-    for unit, mm in OTHERS:
-        if abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
+    for unit, mm, _ in OTHERS:
+        if mm != 1.0 and abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
             detail += f"; as if drawn in {unit} and stated as mm"
     if not solid.prism:
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)

@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
+from kin.read.errors import ReadError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
 Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode", "csv"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
+DRAWINGS = frozenset({"dxf", "svg"})
 SOLIDS = frozenset({"stl", "3mf", "step"})
 OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}
 """Suffixes that are not the kind's own."""
@@ -83,11 +86,12 @@ def read_solid(
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
     """Read several solids from one 3MF or STEP, the lowest first; raises as `read_3mf` and `read_step` do.
 
-    Heights are those above each one's own level, mm, and so they are in what is returned. ValueError for an STL, whose
-    triangles are one body.
+    Heights are those above each one's own level, mm, and so they are in what is returned. ReadError for a file of
+    another kind, which does not hold several.
     """
     if kind_of(path) not in {"step", "3mf"}:
-        raise ValueError(f"{Path(path).name}: it holds one body")
+        message = f"a 3MF or STEP holds {len(sought)} discs, a drawing, an STL or a program one of them: judge these"
+        raise ReadError("unsupported", message, Path(path))
     above = list(zip(sought, levels, strict=True))
     shifted = [one._replace(heights=[level + z for z in one.heights]) for one, level in above]
     found: list[AnySolid] = []

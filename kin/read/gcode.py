@@ -24,6 +24,7 @@ __all__ = ["ARC_MM", "Move", "Program", "arcs_of", "read_gcode"]
 ARC_MM = 0.002  # how far the ends of an arc may be from equally far from its centre (NIST IR 6556, 3.5.3)
 MOST_LINES = 1_000_000
 LARGEST = 1e6  # of a number as written
+CENTRES = "have the post-processor write arcs by their centre, I and J"
 _WORD = re.compile(r"([A-Z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 _COMMENT = re.compile(r"\(([^()]*)\)")
 _GROUPS = {
@@ -194,7 +195,8 @@ class _Machine:
             if letter in "GM":
                 continue
             if letter not in "XYZIJFS":
-                raise self._refused(number, f"{letter}{text} is not read")
+                remedy = f", an arc by its radius; {CENTRES}" if letter == "R" else ""
+                raise self._refused(number, f"{letter}{text} is not read{remedy}")
             if letter in numbers:
                 raise self._refused(number, f"{letter} stands twice", "syntax")
             numbers[letter] = float(text)
@@ -243,7 +245,7 @@ class _Machine:
             self.at[k] = value
         centred = "I" in numbers or "J" in numbers
         if centred != (motion in "23"):
-            what = "an arc has no centre I, J" if motion in "23" else "a straight move has a centre"
+            what = f"an arc has no centre I, J; {CENTRES}" if motion in "23" else "a straight move has a centre"
             raise self._refused(number, what, "syntax")
         if motion != "0" and not (self.feed > 0.0 and self.turning):
             raise self._refused(number, "a feed move without a feed F and a turning spindle M3", "syntax")

@@ -22,6 +22,7 @@ from support.camfiles import (
 from support.heavy import ezdxf
 
 from camgeo import testing
+from camgeo.common.errors import CallError
 from camgeo.recipe.loading import load
 from camgeo.schema.errors import RecipeErrors
 
@@ -196,8 +197,10 @@ def test_an_stl_cut_short(tmp_path, vertices):
 def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
     with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl, \.3mf or \.step file"):
         testing.assert_watertight(dxf(tmp_path, vertices))
-    with pytest.raises(ValueError, match=r"cam\.iges: none of"):
-        testing.assert_closed(tmp_path / "cam.iges")
+    for judge in (testing.assert_closed, testing.assert_watertight, testing.assert_constant_breadth):
+        for name in ("cam.iges", "cam", "cam.csv", "cam.ngc"):
+            with pytest.raises(CallError, match=rf"{name}: a contour is read from one of \.dxf, \.svg, \.stl"):
+                judge(tmp_path / name)
     with pytest.raises(FileNotFoundError):
         testing.assert_closed(tmp_path / "none.dxf")
 

@@ -308,6 +308,19 @@ def test_volume_from_the_intent_in_closed_form(tmp_path):
     assert verdict.kind == "stl"
 
 
+@pytest.mark.parametrize(
+    ("unit", "mm", "word"), [("inches", 25.4, "inch"), ("centimetres", 10.0, "cm"), ("mm", 1.0, "mm")]
+)
+def test_a_drawing_that_states_no_unit_tells_by_its_size(tmp_path, unit, mm, word):
+    """Of a recipe in mm; what its size suggests is what judges it."""
+    path = write_dxf(tmp_path / "cam.dxf", support_points(4000) / mm, units=0, bores=((0.0, 0.0, 5.0 / mm),))
+    yoke = followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0)
+    part = part_of(yoke, bore=10.0)
+    check = named(verify(path, part, 90, Limits(1e-3)))["units"]
+    assert check.detail.endswith(f"; by its size it is drawn in {unit}; give it by --units, such as --units {word}")
+    assert verify(path, part, 90, Limits(1e-3), units=mm).ok
+
+
 @pytest.mark.parametrize(("unit", "mm"), [("inches", 25.4), ("metres", 1000.0)])
 def test_a_solid_that_is_too_small_by_a_unit_is_told_as_that(tmp_path, unit, mm):
     points = support_points(200, mean=9.0, harmonics=((3, 0.5, 0.0),))

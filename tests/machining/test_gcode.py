@@ -29,7 +29,7 @@ from kin.judge.intent import Limits, Milling
 from kin.judge.milling import milled
 from kin.judge.verify import verify
 from kin.read.errors import ReadError
-from kin.read.gcode import ARC_MM, read_gcode
+from kin.read.gcode import ARC_MM, CENTRES, read_gcode
 
 SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
@@ -524,10 +524,10 @@ def test_modes_words_and_comments(tmp_path):
         (HEAD + "G1 X10\nG41 D1\n" + TAIL, "line 7: G41 is not read"),
         (HEAD + "O100 CALL\n" + TAIL, "line 6: CALL is not read"),
         (HEAD + "#1=5\n" + TAIL, "line 6: #1=5 is not read"),
-        (HEAD + "G2 X10 R5\n" + TAIL, "line 6: R5 is not read"),
+        (HEAD + "G2 X10 R5\n" + TAIL, f"line 6: R5 is not read, an arc by its radius; {CENTRES}"),
         (HEAD + "T1 M6\n" + TAIL, "line 6: M6 is not read"),
         (HEAD + "G2 X10 Y0 I4 J0\n" + TAIL, "line 6: the ends of the arc lie 4 and 6 mm from its centre"),
-        (HEAD + "G2 X10 Y0\n" + TAIL, "line 6: an arc has no centre I, J"),
+        (HEAD + "G2 X10 Y0\n" + TAIL, f"line 6: an arc has no centre I, J; {CENTRES}"),
         (HEAD + "G1 X10 I5\n" + TAIL, "line 6: a straight move has a centre"),
         (HEAD + "G2 X10 Z-2 I5\n" + TAIL, "line 6: an arc that climbs is not read"),
         (HEAD + "G0 G1 X3\n" + TAIL, "line 6: two words set the motion"),

@@ -122,6 +122,19 @@ def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
     assert done.stderr == "camgeo: the output cannot be written: No space left on device\n"
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="limits a process as a POSIX shell does")
+@pytest.mark.parametrize("kind", few(["stl", "3mf", "dxf", "glb"], 2))
+def test_a_file_that_does_not_fit_is_told_in_the_words_of_the_system(tmp_path: Path, kind: str) -> None:
+    """Not in those of numpy, which counts the items that it has written."""
+    cam = "cam: {kind: support, p: 25 + cos(3*t)}\npart: {thickness: 8}\n"
+    (tmp_path / "cam.yaml").write_text(f"{cam}export: {{tolerance: 1e-5, files: [{kind}]}}\n", encoding="utf-8")
+    call = f"ulimit -f 4; '{sys.executable}' -m camgeo.cli.main export cam.yaml"
+    done = subprocess.run(["sh", "-c", call], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == SURROUNDINGS
+    assert done.stderr.endswith(": File too large\n")
+    assert not (tmp_path / "out" / "cam").exists()
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="the killed function reaches the workers by fork")
 def test_a_killed_process_is_told_for_each_recipe(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

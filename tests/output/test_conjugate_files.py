@@ -151,6 +151,14 @@ def test_one_file_for_both_discs_is_refused(made, capsys):
     assert "give each file once" in told
 
 
+@pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "c_deg,x_mm\n0,30\n"])
+def test_a_table_is_not_judged_against_a_pair(made, tmp_path, capsys, text):
+    table = tmp_path / "pair.csv"
+    table.write_text(text)
+    assert main(["verify", str(made[0]), str(table)]) == 1
+    assert "readable (pair.csv): a 3MF or STEP holds 2 discs" in capsys.readouterr().out
+
+
 def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):
     recipe, report = made
     paths = [tmp_path / name for name in ("left.dxf", "right.dxf")]

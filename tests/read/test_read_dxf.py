@@ -401,6 +401,29 @@ def test_units_of_r12_by_a_comment(tmp_path: Path, comment: str, mm: float | Non
     assert_is_the_circle(drawing.contour, 1.0 if mm is None else mm)
 
 
+@pytest.mark.parametrize("head", ["", "0\nSECTION\n2\nHEADER\n0\nENDSEC\n"])
+def test_a_file_without_a_header_states_no_unit(tmp_path: Path, head: str) -> None:
+    """ezdxf makes a header up where there is none, in metres."""
+    path = tmp_path / "cam.dxf"
+    circle = "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n25.0\n0\nENDSEC\n0\nEOF\n"
+    path.write_text(head + circle)
+    drawing = read_dxf(path)
+    assert (drawing.units_mm, drawing.measurement, drawing.extents) == (None, None, None)
+    assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
+    path.write_text("999\nunits: inch\n" + path.read_text())
+    assert read_dxf(path).units_mm == 25.4
+
+
+def test_frames_in_paper_space_are_set_aside(tmp_path: Path) -> None:
+    document = new()
+    document.modelspace().add_circle((0, 0), 25.0)
+    document.layout("Layout1").add_circle((0, 0), 5.0)
+    drawing = read_dxf(saved(document, tmp_path))
+    assert drawing.aside == (("0", "CIRCLE in the paper space Layout1", 1),)
+    assert not drawing.holes
+    assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
+
+
 def test_units_that_are_none_for_a_cam(tmp_path: Path) -> None:
     document = new(units=InsertUnits.Parsecs)
     document.modelspace().add_circle((0, 0), 1.0)
@@ -482,7 +505,6 @@ def no_block(document: Document) -> None:
 
 
 def paper(document: Document) -> None:
-    document.modelspace().add_circle((0, 0), 25.0)
     document.layout("Layout1").add_circle((0, 0), 5.0)
 
 
@@ -546,7 +568,7 @@ def only_reference(document: Document) -> None:
         (block_in_itself, "range", "blocks more than 16 deep"),
         (block_of_many, "range", "32000 columns and 32000 rows of 1 entities"),
         (no_block, "syntax", "there is no block PART"),
-        (paper, "unsupported", "paper space Layout1"),
+        (paper, "empty", "nothing to cut in the model space; the file holds 1 CIRCLE in the paper space Layout1 on 0"),
         (hatch, "unsupported", "HATCH"),
         (tilted, "unsupported", "a plane of its own, with the extrusion (0, 1, 1)"),
         (at_two_heights, "unsupported", "heights from 0 to 5"),

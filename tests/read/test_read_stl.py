@@ -9,13 +9,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
-from support.meshfiles import BORE, HEIGHT, OUTER, N, binary, quads, ring, text
+from support.meshfiles import BORE, HEIGHT, OUTER, N, binary, in_3mf, quads, ring, text
 from support.solids import sound
 
 from kin.contour.contour import Contour
 from kin.read.errors import ReadError
 from kin.read.mesh.mesh import weld, welded
 from kin.read.mesh.stl import Solid, read_stl
+from kin.read.mesh.threemf import read_3mf
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -332,9 +333,36 @@ def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
         read_stl(tmp_path / "none.stl")
 
 
+@pytest.mark.parametrize("stumps", [False, True])
+def test_lids_without_walls(tmp_path: Path, stumps: bool) -> None:
+    """Two lids at their heights, also with walls that end on the way: there is no section at half of the height."""
+    whole = ring()
+    triangles = whole[np.ptp(whole[:, :, 2], axis=1) == 0.0]
+    if stumps:
+        triangles = np.concatenate([triangles, ring(high=0.25 * HEIGHT)[: 4 * N]])
+    files = [
+        (read_stl, binary(tmp_path / "a.stl", triangles)),
+        (read_stl, text(tmp_path / "b.stl", triangles)),
+        (read_3mf, in_3mf(tmp_path / "c.3mf", triangles)),
+    ]
+    for read, path in files:
+        with pytest.raises(ReadError, match=r"nothing is at z = \d mm, .*: walls are missing between faces"):
+            read(path)
+
+
+def test_words_in_capitals(tmp_path: Path) -> None:
+    path = text(tmp_path / "cam.stl", ring())
+    small = read_stl(path)
+    path.write_text(path.read_text().upper())
+    assert read_stl(path).volume == small.volume
+    path.write_text(path.read_text().replace("OUTER LOOP", "OUTER RING", 1))
+    with pytest.raises(ReadError, match='facet 1 has "ring" where "loop" belongs'):
+        read_stl(path)
+
+
 def test_what_is_no_stl_at_all_is_told_by_how_it_begins(tmp_path: Path) -> None:
     path = tmp_path / "cam.stl"
     path.write_bytes(b"ISO-10303-21;\nHEADER;\n" + b"FILE_DESCRIPTION(('a part'),'2;1');\n" * 40)
-    with pytest.raises(ReadError, match=r"neither binary nor text: it begins with b'ISO-10303-21;") as caught:
+    with pytest.raises(ReadError, match=r"neither binary nor text: it begins with \"ISO-10303-21; HEADER\"$") as caught:
         read_stl(path)
     assert caught.value.reason == "syntax"

@@ -49,6 +49,7 @@ UNDERSCORED = re.compile(
     rb"[ \t]*([-+.\deE]*\d_\d[-+.\deE_]*)[ \t]*\r?$",
     re.MULTILINE,
 )
+HEADER = re.compile(rb"^[ \t]*2[ \t]*\r?\n[ \t]*HEADER[ \t]*\r?$", re.MULTILINE)
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
 MOST_ENTITIES = 20_000  # that blocks may bring in
 DEEPEST = 16  # of blocks within blocks
@@ -146,7 +147,10 @@ def parsed(raw: bytes, path: Path) -> Document:
 
     with damage_reported(path):
         encoding = dxf_stream_info(io.StringIO(raw.decode("utf-8", errors="ignore"), newline=None)).encoding
-        return read(io.TextIOWrapper(io.BytesIO(raw), encoding=encoding, errors="surrogateescape"))
+        document = read(io.TextIOWrapper(io.BytesIO(raw), encoding=encoding, errors="surrogateescape"))
+    if HEADER.search(raw) is None:
+        document.header.hdrvars.clear()  # ezdxf makes a header up, in metres
+    return document
 
 
 def unit_of(document: Document, head: bytes, path: Path) -> float | None:
@@ -251,12 +255,12 @@ def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, p
     chosen = layer if layer is not None else (CUT if CUT in there else None)
     beside = BESIDE if layer is None else {BORE}
     wanted = there - REFERENCE if chosen is None else {chosen.upper(), *beside}
-    refuse_elsewhere(document, wanted, path)
     # what is drawn with no thought for layers goes to the machine too
     found = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
+    found.aside.update(on_paper(document))
     if not found.shapes:
         others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"
-        raise ReadError("empty", f"nothing to cut; the file holds {others}", path)
+        raise ReadError("empty", f"nothing to cut in the model space; the file holds {others}", path)
     return found
 
 
@@ -286,13 +290,12 @@ def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
     return found
 
 
-def refuse_elsewhere(document: Document, layers: set[str], path: Path) -> None:
-    """Refuse curves on the layers to cut that stand in paper space."""
-
-    def cut(entity: Any) -> bool:  # noqa: ANN401
-        return entity.dxf.layer.upper() in layers and (entity.dxftype() in CURVES or entity.dxftype() == "INSERT")
-
-    for layout in document.layouts:
-        first = next((e for e in layout if cut(e)), None) if layout.is_any_paperspace else None
-        if first is not None:
-            raise ReadError("unsupported", f"{_name(first)} is drawn in the paper space {layout.name}", path)
+def on_paper(document: Document) -> Counter[tuple[str, str]]:
+    """Count the curves and blocks of paper space, by layer and type: frames and title blocks, which no machine cuts."""
+    return Counter(
+        (entity.dxf.layer, f"{entity.dxftype()} in the paper space {layout.name}")
+        for layout in document.layouts
+        if layout.is_any_paperspace
+        for entity in layout
+        if entity.dxftype() in CURVES or entity.dxftype() == "INSERT"
+    )

@@ -95,12 +95,14 @@ def upright(corners: Corners) -> Upright:
 def _outline(mesh: Mesh) -> Outline | None:
     """Return the outline of the bottom if a mesh between two levels, of `plan_welded`, is a prism; None if it is not.
 
-    Each triangle between the levels stands upright, with but two corners as seen from above; and their edges at the
-    bottom are the same as those at the top, the other way round.
+    There are triangles between the levels; each stands upright, with but two corners as seen from above; and their
+    edges at the bottom are the same as those at the top, the other way round.
     """
     high, plan = (mesh.corners & 1).astype(bool), mesh.corners >> 1
     above = np.count_nonzero(high, axis=1)
     wall = plan[(above == 1) | (above == 2)]
+    if not len(wall):
+        return None
     a, b, c = wall.T
     if not bool(((a == b) ^ (b == c) ^ (c == a)).all()):
         return None

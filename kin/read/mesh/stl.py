@@ -240,7 +240,8 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
         raise ReadError("several", message, path)
     at, found = section(mesh, height)
     if not len(found.points):
-        raise ReadError("several", f"nothing is at z = {at:.9g} mm, and something above and below", path)
+        message = f"nothing is at z = {at:.9g} mm, and something above and below: walls are missing between faces"
+        raise ReadError("several", message, path)
     return at, found
 
 
@@ -272,13 +273,15 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
         if not count:
             raise ReadError("empty", "the file holds no triangles", path)
         return np.frombuffer(raw, RECORD, offset=HEADER)["corners"].copy(), "binary"
-    if raw.lstrip()[:5] == b"solid" and (b"facet" in raw[:2000] or b"endsolid" in raw[:2000]):
-        return facets(raw, path), "text"
+    begin = raw[:2000].lower()  # words in capitals are in use too
+    if begin.lstrip()[:5] == b"solid" and (b"facet" in begin or b"endsolid" in begin):
+        return facets(raw.lower(), path), "text"
     if len(raw) < HEADER:
         raise ReadError("truncated", f"{len(raw)} bytes are not an STL file, whose header alone has {HEADER}", path)
     begin = raw[:HEADER]
     if begin.isascii() and begin.decode("ascii").translate(SPACES).isprintable():
-        raise ReadError("syntax", f"not an STL file, neither binary nor text: it begins with {begin[:20]!r}", path)
+        first = " ".join(begin[:20].decode("ascii").split())
+        raise ReadError("syntax", f'not an STL file, neither binary nor text: it begins with "{first}"', path)
     reason = "truncated" if len(raw) < expected else "syntax"
     raise ReadError(reason, f"{count} triangles make a file of {expected} bytes, not {len(raw)}", path)
 
@@ -304,7 +307,8 @@ def facets(raw: bytes, path: Path) -> Array:
     for column, word in FACET.items():
         wrong = np.flatnonzero(table[:, column] != word)
         if wrong.size:
-            message = f"facet {wrong[0] + 1} has {table[wrong[0], column]!r} where {word!r} belongs"
+            there = table[wrong[0], column].decode("latin-1")
+            message = f'facet {wrong[0] + 1} has "{there}" where "{word.decode("ascii")}" belongs'
             raise ReadError("syntax", message, path)
     numbers = table[:, NUMBERS]
     found = None
