@@ -192,8 +192,8 @@ def _units_check(stated: float | None, units: float | None, part: PartIntent, pa
         told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
         large = _size(part, parts)
         by_size = (one for one in OTHERS if abs(large * one[1] / meant - 1.0) <= SIZE_SHARE)
-        name, _, word = next(by_size, ("", 1.0, "mm"))
-        told += f"; by its size it is drawn in {name}" if name else ""
+        name, mm, word = next(by_size, ("", meant, "mm"))
+        told += f"; by its size it is drawn in {name}" if mm != meant else ""
         return failed("units", f"{told}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
     if stated is None:
         return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {units:.9g} mm is given")

@@ -317,7 +317,8 @@ def test_a_drawing_that_states_no_unit_tells_by_its_size(tmp_path, unit, mm, wor
     yoke = followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0)
     part = part_of(yoke, bore=10.0)
     check = named(verify(path, part, 90, Limits(1e-3)))["units"]
-    assert check.detail.endswith(f"; by its size it is drawn in {unit}; give it by --units, such as --units {word}")
+    by_size = "" if mm == 1.0 else f"; by its size it is drawn in {unit}"
+    assert check.detail.endswith(f", 1 mm{by_size}; give it by --units, such as --units {word}")
     assert verify(path, part, 90, Limits(1e-3), units=mm).ok
 
 
