@@ -16,6 +16,7 @@ import numpy as np
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 from camgeo.measures.frame_forces import frame_running
 from camgeo.measures.running import Lost, Pull, Running, State, lost
+from kin.dynamics.contact_forces import Guided
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
@@ -23,8 +24,10 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.cams.family import Preload
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
+    from kin.dynamics.contact_forces import Elastic
     from kin.follower.contact_lines import ContactLine
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
@@ -69,30 +72,41 @@ class FollowerRunning(Running):
         lines = self.turn.lines(rows)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
-        normal = (force if len(lines) == 1 else self._pair(force, rows)) / self._levers(lines, y)
+        normal = self._normal(force, rows, lines)
         shaft = np.array([side * line.shaft for side, line in zip(self.sides, lines, strict=True)])
         torque: Array = PER_MM * np.sum(normal * shaft, axis=0)
         pressure, speeds = self._pressure(normal, lines), self._roller_rpm(lines)
         return State(force, y, normal, torque, pressure, self._guide_forces(y, normal, lines), lines, speeds)
 
-    def _pair(self, force: Array, rows: Array) -> Array:
-        """What two contacts that hold the follower from both sides push along the travel, (2, n)."""
-        given = self.design.exact.preload
-        if given is not None and given.stiffness is not None:
-            scale = PER_MM if self.turn.swings else 1.0
-            return elastic(self.turn, given, rows).split(force / scale) * scale
-        return np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
+    def _normal(self, force: Array, rows: Array, lines: Sequence[ContactLine]) -> Array:
+        """Normal force of each contact, N (m, n). Not a number where a stem jams in its guide."""
+        scale = PER_MM if self.turn.swings else 1.0
+        levers = scale * np.array([line.lever for line in lines])
+        if self.held_by is not None:
+            normal: Array = self._pressed(self.held_by, rows, lines).split(force / scale) * scale / levers
+            return normal
+        if len(lines) > 1:
+            force = np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
+        if self.train.guide is not None:
+            levers = self._free(lines, self.position(rows))
+            levers = np.where(levers > 0.0, levers, np.nan)
+        return force / levers
 
-    def _levers(self, lines: Sequence[ContactLine], y: Array) -> Array:
-        """Lever of each contact's normal force along the travel, 1 or m (m, n); on a stem less its guide's friction.
+    @property
+    def held_by(self) -> Preload | None:
+        """Preload by interference, None without one, and for one without stiffness."""
+        preload = self.design.exact.preload
+        return None if preload is None or preload.stiffness is None else preload
 
-        Not a number where that leaves nothing: the stem jams.
-        """
-        levers = np.array([line.lever for line in lines]) * (PER_MM if self.turn.swings else 1.0)
+    def _pressed(self, preload: Preload, rows: Array, lines: Sequence[ContactLine]) -> Elastic | Guided:
+        """Both contacts under preload, N and mm or N mm and rad."""
+        pair = elastic(self.turn, preload, rows)
         if self.train.guide is None:
-            return levers
-        levers = self._free(lines, y)
-        return np.where(levers > 0.0, levers, np.nan)
+            return pair
+        y = self.position(rows)
+        sides, levers = np.array(self.sides), np.array([line.lever for line in lines])
+        ends = (sides[:, None] / levers)[:, None] * self._at_ends(lines, y)
+        return Guided(pair, ends, self.train.guide.friction * np.sign(y[1]))
 
     def _free(self, lines: Sequence[ContactLine], y: Array) -> Array:
         """What the friction of a guide leaves of each contact's lever, (m, n)."""
@@ -122,16 +136,31 @@ class FollowerRunning(Running):
 
     @cached_property
     def jam_deg(self) -> float | None:
-        """Shaft angle in degrees at which the stem jams in its guide, None where it does not."""
+        """Shaft angle in degrees at which a contact alone jams the stem in its guide, None where none does.
+
+        Raises RecipeErrors where neither does, and both under preload wedge it between them.
+        """
         if self.train.guide is None:
             return None
 
         def free(phi: Array) -> Array:
             rows = self.turn.rows(phi)
-            return self._free(self.turn.lines(rows), self.position(rows))
+            lines = self.turn.lines(rows)
+            left = self._free(lines, self.position(rows))
+            if self.held_by is None:
+                return left
+            return np.stack([*left, self._pressed(self.held_by, rows, lines).together])
 
-        least = min((one for one, _ in self.turn.extremes(free)), key=lambda one: one.value)
-        return least.at_deg if least.value <= 0.0 else None
+        count = len(self.turn.names)
+        lowest = [one for one, _ in self.turn.extremes(free)]
+        least = min(lowest[:count], key=lambda one: one.value)
+        if least.value <= 0.0:
+            return least.at_deg
+        for one in lowest[count:]:
+            if one.value <= 0.0:
+                why = f"the preloaded contacts wedge the stem in it at {one.at_deg:.6g} degrees"
+                raise self.recipe.error("dynamics.guide", why, None, "give less friction, or a longer guide")
+        return None
 
     def _guide_forces(self, y: Array, normal: Array, lines: Sequence[ContactLine]) -> dict[str, Array]:
         """Reactions of the guide at its near end and its far one, N (n,), across the stem; none without."""
@@ -207,14 +236,14 @@ class FollowerRunning(Running):
 
     def lost_rpm(self) -> list[Lost]:
         """Of contacts under preload the speed from which each is lost over the turn."""
-        given = self.design.exact.preload
-        if given is None or given.stiffness is None:
+        preload = self.held_by
+        if preload is None:
             return []
         scale = PER_MM if self.turn.swings else 1.0
 
         def held(phi: Array) -> Pull:
             rows = self.turn.rows(phi)
-            pair = elastic(self.turn, given, rows)
+            pair = self._pressed(preload, rows, self.turn.lines(rows))
             rest = self.rest(phi, self.position(rows)[0]) + self.preload
             return Pull(self.inertia(rows, 1.0), rest, scale * pair.loses_first, scale * pair.loses_second)
 

@@ -265,8 +265,8 @@ def check_guide(values: Values, reader: Reader) -> None:
     """Note a guide that is not found for the follower of a cam."""
     if "dynamics.guide" not in reader.marks:
         return
-    if reader.offers.isdisjoint({"stem", "stem-face"}):
-        remedy = "leave it out, or give a cam of kind disc whose follower has no arm"
+    if "led" not in reader.offers or "linkage" in reader.marks:
+        remedy = "leave it out, or give a follower on a stem, without a linkage"
         reader.fault_at("dynamics.guide", "the follower has no stem of its own", None, remedy)
     elif values.get("cam", {}).get("follower", {}).get("tilt"):
         reader.fault_at(

@@ -106,24 +106,32 @@ def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
     On the rise the former is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot. Of
     two contacts it is the one that is nearer to jamming; the second stands beyond the shaft.
     """
-    first, found = exact.follower.contacts[0], []
-    for surface in exact.surfaces:
-        if (slope := surface.extremes("slope")) is not None:
-            contact = next(one for one in exact.follower.contacts if one.surface == surface.name)
+    first, angles = exact.follower.contacts[0], []
+    surfaces = {surface.name: surface for surface in exact.surfaces}
+    for contact in exact.follower.contacts:
+        if (slope := surfaces[contact.surface].extremes("slope")) is not None:
             beyond = first.zero + contact.zero if contact.turned else 0.0
             steepest = max(slope[1].value + slope[1].slack, exact.follower.lean)
-            found.append((math.degrees(math.atan(steepest)), math.degrees(guide.jam(beyond)), degrees(slope[1].at)))
-    if not found:
+            later = 0.0 if contact.surface else contact.turned  # on one surface the second is where the first was
+            at = degrees(math.fmod(slope[1].at + later, 2.0 * math.pi))
+            angles.append((math.degrees(math.atan(steepest)), math.degrees(guide.jam(beyond)), at))
+    if not angles:
         raise TypeError("no stem is led in a guide")
-    return max(found, key=lambda one: one[0] - one[1])
+    return max(angles, key=lambda angle: angle[0] - angle[1])
 
 
 def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | None:
     """The same of a face without tilt, by how far from its stem's axis it is pushed, mm; None of other touches.
 
-    The contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins.
+    The contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins. Of a yoke
+    one of its faces pushes on wherever it moves.
     """
-    proved = [place[1] for surface in exact.surfaces if (place := surface.extremes("contact")) is not None]
+    proved = [along[1] for surface in exact.surfaces if (along := surface.extremes("contact")) is not None]
+    place = exact.surfaces[0].place
+    if not proved and place is not None:
+        pushed: Callable[[Array], Array] = place if exact.follower.breadth is None else lambda t: np.abs(place(t))
+        ((farthest, at),) = _greatest(lambda t: pushed(t)[None], spread(exact.breaks, 2.0 * math.pi))
+        return max(farthest, 0.0), guide.reach, exact.motion.shaft_deg(at)
     if not proved:
         return None
     most = max(proved, key=lambda one: one.value + one.slack)

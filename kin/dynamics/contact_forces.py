@@ -3,6 +3,9 @@
 Contact 1 pushes the follower out by P1, contact 2 in by P2, both along its travel, or as moments about its pivot:
 P1 - P2 = F is what the cam must give. With the levers h of `kin.follower.contact_lines` a normal force is N = P/h, and
 a stiffness k along the normal is K = k h^2 along the travel.
+
+In a guide with friction P1 - P2 = F + rub (|R_near| + |R_far|), R the reactions of its ends to both contacts together.
+What the contacts yield stays the same: P1/K1 + P2/K2 is the room that the metal lacks.
 """
 
 from __future__ import annotations
@@ -34,6 +37,11 @@ class Elastic(NamedTuple):
         force: Array = -self.preload * (1.0 + self.second / self.first)
         return force
 
+    @property
+    def together(self) -> Array:
+        """Share of the stiffness along the travel that is left while both bear (n,): all of it."""
+        return np.ones_like(self.preload)
+
     def split(self, force: Array) -> Array:
         """P1 and P2 (2, n) at forces F (n,): a contact that is lost bears nothing, the other all of it."""
         share = self.first / (self.first + self.second)
@@ -41,6 +49,67 @@ class Elastic(NamedTuple):
         pair[0] = np.where(pair[1] < 0.0, force, pair[0])
         pair[1] = np.where(pair[0] < 0.0, -force, pair[1])
         pressed: Array = np.maximum(pair, 0.0)
+        return pressed
+
+
+class Guided(NamedTuple):
+    """Two contacts under preload on a stem that rubs in its guide, at n places.
+
+    elastic  both without friction
+    ends     what 1 N of P of each contact bears on the near end of the guide and the far one, N (2, 2, n)
+    rub      coefficient of friction, above 0 where the stem moves as contact 1 pushes, 0 at rest (n,)
+    """
+
+    elastic: Elastic
+    ends: Array
+    rub: Array
+
+    @property
+    def alone(self) -> Array:
+        """Share of P that friction leaves of each contact where it bears alone (2, n)."""
+        rubbing = self.rub * np.abs(self.ends).sum(axis=1)
+        shares: Array = np.array([1.0 - rubbing[0], 1.0 + rubbing[1]])
+        return shares
+
+    @property
+    def together(self) -> Array:
+        """Least share of the stiffness along the travel that friction leaves while both bear (n,); jammed at 0."""
+        ratio = self.elastic.second / self.elastic.first
+        turned = np.abs(self.ends[0] - ratio * self.ends[1]).sum(axis=0)
+        share: Array = 1.0 - np.abs(self.rub) * turned / (1.0 + ratio)
+        return share
+
+    @property
+    def loses_second(self) -> Array:
+        """Force F at which contact 2 is lost (n,)."""
+        force: Array = self.elastic.loses_second * self.alone[0]
+        return force
+
+    @property
+    def loses_first(self) -> Array:
+        """Force F, below 0, at which contact 1 is lost (n,)."""
+        force: Array = self.elastic.loses_first * self.alone[1]
+        return force
+
+    def split(self, force: Array) -> Array:
+        """P1 and P2 (2, n) at forces F (n,); not a number where the stem jams.
+
+        While both bear, P1 - P2 less friction is linear in P1 for either sign of both reactions. Friction takes the
+        signs that make it greatest: of four solutions P1 is the greatest where that opposes it, else the least.
+        """
+        ratio, most = self.elastic.second / self.elastic.first, -self.elastic.loses_first
+        solutions = []
+        for near in (-1.0, 1.0):
+            for far in (-1.0, 1.0):
+                first, second = self.rub * (near * self.ends[:, 0] + far * self.ends[:, 1])
+                solutions.append((force + most * (1.0 + second)) / (1.0 + ratio - first + ratio * second))
+        both = np.where(self.rub > 0.0, np.max(solutions, axis=0), np.min(solutions, axis=0))
+        pair = np.array([both, most - ratio * both])
+        alone = self.alone
+        pair = np.where(force > self.loses_second, [force / alone[0], np.zeros_like(force)], pair)
+        pair = np.where(force < self.loses_first, [np.zeros_like(force), -force / alone[1]], pair)
+        free = np.minimum(alone.min(axis=0), self.together) > 0.0
+        pressed: Array = np.where(free, pair, np.nan)
         return pressed
 
 

@@ -205,8 +205,8 @@ class Arrangement:
         """What figures may be taken of it.
 
         swings: two contacts on one arm; plate: faces that a linkage can carry; guided: on a stem or an arm of its own;
-        roller: round about a centre; rolling: a roller that the cam turns; stem, arm: one such contact; face,
-        stem-face: flat.
+        roller: round about a centre; rolling: a roller that the cam turns; led: on a stem; stem, arm: one such contact;
+        face, stem-face: flat.
         """
         stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > self.discs
         swings, plate = two and not stem, two and stem and flat
@@ -216,6 +216,7 @@ class Arrangement:
             "guided": not (swings or plate),
             "roller": not flat,
             "rolling": self.touch is Roller and not swings,
+            "led": stem,
             "stem": stem and not flat and not two,
             "arm": not stem and not two,
             "face": flat and not swings,

@@ -177,8 +177,8 @@ def test_every_arrangement_is_there() -> None:
 
 def test_what_an_arrangement_offers() -> None:
     assert Arrangement(Oscillating, Flat, 2).offers == {"swings"}
-    assert Arrangement(Translating, Flat, 2).offers == {"face", "plate"}
-    assert Arrangement(Translating, Roller).offers == {"roller", "guided", "stem", "rolling"}
+    assert Arrangement(Translating, Flat, 2).offers == {"face", "plate", "led"}
+    assert Arrangement(Translating, Roller).offers == {"roller", "guided", "led", "stem", "rolling"}
     assert (Arrangement(Oscillating, Flat, 2).backlash_unit, Arrangement(Oscillating, Roller, 2).backlash_unit) == (
         "deg",
         "mm",
