@@ -390,6 +390,16 @@ WALL = 3.0  # mm of metal that a shipped cam leaves around its bore
 THIN = 1.2  # where AS has the shaft near the edge
 
 
+SHOWS = {  # formats of the recipes that each show one of them, or one option of a file
+    "disc-kerf": {"dxf", "svg"},
+    "disc-laser": {"svg"},
+    "disc-shrinkage": {"dxf", "stl"},
+    "disc-step": {"step", "dxf", "csv"},
+    "disc-transient": {"dxf", "csv"},
+    "yoke-overlays": {"dxf", "html"},
+}
+
+
 def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     recipes = {path.stem: load(path) for path in SHIPPED}
     assert {f"as-figure-{n}" for n in ("1", "2a", "2b", "2c", "2d")} <= recipes.keys()
@@ -399,8 +409,17 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
         assert recipe.about
         whole = any(file.parts == "all" for file in recipe.export.files)
         kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
-        assert {file.kind for file in recipe.export.files} - {"gcode"} == kinds
+        assert SHOWS.get(recipe.name, kinds) == {file.kind for file in recipe.export.files} - {"gcode"}
     files = [file for recipe in recipes.values() for file in recipe.export.files]
+    assert {file.kind for file in files} == {"dxf", "svg", "stl", "3mf", "step", "glb", "csv", "html", "gcode"}
+    apart = [file.compensation for file in files if file.compensation is not None]
+    assert any(one.kerf for one in apart)
+    assert any(one.shrinkage for one in apart)
+    assert any(file.overlays for file in files)
+    assert [name for name, recipe in recipes.items() if recipe.cam.undercut == "trim"] == ["disc-trim"]
+    assert [name for name, recipe in recipes.items() if recipe.dynamics and recipe.dynamics.transient] == [
+        "disc-transient"
+    ]
     tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace", "forces"}
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", *tables, None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
