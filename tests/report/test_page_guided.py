@@ -220,8 +220,10 @@ def test_a_ring_has_its_metal_outside_up_to_its_outline() -> None:
     assert np.hypot(*outer.points.T) == pytest.approx(70.0)
     assert np.hypot(*opening.points.T).max() == pytest.approx(48.0, abs=1e-3)
     assert not found.scene.note
-    mark = next(s for s in body(found, "cam").shapes if s.role == "mark").rings[0].points
-    assert mark[:, 0].min() > 0.5 * opening.points[:, 0].max()
+    zero = np.concatenate([r.points for s in body(found, "cam").shapes if s.role == "zero" for r in s.rings])
+    assert zero[:, 0].min() > 0.5 * opening.points[:, 0].max()
+    assert zero[:, 0].max() == pytest.approx(70.0, abs=1e-3)
+    assert not zero[:, 1].any()
     guide = body(found, "guide").shapes[0].rings[0].points
     assert guide[:, 0].min() > outer.points[:, 0].max()
 

@@ -36,16 +36,24 @@ def cam(
 ) -> Body:
     """Return a disc of the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
 
-    A line along its own x axis shows the zero of the motion where no mark of the part does.
+    A thin dashed line along its own x axis shows the zero of the motion where no mark of the part does: a stroke would
+    look like a mark that is to be made.
     """
     hole = 0.5 * bore if bore else 0.0
     shapes = [Shape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(drawn)]
     edge = edge_ahead(drawn[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
-        mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
-        shapes.append(Shape("mark", (mark,), "zero of the motion"))
+        shapes.append(Shape("zero", dashes(first, edge, size), "zero of the motion"))
     return Body(name, "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+
+
+def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
+    """Return a dashed line along the x axis, each dash as long as a joint and the gap half of it, or nearly so."""
+    count = max(1, round((end - start) / (1.5 * size)))
+    period = (end - start) / (count - 1.0 / 3.0)  # a dash at either end
+    begins = start + period * np.arange(count)
+    return tuple(Ring.through([(x, 0.0), (x + period / 1.5, 0.0)], closed=False) for x in begins.tolist())
 
 
 def edge_ahead(ring: Ring) -> float:

@@ -22,7 +22,7 @@ LOOKS = {
     "metal": Look("metal", "metal-edge", 1.5),
     "metal upper": Look("upper", "upper-edge", 1.5, 0.55),
     "hub": Look("", "quiet", 1.2),
-    "mark": Look("", "metal-edge", 2.2),
+    "zero": Look("", "quiet", 1.0),
     "timing mark": Look("", "metal-edge", 2.2),
     "follower": Look("follower", "follower-edge", 1.5, 0.75),
     "roller": Look("ground", "follower-edge", 1.5, 0.85),
