@@ -1,4 +1,4 @@
-"""Draw docs/pictures/overview.png from the files that three shipped recipes export: `python docs/make_pictures.py`."""
+"""Draw docs/pictures/overview.png from the files that four shipped recipes export: `python docs/make_pictures.py`."""
 
 from __future__ import annotations
 
@@ -22,18 +22,20 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from camgeo.synthesis.design import Design
     from kin.follower.base import Follower
     from kin.read.drawing.dxf import Drawing
 
 ROOT = Path(__file__).parents[1]
 INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"
+PLACES = (600, 300, 300, 300)  # tenths of a degree by which each cam is turned
 
 
 def main() -> None:
     """Export, read back, draw."""
-    figure, axes = plt.subplots(2, 3, figsize=(11, 5.6), height_ratios=[3, 1.1], constrained_layout=True)
-    names = ("as-figure-2a", "shu-wu", "w-figure-9")
-    titles = ("support function, yoke", "motion law, constant breadth", "oscillating double roller")
+    figure, axes = plt.subplots(2, 4, figsize=(14, 5.4), height_ratios=[3, 1.1], constrained_layout=True)
+    names = ("disc-roller", "as-figure-2a", "shu-wu", "w-figure-9")
+    titles = ("disc cam, roller", "support function, yoke", "motion law, constant breadth", "oscillating double roller")
     for column, (name, title) in enumerate(zip(names, titles, strict=True)):
         recipe = load(ROOT / "recipes" / f"{name}.yaml")
         recipe = replace(recipe, export=replace(recipe.export, files=(recipe.export.files[0],)))
@@ -46,21 +48,20 @@ def main() -> None:
         phi = np.linspace(0.0, 2.0 * np.pi, 3601)
         error = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(drawing.contour)])
         error -= follower.intended(phi)
-        draw_mechanism(axes[0, column], drawing, follower, phi[300])
+        draw_mechanism(axes[0, column], drawing, design, phi[PLACES[column]])
         axes[0, column].set_title(title, color=INK, fontsize=11)
         draw_error(axes[1, column], np.degrees(phi), error, outcome.report)
     figure.savefig(ROOT / "docs" / "pictures" / "overview.png", dpi=110)
 
 
-def draw_mechanism(axis: Axes, drawing: Drawing, follower: Follower, phi: float) -> None:
-    """The cam as read back, its bore and its follower at one shaft angle, in the cam frame."""
+def draw_mechanism(axis: Axes, drawing: Drawing, design: Design, phi: float) -> None:
+    """The cam as read back, its holes and its follower at one shaft angle, in the cam frame."""
+    follower: Follower = design.exact.gauge
     fine = np.linspace(0.0, 2.0 * np.pi, 2001)
-    arcs = drawing.contour.as_arcs()[0]
-    points = np.stack([arcs.points(share * arcs.length) for share in np.linspace(0.0, 1.0, 33)], axis=1).reshape(-1, 2)
-    axis.fill(points[:, 0], points[:, 1], facecolor=METAL, edgecolor=INK, lw=1.2)
-    bore = drawing.holes[0]
-    radius = np.hypot(*bore.vertices[0])
-    axis.fill(radius * np.cos(fine), radius * np.sin(fine), facecolor="white", edgecolor=INK, lw=1.0)
+    for contour, face in [(drawing.contour, METAL), *((hole, "white") for hole in drawing.holes)]:
+        arcs = contour.as_arcs()[0]
+        rows = [arcs.points(share * arcs.length) for share in np.linspace(0.0, 1.0, 33)]
+        axis.fill(*np.stack(rows, axis=1).reshape(-1, 2).T, facecolor=face, edgecolor=INK, lw=1.1)
     axis.plot(0, 0, "+", color=INK, ms=7)
     if hasattr(follower, "breadth"):
         u, n = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
@@ -68,6 +69,14 @@ def draw_mechanism(axis: Axes, drawing: Drawing, follower: Follower, phi: float)
         for distance in (lift, lift - follower.breadth):
             ends = distance * u + np.outer([-1, 1], n) * 0.62 * follower.breadth
             axis.plot(ends[:, 0], ends[:, 1], color=ACCENT, lw=2)
+    elif not hasattr(follower, "transmission"):
+        contact = design.follower.contacts[0]
+        along = contact.datum + design.motion.travel(np.array([phi]), 0)[0].item()
+        u, n = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
+        centre, end = (x * u + contact.guide.offset * n for x in (along, along + 3.2 * contact.touch.radius))
+        axis.plot(*np.column_stack([centre, end]), color=ACCENT, lw=3)
+        circle = centre + contact.touch.radius * np.column_stack([np.cos(fine), np.sin(fine)])
+        axis.fill(circle[:, 0], circle[:, 1], facecolor="#f3d6cf", edgecolor=ACCENT, lw=1.2)
     else:
         law = follower.transmission
         psi = float(follower.intended(np.array([phi]))[0])

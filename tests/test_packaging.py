@@ -56,6 +56,11 @@ def test_the_citation_is_of_this_version():
     assert citation["title"] == PROJECT["project"]["name"]
     assert citation["license"] == PROJECT["project"]["license"]
     assert citation["authors"] == [{"name": "The camgeo maintainers"}]
+    # the readme's sentence says the same
+    words = (ROOT / "README.md").read_text(encoding="utf-8").partition("To cite camgeo: ")[2]
+    assert words.startswith(
+        f"The camgeo maintainers, *camgeo*, version {citation['version']}, {citation['date-released']}."
+    )
 
 
 @pytest.mark.parametrize(
