@@ -37,6 +37,20 @@ def test_the_version_stands_in_one_place():
     assert re.findall(r'^__version__ = "(.*)"$', text, re.MULTILINE) == [camgeo.__version__]
 
 
+IN_THE_ROOT = {
+    *(".ci", ".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "README.md"),
+    *("benchmarks", "camgeo", "docs", "examples", "kin", "out", "pyproject.toml", "recipes", "tests"),
+}
+
+
+def test_the_root_holds_what_it_should():
+    """A command that takes a name for a file leaves none behind that is committed unseen."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no clone, so nothing tells what belongs to it")
+    done = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert {line.partition("/")[0] for line in done.stdout.splitlines()} == IN_THE_ROOT
+
+
 def test_every_folder_of_code_is_packed():
     found = set(find_packages(ROOT, include=PROJECT["tool"]["setuptools"]["packages"]["find"]["include"]))
     modules = [path for name in ("camgeo", "kin") for path in (ROOT / name).rglob("*.py")]

@@ -127,8 +127,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--second-opinion", action="store_true", help=text)
     wing("sweep", "Many designs of one recipe, ranked; the best become recipes.", "camgeo.capabilities.sweep.command")
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
-    new.add_argument("kind", nargs="?", metavar="KIND")
-    new.add_argument("file", nargs="?", type=name_of, metavar="FILE")
+    new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
+    new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
     wing(
         "study", "Error against run time of each output form; a recipe's margins.", "camgeo.capabilities.study.command"
     )
@@ -354,20 +354,21 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 
 def _new(arguments: argparse.Namespace) -> int:
-    """Print a starter recipe, or write it where no file is yet; without a kind, print the kinds."""
-    from camgeo.recipe.starter import KINDS as STARTERS
-    from camgeo.recipe.starter import starter
+    """Print a starter recipe, or write it where no file is yet; print the kinds without one, or for a kind of cam."""
+    from camgeo.recipe.starter import TITLES, starter, starters_for
 
-    if arguments.kind is None:
-        print("\n".join(STARTERS))
+    kind: str | None = arguments.kind
+    if kind is None or (arguments.file is None and kind not in TITLES and starters_for(kind)):
+        names = tuple(TITLES) if kind is None else starters_for(kind)
+        say("\n".join(f"{name:<{max(map(len, names))}}  {TITLES[name]}" for name in names))
         return OK
     try:
-        text = starter(arguments.kind)
+        text = starter(kind)
     except ValueError as error:
         _complain(str(error))
         return WRONG
-    if arguments.file is None:
-        print(text, end="")
+    if arguments.file in {None, "-"}:
+        say(text.removesuffix("\n"))
         return OK
     try:
         with open(arguments.file, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAMS
+from camgeo.recipe.camshaft import SHAFT
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.track import OF_A_DISC
@@ -26,7 +27,8 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 class _Starter:
     """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
 
-    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown.
+    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown. A
+    starter of a camshaft has no cam.
     """
 
     title: str
@@ -102,6 +104,17 @@ _STARTERS = {
         {"kind": "roller", "radius": "8", "arm": {"length": "65", "pivot": "80"}},
     ),
     "disc-flat": _disc("a flat tappet", "30", "12", {"kind": "flat", "width": "34"}),
+    "disc-lobe": _Starter(
+        "A valve lobe for a flat tappet.",
+        "disc",
+        {
+            "base_radius": "18",
+            "follower": {"kind": "flat", "width": "27"},
+            "motion": "{lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}",
+        },
+        {"part": {"thickness": "14"}},
+        unfit=("conjugate",),
+    ),
     "disc-arm-flat": _disc(
         "a flat face on an arm, which swings", "36", "10", {"kind": "flat", "arm": {"pivot": "90", "face": "10"}}
     ),
@@ -216,9 +229,27 @@ _STARTERS = {
             },
         },
     ),
+    "camshaft": _Starter(
+        "Lobes of other recipes on one shaft: `camgeo new disc-lobe lobe.yaml` makes theirs.",
+        "",
+        {},
+        {
+            "camshaft": {
+                "shaft": {"diameter": "26", "to": "80", "bore": "8"},
+                "journals": "\n    - {z: 0, length: 15, diameter: 32}\n    - {z: 65, length: 15, diameter: 32}",
+                "lobes": (
+                    "\n    - {recipe: lobe.yaml, cylinder: 1, valve: intake, z: 20}"
+                    "\n    - {recipe: lobe.yaml, cylinder: 1, valve: exhaust, z: 45}"
+                ),
+                "engine": {"order": "[1]", "intake": "110", "exhaust": "114", "lift": "1"},
+            },
+            "export": {"tolerance": "0.005", "files": "[stl, svg, {csv: {as: events}}, html]"},
+        },
+    ),
 }
 
-KINDS = tuple(_STARTERS)
+KINDS = tuple(name for name, each in _STARTERS.items() if each.kind)  # those of cams
+TITLES = {name: each.title for name, each in _STARTERS.items()}
 
 _REST: Given = {
     "units": "mm",
@@ -229,14 +260,20 @@ _REST: Given = {
 }
 
 
+def starters_for(kind: str) -> tuple[str, ...]:
+    """Name the starters of a kind of cam, such as disc; none for another word."""
+    return tuple(name for name, each in _STARTERS.items() if each.kind and each.kind == kind)
+
+
 def starter(kind: str) -> str:
-    """Write a recipe to start from; raises ValueError for a kind that is not one of KINDS."""
+    """Write a recipe to start from; raises ValueError for a kind that is not one of TITLES."""
     if kind not in _STARTERS:
-        hint = suggestion(kind, KINDS) or f"there is {either(KINDS, 'and')}"
+        there = f"there is {either(starters_for(kind) or tuple(_STARTERS), 'and')}"
+        hint = there if starters_for(kind) else suggestion(kind, _STARTERS) or there
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = _STARTERS[kind]
     given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
-    lines = _lines(_recipe(chosen), given, "")
+    lines = _lines(_recipe(chosen) if chosen.kind else SHAFT, given, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from attacks.outcome import Attack
 from camgeo.recipe.export import KINDS
-from camgeo.recipe.starter import KINDS as STARTERS
+from camgeo.recipe.starter import TITLES as STARTERS
 
 if TYPE_CHECKING:
     from random import Random
@@ -74,7 +74,7 @@ def called(rng: Random, number: int) -> Attack:
     )
     names = [rng.choice(NAMES) for _ in range(wanted)]
     if command == "new" and names:
-        names[0] = rng.choice([*STARTERS, "disc-rollr", "", "DISC", "support "])
+        names[0] = rng.choice([*STARTERS, "disc", "disc-rollr", "", "DISC", "support "])
     if command in {"verify", "report", "check", "export"} and names:
         names[0] = rng.choice(["cam.yaml", names[0]])
     words += names

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ import pytest
 from support.cases import few
 
 from camgeo.cli.main import main
-from camgeo.recipe.starter import KINDS
+from camgeo.recipe.starter import KINDS, starter
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -148,10 +149,41 @@ def test_new_gives_a_recipe_that_passes(kind: str, tmp_path: Path) -> None:
 
 
 def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each with a line of words; a kind of cam with several starters has those of its own."""
     assert main(["new", "square"]) == 2
     assert "support" in capsys.readouterr().err
     assert main(["new"]) == 0
-    assert tuple(capsys.readouterr().out.split()) == KINDS
+    rows = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
+    assert [name for name, _ in rows] == [*KINDS, "camshaft"]
+    assert all(len(words) > 20 and words.endswith(".") for _, words in rows)
+    assert main(["new", "disc"]) == 0
+    discs = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
+    assert discs == [row for row in rows if row[0].startswith("disc-")]
+    assert len(discs) == 10
+
+
+def test_a_kind_of_several_starters_is_no_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "disc", str(tmp_path / "cam.yaml")]) == 2
+    assert "no starter for 'disc'; there is disc-roller, disc-arm, " in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_dash_is_the_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "disc-flat", "-"]) == 0
+    assert capsys.readouterr().out == starter("disc-flat")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_camshaft_to_start_from_and_its_lobe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The title of the starter says how to make the recipe of its lobes."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "camshaft", "shaft.yaml"]) == 0
+    (words,) = re.findall("`camgeo ([^`]+)`", starter("camshaft"))
+    assert main(words.split()) == 0
+    assert main(["check", "shaft.yaml"]) == 0
 
 
 def test_laws_and_schema(capsys: pytest.CaptureFixture[str]) -> None:
