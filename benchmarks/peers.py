@@ -28,9 +28,9 @@ import numpy as np
 import yaml
 from peer import PEERS
 
+from camgeo.capabilities.study.tolerance_ladder import Rung, climb
 from camgeo.common import clock
 from camgeo.recipe.loading import load, load_text
-from camgeo.capabilities.study.tolerance_ladder import Rung, climb
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
 from kin.judge.intent import Limits

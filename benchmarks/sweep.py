@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.recipe.limits import Limit
-from camgeo.recipe.loading import load_text
 from camgeo.capabilities.sweep.screen.certify import error_of
 from camgeo.capabilities.sweep.search.figures import Evaluator
 from camgeo.capabilities.sweep.search.rebuilt import recipe_with
+from camgeo.recipe.limits import Limit
+from camgeo.recipe.loading import load_text
 from camgeo.synthesis.linkage import mechanism_of
 from kin.law.sources.laws import NAMES
 

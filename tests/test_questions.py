@@ -491,8 +491,8 @@ def kinds(module: ModuleType) -> set[type]:
 def missing() -> dict[str, set[str]]:
     """Names of the kinds that the tables lack."""
     from camgeo.assembly.linked import MAKERS
-    from camgeo.report.page import linked
     from camgeo.capabilities.sweep.search.linkages import ENGINES
+    from camgeo.report.page import linked
 
     loops = kinds(four_bar) | kinds(dyad)
     wanted = {"page": (linked.MAKERS, loops), "bodies": (MAKERS, loops), "sweep": (ENGINES, kinds(four_bar))}

@@ -20,6 +20,7 @@ from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from camgeo.camshaft.events import Event, Stretch, Valves
     from camgeo.common.clock import Clock
@@ -148,15 +149,16 @@ def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
 def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[Check]:
     """Check the exact cam of each lobe, held against its own recipe's limits, and that it stands out of the shaft."""
     checks: list[Check] = []
-    told: set[str] = set()
+    judged: set[tuple[Path, float | None]] = set()
     for lobe in lobes:
-        key = str(lobe.lobe.recipe.path)
-        if key in told:
-            continue  # lobes of one recipe are one cam
-        told.add(key)
+        made = lobe.lobe.made
+        key = made.path, made.part.thickness
+        if key in judged:
+            continue  # lobes of one recipe and one length are one cam
+        judged.add(key)
         own = list(lobe.design.checks)
-        if lobe.lobe.recipe.limits:
-            own += limit_checks(lobe.lobe.recipe, lobe.design, own, [], None)
+        if made.limits:
+            own += limit_checks(made, lobe.design, own, [], None)
         own += _outside_shaft(recipe, lobe)
         checks += [replace(check, surface=lobe.lobe.name) for check in own]
     return checks

@@ -11,6 +11,7 @@ from camgeo.measures.forces import Extreme
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.running_forces import running_of
 from camgeo.measures.units import pounds
+from camgeo.recipe.dynamics import BOUNDS
 from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from kin.judge.check import Check
 from kin.numeric.angles import TURN
@@ -88,7 +89,10 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
         section["guide"] = guide
     elif extremes.reactions:
         section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in extremes.reactions.items()]
-    if extremes.pressure:
+    if extremes.pressure and running.width is not None:
+        recipe, (length, bound) = running.recipe, running.width
+        unit = "in" if recipe.units == "inch" else "mm"
+        section["width"] = {"value": length / recipe.mm, "unit": unit, "bound_by": BOUNDS[bound]}
         bearable = running.most_pressure
         section["pressure"] = [
             {"contact": name, "max": most.value, "max_at_deg": most.at_deg, "unit": "N/mm^2"}

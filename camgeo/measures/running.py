@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.recipe.dynamics import contact_width
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.measures.forces import Turn
-    from camgeo.recipe.dynamics import Dynamics
+    from camgeo.recipe.dynamics import Dynamics, Width
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
@@ -171,14 +172,21 @@ class Running(ABC):
         bodies = (self.train.material, self.train.roller_material)
         return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
 
+    @cached_property
+    def width(self) -> Width | None:
+        """Width of the contacts, and what bounds it; None where neither the recipe nor the metal has one."""
+        part = self.recipe.part
+        depth = min((one.depth for one in self.design.exact.surfaces if one.depth is not None), default=None)
+        return contact_width(self.train.width, part.thickness, part.chamfer, depth)
+
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
         """Hertz's pressure of line contacts, N/mm^2, by forces, N, and curvatures, 1/mm; None without material."""
-        train, width = self.train, self.train.width or self.recipe.part.thickness
-        if train.material is None or width is None:
+        train = self.train
+        if train.material is None or self.width is None:
             return None
         bodies = [train.material, train.roller_material or train.material]
         compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
-        pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * width * compliance))
+        pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * self.width.length * compliance))
         return pressure
 
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 MOST_LOBES = 64
 MOST_CYLINDERS = 16
+DECIMALS = 9  # of a length in mm: what sums of heights are rounded by is cut off
 ROUNDING = 1e-9  # mm: far above what sums of heights are rounded by, far below any length that is made
 LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are told
 TURN = 2.0 * math.pi
@@ -82,6 +83,12 @@ class Lobe:
     cylinder: int | None = None
     valve: str = ""
     direction: float = 0.0
+
+    @property
+    def made(self) -> Recipe:
+        """Its cam's recipe as it is made on the shaft: as long as the lobe is, and without chamfers."""
+        long = round(self.high - self.low, DECIMALS)
+        return replace(self.recipe, part=replace(self.recipe.part, thickness=long, chamfer=None))
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.common.rounding import downward
 from camgeo.motions.load_table import LOAD
 from camgeo.recipe.linkage import TURNING
+from camgeo.recipe.track import is_groove
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
+SAME = 1e-12  # share by which contacts may be wider than the metal through rounding
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
 
@@ -80,6 +82,36 @@ class Dynamics:
     width: float | None = None
     material: Material | None = None
     roller_material: Material | None = None
+
+
+class Width(NamedTuple):
+    """How long the contacts are along the shaft, mm, and what bounds that: a key of `BOUNDS`."""
+
+    length: float
+    bound: str
+
+
+BOUNDS = {
+    "width": "dynamics.width",
+    "thickness": "the part's thickness",
+    "land": "the land between the chamfers",
+    "groove": "the groove's depth",
+}
+"""What may bound the width of contacts, in words."""
+
+
+def contact_width(
+    width: float | None, thickness: float | None, chamfer: float | None = None, depth: float | None = None
+) -> Width | None:
+    """Width of contacts, mm: the least of what is stated of it and of the metal, None where nothing is.
+
+    `chamfer` runs along both edges of the part; `depth` is that of a groove, None of what goes through.
+    """
+    bounds = {"width": width, "thickness": thickness, "groove": depth}
+    if thickness is not None and chamfer is not None:
+        bounds["land"] = thickness - 2.0 * chamfer
+    lengths = [Width(length, name) for name, length in bounds.items() if length is not None]
+    return min(lengths, default=None)
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
@@ -194,7 +226,7 @@ DYNAMICS = Table(
             unit=Kind.THRUST,
             form=LOAD,
         ),
-        length("width", "width of the contacts, of which their pressure is found", default="part.thickness"),
+        length("width", "width of the contacts, of which their pressure is found", default="that of the metal"),
         Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
         Field(
             "roller_material",
@@ -259,6 +291,19 @@ def check_train(train: Values, reader: Reader) -> None:
             most = train["damping"] * MOST_DAMPING / ratio
             remedy = f"give less than {downward(most)}"
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
+
+
+def check_width(values: Values, reader: Reader) -> None:
+    """Note contacts that are wider than the metal."""
+    width, part = values.get("dynamics", {}).get("width"), values.get("part", {})
+    cam = values.get("cam", {})
+    depth = cam["track"].get("groove", {}).get("depth") if is_groove(cam) else None
+    metal = contact_width(None, part.get("thickness"), part.get("chamfer"), depth)
+    if width is not None and metal is not None and width > metal.length * (1.0 + SAME) and metal.length > 0.0:
+        most = f"{metal.length / reader.mm:.9g} {reader.units}"
+        what = f"wider than the metal: {BOUNDS[metal.bound]} is {most}"
+        remedy = f"give {most} or less, or leave it out"
+        reader.fault_at("dynamics.width", what, f"{width / reader.mm:.9g} {reader.units}", remedy)
 
 
 def check_guide(values: Values, reader: Reader) -> None:

@@ -56,7 +56,7 @@ NEEDS: dict[Needs, str] = {
     "speed": "a follower without a linkage, and dynamics.rpm",
     "stiff": "cam.preload.stiffness",
     "forces": "dynamics without stiffness",
-    "material": "dynamics.material, part.thickness or dynamics.width, and no stiffness",
+    "material": "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
     "reaction": "dynamics.guide, and no stiffness",
     "bearing": "a roller that a cam turns, and dynamics without stiffness",
     "density": "part.density, and in a sweep no linkage",
@@ -285,7 +285,7 @@ def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]
         case "forces":
             return "dynamics" in paths and "dynamics.stiffness" not in paths
         case "material":
-            wide = not paths.isdisjoint({"dynamics.width", "part.thickness"})
+            wide = not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
             return wide and "dynamics.material" in paths and there("forces", offers, paths)
         case "reaction":
             return "dynamics.guide" in paths and there("forces", offers, paths)

@@ -8,7 +8,7 @@ from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
-from camgeo.recipe.dynamics import DYNAMICS, check_guide, check_train
+from camgeo.recipe.dynamics import DYNAMICS, check_guide, check_train, check_width
 from camgeo.recipe.export import EXPORT, check_files
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
@@ -143,6 +143,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_discs(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)
+    check_width(values, reader)
     check_guide(values, reader)
     check_cutter(reader)
     check_allowance(values.get("manufacture", {}), reader)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from support.cases import examples, few
 from support.sweepers import evaluate
 
+from camgeo.capabilities.sweep.search.figures import REASONS, asked_of
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
 from camgeo.measures.figures import of_design
@@ -28,7 +29,6 @@ from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
-from camgeo.capabilities.sweep.search.figures import REASONS, asked_of
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 

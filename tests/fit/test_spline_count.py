@@ -10,6 +10,7 @@ from support.cases import few
 from support.places import RECIPES
 from support.shapes import booth
 
+from camgeo.capabilities.study.least_pieces import least_pieces, least_spline
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import spline as module
@@ -20,7 +21,6 @@ from camgeo.fit.spans import plane
 from camgeo.fit.spline import fit_spline
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load, load_text
-from camgeo.capabilities.study.least_pieces import least_pieces, least_spline
 from camgeo.synthesis.design import designed
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 

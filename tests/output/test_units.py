@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from camgeo.output import pipeline
-from camgeo.recipe.loading import load_text
 from camgeo.capabilities.study.document import document
 from camgeo.capabilities.study.margins import margins
 from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+from camgeo.output import pipeline
+from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

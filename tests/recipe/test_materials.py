@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import camgeo
 from camgeo.cli.main import main
 from camgeo.measures.running_forces import running_of
 from camgeo.output.pipeline import check
@@ -123,7 +124,8 @@ def test_a_pressure_needs_a_width() -> None:
     limits = "limits: {contact-pressure: {at_most: 0.001}}\n"
     bare = CAM.replace("MATERIAL", "material: steel").replace("part: {thickness: 12, bore: 20}\n", "")
     with pytest.raises(
-        RecipeErrors, match=r"contact-pressure needs dynamics.material, part.thickness or dynamics.width"
+        RecipeErrors,
+        match=r"contact-pressure needs dynamics.material, part.thickness, a groove's depth or dynamics.width",
     ):
         read((bare + limits).encode(), Path("cam.yaml"))
     whole = CAM.replace("MATERIAL", "material: steel")
@@ -142,3 +144,117 @@ def test_a_sweep_ranks_by_the_pressure_over_the_part_s_thickness(tmp_path: Path)
     pressures = [float(row["contact-pressure_N_per_mm2"]) for row in rows]
     assert pressures == sorted(pressures)
     assert all(0.0 < pressure < 1e4 for pressure in pressures)
+
+
+# --- over which width -------------------------------------------------------------------------------------------------
+
+DISC = """
+cam:
+  kind: disc
+  base_radius: 36
+  follower: {kind: roller, radius: 9}
+  TRACK
+  motion:
+    - {rise: 20, over: 110, law: modified-sine}
+    - {dwell: 50}
+    - {return: 20, over: 120, law: cycloidal}
+    - {dwell: 80}
+part: {PART}
+dynamics: {mass: 1, rpm: 60, SPRING, material: steelWIDTH}
+limits: {contact-pressure: {at_most: 700}}
+export: {files: [{csv: {as: forces}}]}
+"""
+GROOVE = "track: {groove: {clearance: 0.03, depth: 3}}"
+CONJUGATE = "conjugate: {radius: 9, distance: 110}"
+
+
+def disc(part: str = "thickness: 10", width: str = "", track: str = "", units: str = "") -> str:
+    spring = "load: 800" if track else "preload: 800"
+    text = DISC.replace("TRACK", track or "undercut: refuse").replace("PART", part).replace("SPRING", spring)
+    return units + text.replace("WIDTH", f", width: {width}" if width else "")
+
+
+def pressure_of(text: str) -> tuple[float, dict[str, Any]]:
+    found = check(read(text.encode(), Path("case.yaml"))).report["forces"]
+    return max(one["max"] for one in found["pressure"]), found["width"]
+
+
+@pytest.mark.parametrize(
+    ("part", "width", "track", "value", "bound"),
+    [
+        ("thickness: 10, bore: 20", "", "", 10.0, "the part's thickness"),
+        ("thickness: 10, bore: 20, chamfer: 2", "", "", 6.0, "the land between the chamfers"),
+        ("thickness: 10, bore: 20, chamfer: 2", "6", "", 6.0, "the land between the chamfers"),
+        ("thickness: 10, bore: 20, chamfer: 2", "5", "", 5.0, "dynamics.width"),
+        ("thickness: 14, bore: 20", "", GROOVE, 3.0, "the groove's depth"),
+        ("outer: 150", "", GROOVE, 3.0, "the groove's depth"),
+        ("thickness: 14, bore: 20", "", GROOVE.replace(", depth: 3", ""), 14.0, "the part's thickness"),
+        ("thickness: 14, bore: 20", "2.5", GROOVE, 2.5, "dynamics.width"),
+        ("thickness: 9, bore: 20, chamfer: 1.5", "", CONJUGATE, 6.0, "the land between the chamfers"),
+        ("bore: 20", "40", "", 40.0, "dynamics.width"),
+    ],
+)
+def test_the_width_is_the_least_of_the_metal(part: str, width: str, track: str, value: float, bound: str) -> None:
+    """The pressure goes with 1/sqrt(width): 644.44 N/mm^2 over 10 mm, so 831.97 over the land of 6."""
+    wide = disc("bore: 20", "1", track)
+    over, told = pressure_of(disc(part, width, track))
+    assert told == {"value": value, "unit": "mm", "bound_by": bound}
+    assert over == pytest.approx(pressure_of(wide)[0] / math.sqrt(value), rel=1e-9)
+
+
+def test_the_land_of_the_case() -> None:
+    report = check(read(disc("thickness: 10, bore: 20, chamfer: 2").encode(), Path("case.yaml"))).report
+    (limit,) = (one for one in report["checks"] if one["name"] == "limit:contact-pressure")
+    assert (limit["ok"], limit["value"]) == (False, pytest.approx(831.965, abs=1e-3))
+    assert pressure_of(disc("thickness: 10, bore: 20"))[0] == pytest.approx(644.437, abs=1e-3)
+
+
+def test_a_lobe_s_land_and_an_inch_recipe() -> None:
+    lobe = """units: inch
+cam:
+  kind: disc
+  base_radius: 18 mm
+  follower: {kind: flat}
+  motion: {lobe: {lift: 8.25 mm, half: 66, powers: [2, 8, 14, 20, 26]}}
+part: {thickness: 0.5, chamfer: 0.05}
+dynamics: {mass: 0.1, rpm: 60, preload: 800, material: steel}
+"""
+    value, width = pressure_of(lobe)
+    assert width == {"value": pytest.approx(0.4, rel=1e-12), "unit": "in", "bound_by": "the land between the chamfers"}
+    bare, _ = pressure_of(lobe.replace(", chamfer: 0.05", ""))
+    assert value == pytest.approx(bare * math.sqrt(0.5 / 0.4), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "most"),
+    [
+        (disc(width="40"), "wider than the metal: the part's thickness is 10 mm, given 40 mm", "10"),
+        (disc("thickness: 10, chamfer: 2", "7"), "the land between the chamfers is 6 mm, given 7 mm", "6"),
+        (disc("thickness: 14", "4", GROOVE), "the groove's depth is 3 mm, given 4 mm", "3"),
+        (disc("thickness: 9", "9.001", CONJUGATE), "the part's thickness is 9 mm, given 9.001 mm", "9"),
+    ],
+)
+def test_contacts_wider_than_the_metal(text: str, words: str, most: str) -> None:
+    with pytest.raises(RecipeErrors) as caught:
+        read(text.encode(), Path("case.yaml"))
+    (error,) = caught.value.errors
+    assert error.path == "dynamics.width"
+    assert words in str(error)
+    assert str(error).endswith(f"give {most} mm or less, or leave it out")
+    width = text.split("width: ")[1].split("}", maxsplit=1)[0]
+    for remedied in (text.replace(f"width: {width}", f"width: {most}"), text.replace(f", width: {width}", "")):
+        read(remedied.encode(), Path("case.yaml"))
+
+
+def test_a_lobe_is_as_wide_as_on_its_shaft(tmp_path: Path) -> None:
+    """Two lobes of one recipe, 5 and 20 mm long: each is held against its limit over its own length."""
+    (tmp_path / "lobe.yaml").write_text(disc("thickness: 10, chamfer: 2"), encoding="utf-8")
+    shaft = tmp_path / "shaft.yaml"
+    shaft.write_text(
+        "camshaft:\n  shaft: {diameter: 30, to: 60}\n  lobes:\n"
+        "    - {recipe: lobe.yaml, at: 0, z: 5, length: 5}\n    - {recipe: lobe.yaml, at: 90, z: 20.1, length: 20}\n",
+        encoding="utf-8",
+    )
+    report = camgeo.check(shaft)
+    values = {one["surface"]: one["value"] for one in report["checks"] if one["name"] == "limit:contact-pressure"}
+    assert list(values.values()) == pytest.approx([644.4371 * math.sqrt(10.0 / long) for long in (5.0, 20.0)], rel=1e-5)

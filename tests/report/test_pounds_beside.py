@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from camgeo.capabilities.sweep.search.ask import Ask
 from camgeo.measures.units import pounds, with_pounds
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.report.document import summary, table
 from camgeo.report.failure import headline
 from camgeo.report.page import tables
-from camgeo.capabilities.sweep.search.ask import Ask
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.recipe.loading import read
 from camgeo.capabilities.sweep.search.ask import Ask
 from camgeo.capabilities.sweep.search.figures import Evaluator
 from camgeo.capabilities.sweep.search.gather import REASON
 from camgeo.capabilities.sweep.search.job import Job
 from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
 from camgeo.capabilities.sweep.search.search import Means
+from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
     from pathlib import Path

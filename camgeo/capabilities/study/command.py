@@ -5,18 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.capabilities.study import FORMS
 from camgeo.cli.arguments import add_out, decimal
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
-from camgeo.capabilities.study import FORMS
 
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.recipe.recipe import Recipe
     from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+    from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
 REPORT, PICTURE = "study.json", "study.png"
@@ -47,11 +47,11 @@ def _seconds(text: str) -> float:
 
 def run(arguments: argparse.Namespace) -> int:
     """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
+    from camgeo.capabilities.study.document import document, table
+    from camgeo.capabilities.study.margins import margins
     from camgeo.cli.recipes import load
     from camgeo.common.errors import SurroundingsError
     from camgeo.schema.errors import RecipeErrors
-    from camgeo.capabilities.study.document import document, table
-    from camgeo.capabilities.study.margins import margins
     from camgeo.synthesis.design import designed
 
     try:

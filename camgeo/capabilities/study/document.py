@@ -5,17 +5,17 @@ from __future__ import annotations
 import platform
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
 from camgeo.measures.units import in_units
 from camgeo.report.document import aligned
-from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
 from camgeo.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.capabilities.study.margins import Margin
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
-    from camgeo.capabilities.study.margins import Margin
     from kin.judge.check import Check
 
 

@@ -14,11 +14,11 @@ import statistics
 import time
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.study.least_pieces import least_pieces
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.schema.errors import RecipeErrors
-from camgeo.capabilities.study.least_pieces import least_pieces
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Mapping
 
-    from camgeo.checks.remedies import Entry
     from camgeo.capabilities.sweep.search.ask import Ask
     from camgeo.capabilities.sweep.search.run import Listener
     from camgeo.capabilities.sweep.search.search import Means, Outcome
+    from camgeo.checks.remedies import Entry
 
 _EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
@@ -44,9 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
+    from camgeo.capabilities.sweep.search.ask import EXACT, Ask
     from camgeo.cli.recipes import load
     from camgeo.schema.errors import RecipeErrors
-    from camgeo.capabilities.sweep.search.ask import EXACT, Ask
 
     try:
         ask = Ask.of(load(arguments.recipe))
@@ -77,11 +77,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
     """Outcome, or what went wrong, and the exit status."""
-    from camgeo.common.errors import SurroundingsError
     from camgeo.capabilities.sweep.search.engines import EngineError
     from camgeo.capabilities.sweep.search.job import VersionsError
     from camgeo.capabilities.sweep.search.run import How
     from camgeo.capabilities.sweep.search.search import search
+    from camgeo.common.errors import SurroundingsError
 
     progress = Progress(ask.recipe.name, _EVERY)
     how = How(arguments.jobs, arguments.scheduler)

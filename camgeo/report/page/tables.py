@@ -205,6 +205,8 @@ def forces(report: dict[str, Any]) -> str:
     for name, one in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
             rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
+    if (width := section.get("width")) is not None:
+        rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
     rows += [
         (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
         for one in section.get("pressure", ())

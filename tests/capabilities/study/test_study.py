@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from support.places import RECIPES
 
-from camgeo.cli import main
-from camgeo.recipe.loading import load, read
 from camgeo.capabilities.study.least_pieces import least_pieces
 from camgeo.capabilities.study.margins import Margin, margins
 from camgeo.capabilities.study.tolerance_ladder import Ended, Rung, climb
+from camgeo.cli import main
+from camgeo.recipe.loading import load, read
 from camgeo.synthesis.design import designed
 
 

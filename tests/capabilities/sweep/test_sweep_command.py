@@ -20,9 +20,9 @@ from support.places import TESTS
 from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.capabilities.sweep import command as sweep
+from camgeo.capabilities.sweep.search import search
 from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
-from camgeo.capabilities.sweep.search import search
 
 FIRST = "dwell 49.7 deg, dwell-relative 24.85 deg, margin 3.83333 mm"
 RUN = """\

@@ -23,7 +23,6 @@ from support.heavy import distributed
 from support.places import TESTS
 from support.sweepers import GRID, MEANS, Aside, ask, calls, hills, job, tree
 
-from camgeo.recipe.loading import read
 from camgeo.capabilities.sweep.search import engines
 from camgeo.capabilities.sweep.search.ask import Ask
 from camgeo.capabilities.sweep.search.figures import figures
@@ -32,6 +31,7 @@ from camgeo.capabilities.sweep.search.plan import Axis, Plan
 from camgeo.capabilities.sweep.search.run import How, chunks_of, compute
 from camgeo.capabilities.sweep.search.search import search
 from camgeo.capabilities.sweep.search.store import decode
+from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
     from pathlib import Path

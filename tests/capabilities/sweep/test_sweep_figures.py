@@ -13,14 +13,14 @@ from support.cases import examples, few
 from support.sweepers import compute, evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.measures.figures import of_design
-from camgeo.recipe.loading import load_text
-from camgeo.recipe.sweep import FIGURES
 from camgeo.capabilities.sweep.search.ask import Ask
 from camgeo.capabilities.sweep.search.figures import REASONS, Evaluator
 from camgeo.capabilities.sweep.search.figures import figures as searched
 from camgeo.capabilities.sweep.search.linkages import Lengths, Support, angles, engine
 from camgeo.capabilities.sweep.search.rebuilt import recipe_with
+from camgeo.measures.figures import of_design
+from camgeo.recipe.loading import load_text
+from camgeo.recipe.sweep import FIGURES
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.linkage import mechanism_of
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank

@@ -15,9 +15,6 @@ from hypothesis import strategies as st
 from support.heavy import parquet
 from support.sweepers import GRID, MEANS, ask, hills
 
-from camgeo.common.errors import SurroundingsError
-from camgeo.recipe.limits import Limit
-from camgeo.recipe.loading import load, read
 from camgeo.capabilities.sweep.search import gather as gathering
 from camgeo.capabilities.sweep.search import outputs
 from camgeo.capabilities.sweep.search.ask import Ask
@@ -28,6 +25,9 @@ from camgeo.capabilities.sweep.search.recipes import Best, curve_of, recipe_text
 from camgeo.capabilities.sweep.search.refine import PolishError
 from camgeo.capabilities.sweep.search.run import How
 from camgeo.capabilities.sweep.search.search import search
+from camgeo.common.errors import SurroundingsError
+from camgeo.recipe.limits import Limit
+from camgeo.recipe.loading import load, read
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,11 +10,11 @@ from support.places import RECIPES
 from support.sweepers import evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.recipe.loading import load, load_text
 from camgeo.capabilities.sweep.search import refine
 from camgeo.capabilities.sweep.search.ask import Ask
 from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, recipe_with
 from camgeo.capabilities.sweep.search.refine import PolishError, output_error, polish
+from camgeo.recipe.loading import load, load_text
 from camgeo.synthesis.linkage import mechanism_of
 
 pytest.importorskip("scipy")

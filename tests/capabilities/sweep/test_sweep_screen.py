@@ -10,14 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.recipe.loading import load, load_text
-from camgeo.schema.errors import RecipeErrors
 from camgeo.capabilities.sweep.screen.certify import error_of
 from camgeo.capabilities.sweep.screen.errors import DEGREES
 from camgeo.capabilities.sweep.search.ask import EXACT, Ask
 from camgeo.capabilities.sweep.search.figures import REASONS, Evaluator, estimated
 from camgeo.capabilities.sweep.search.run import How
 from camgeo.capabilities.sweep.search.search import Means, search
+from camgeo.recipe.loading import load, load_text
+from camgeo.schema.errors import RecipeErrors
 
 MOTION = "[{rise: 20, over: 110, law: LAW}, {dwell: 50}, {to: 0, over: 120, law: LAW}, {dwell: 80}]"
 DISC = f"kind: disc, base_radius: 40, motion: {MOTION}, follower: "

@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
-from camgeo.common.errors import SurroundingsError
-from camgeo.recipe.loading import read
 from camgeo.capabilities.sweep.search import job as jobs
 from camgeo.capabilities.sweep.search import store
 from camgeo.capabilities.sweep.search.ask import Ask
@@ -21,6 +19,8 @@ from camgeo.capabilities.sweep.search.job import Job, VersionsError, result
 from camgeo.capabilities.sweep.search.plan import Axis, Plan
 from camgeo.capabilities.sweep.search.run import How, chunks_of, compute, gathered
 from camgeo.capabilities.sweep.search.store import ChunkError, Chunks, decode, encode
+from camgeo.common.errors import SurroundingsError
+from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,9 +16,9 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from camgeo.recipe.limits import Limit
     from camgeo.capabilities.sweep.search.ask import Ask
     from camgeo.capabilities.sweep.search.gather import Gathered
+    from camgeo.recipe.limits import Limit
     from kin.numeric.arrays import Array, Indices, Mask
 
     Spread = Callable[[Callable[[int], "Exact"], Sequence[int]], Iterable[tuple[int, "Exact"]]]

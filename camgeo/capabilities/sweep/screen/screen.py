@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.sweep.screen.contours import MAKERS, plate
+from camgeo.capabilities.sweep.screen.samples import Template, shot_of
+from camgeo.capabilities.sweep.search.cams import FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.recipe.figures import (
     AT_SPEED,
     BASE_RADIUS,
@@ -33,9 +36,6 @@ from camgeo.recipe.figures import (
 )
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
-from camgeo.capabilities.sweep.screen.contours import MAKERS, plate
-from camgeo.capabilities.sweep.screen.samples import Template, shot_of
-from camgeo.capabilities.sweep.search.cams import FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from kin.law.programme import IntentError
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -43,10 +43,10 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.recipe.recipe import Recipe
     from camgeo.capabilities.sweep.screen.contours import Contours
     from camgeo.capabilities.sweep.screen.samples import Sampled, Shot
     from camgeo.capabilities.sweep.search.cams import Codes
+    from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
 

@@ -6,6 +6,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.sweep.search.figures import Evaluator, Scene, asked_of, estimated
+from camgeo.capabilities.sweep.search.gather import Ranking
+from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
 from camgeo.recipe.export import Export
 from camgeo.recipe.figures import (
     AT_SPEED,
@@ -40,18 +43,15 @@ from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.errors import RecipeErrors, shown
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.yaml_source import join
-from camgeo.capabilities.sweep.search.figures import Evaluator, Scene, asked_of, estimated
-from camgeo.capabilities.sweep.search.gather import Ranking
-from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from camgeo.recipe.sweep import Axis as Varied
-    from camgeo.recipe.sweep import Sweep
     from camgeo.capabilities.sweep.search.figures import FigureTable
     from camgeo.capabilities.sweep.search.gather import Floats
+    from camgeo.recipe.sweep import Axis as Varied
+    from camgeo.recipe.sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)

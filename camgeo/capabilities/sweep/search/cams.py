@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.cams.flat_faced import is_constant_breadth
-from camgeo.recipe.loading import load_text
-from camgeo.schema.errors import RecipeErrors
 from camgeo.capabilities.sweep.search.ends import least
 from camgeo.capabilities.sweep.search.linkages import Support, angles
+from camgeo.recipe.loading import load_text
+from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from camgeo.common import workers
 from camgeo.capabilities.sweep.search.job import VersionsError, result, versions
+from camgeo.common import workers
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, NEEDS, RADIUS, SIZE, there
-from camgeo.recipe.linkage import output_slides
-from camgeo.recipe.sweep import FIGURES
-from camgeo.schema.errors import RecipeErrors
 from camgeo.capabilities.sweep.search import rebuilt
 from camgeo.capabilities.sweep.search.cams import BINDS, BROKEN, FINE, IMPOSSIBLE, REVERSES, Cams
 from camgeo.capabilities.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
 from camgeo.capabilities.sweep.search.gather import REASON
 from camgeo.capabilities.sweep.search.linkages import Lengths, angles, engine
 from camgeo.capabilities.sweep.search.windows import Samples, longest
+from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, NEEDS, RADIUS, SIZE, there
+from camgeo.recipe.linkage import output_slides
+from camgeo.recipe.sweep import FIGURES
+from camgeo.schema.errors import RecipeErrors
 from kin.linkage.loop import side_of
 from kin.numeric.records import dataclass, replace
 
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import Cam
+    from camgeo.capabilities.sweep.screen.screen import Screen
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
-    from camgeo.capabilities.sweep.screen.screen import Screen
     from kin.linkage.four_bar import Linkage
 
 Array: TypeAlias = NDArray[np.float64]

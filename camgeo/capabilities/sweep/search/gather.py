@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.recipe.limits import Limit
     from camgeo.capabilities.sweep.search.plan import Axis, Plan
+    from camgeo.recipe.limits import Limit
 
     Floats: TypeAlias = NDArray[np.float64]
 

@@ -7,26 +7,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.sweep.search.gather import MOST_ROWS
+from camgeo.capabilities.sweep.search.pictures import draw_best, draw_map
+from camgeo.capabilities.sweep.search.recipes import curve_of, loaded, recipe_text
+from camgeo.capabilities.sweep.search.table import as_csv, as_parquet, columns, with_polished
 from camgeo.files.errors import install
 from camgeo.recipe.figures import with_former
 from camgeo.recipe.sweep import FIGURES
 from camgeo.report.document import encoded
 from camgeo.report.listed import listed
-from camgeo.capabilities.sweep.search.gather import MOST_ROWS
-from camgeo.capabilities.sweep.search.pictures import draw_best, draw_map
-from camgeo.capabilities.sweep.search.recipes import curve_of, loaded, recipe_text
-from camgeo.capabilities.sweep.search.table import as_csv, as_parquet, columns, with_polished
 from camgeo.version import __version__
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.checks.remedies import Entry
     from camgeo.capabilities.sweep.search.ask import Ask, Unit
     from camgeo.capabilities.sweep.search.gather import Certificate, Gathered, Nearest
     from camgeo.capabilities.sweep.search.plan import Axis
     from camgeo.capabilities.sweep.search.recipes import Best
+    from camgeo.checks.remedies import Entry
 
 REPORT = "sweep.json"
 TABLES = ("sweep.csv", "sweep.parquet")

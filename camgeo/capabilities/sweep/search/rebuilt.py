@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from camgeo.capabilities.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.capabilities.sweep.search.linkages import angles
 from camgeo.checks.declared import BENT, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
 from camgeo.recipe.figures import FIGURES, OF_PART
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
-from camgeo.capabilities.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
-from camgeo.capabilities.sweep.search.linkages import angles
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:

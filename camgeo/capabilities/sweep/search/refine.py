@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.common.rounding import downward
 from camgeo.capabilities.sweep.screen.certify import slack
 from camgeo.capabilities.sweep.search.figures import DWELLS, Evaluator
 from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, recipe_with
+from camgeo.common.rounding import downward
 from kin.numeric.errors import KinError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.capabilities.sweep.search.ask import Ask
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
-    from camgeo.capabilities.sweep.search.ask import Ask
 
 Array: TypeAlias = NDArray[np.float64]
 

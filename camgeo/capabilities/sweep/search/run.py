@@ -10,11 +10,11 @@ import time
 from contextlib import closing
 from typing import TYPE_CHECKING, TypeAlias
 
-from camgeo.common import workers
 from camgeo.capabilities.sweep.search import engines
 from camgeo.capabilities.sweep.search.gather import gather
 from camgeo.capabilities.sweep.search.job import Job, result
 from camgeo.capabilities.sweep.search.store import ChunkError, Chunks
+from camgeo.common import workers
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from camgeo.recipe.limits import Limit
     from camgeo.capabilities.sweep.search.gather import Gathered, Ranking
+    from camgeo.recipe.limits import Limit
 
 # hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
 Listener: TypeAlias = "Callable[[str, int, int, float], None]"

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.output.output_folder import Family, RunFolder
 from camgeo.capabilities.sweep.screen.certify import certified, slack
 from camgeo.capabilities.sweep.search.engines import spread
 from camgeo.capabilities.sweep.search.job import Job
@@ -19,6 +17,8 @@ from camgeo.capabilities.sweep.search.outputs import PICTURES, REPORT, TABLES, o
 from camgeo.capabilities.sweep.search.recipes import Best, recipe_text
 from camgeo.capabilities.sweep.search.refine import PolishError
 from camgeo.capabilities.sweep.search.run import chunks_of, compute, gathered
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Family, RunFolder
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
