@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, overload
 import numpy as np
 
 from camgeo.curve.ring import centre_of, radius_of, steps_along
-from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
+from camgeo.fit.pieces import ArcSpline, Polygon
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -97,18 +97,16 @@ class Edges(Sequence[Edge]):
 
     @staticmethod
     def of(outline: Outline) -> Edges:
-        """Tell a fitted outline in plain numbers; a rational spline is not among them."""
+        """Tell a fitted outline in plain numbers."""
         if isinstance(outline, Polygon):
             at = _points(outline.vertices)
             edges: tuple[Edge, ...] = tuple(itertools.starmap(Line, zip(at, (*at[1:], at[0]), strict=True)))
         elif isinstance(outline, ArcSpline):
             edges = tuple(itertools.starmap(_piece, outline.pieces()))
-        elif isinstance(outline, BSpline):
+        else:
             start = _points(outline.beziers()[:1, 0])[0]
             knots = tuple(outline.knots.tolist())
             edges = (Spline(start, start, outline.degree, _points(outline.control), knots),)
-        else:
-            raise TypeError("a rational spline has weights, which no edge has")
         return Edges(edges, outline.bound.outward, outline.bound.inward, outline.area)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.curve.ring import centre_of, radius_of
 from camgeo.files.errors import RegionError
-from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
+from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +41,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
     """The kernel's curve of each piece of an outline at a height, and where it starts."""
     from OCP.gp import gp_Ax2, gp_Circ, gp_Dir
 
-    if isinstance(outline, BSpline | RationalSpline):
+    if isinstance(outline, BSpline):
         return _splines(outline, z)
     if isinstance(outline, Polygon):
         raise TypeError("a solid has no polygons")
@@ -76,7 +76,7 @@ def _line(start: Array, end: Array, z: float) -> Shape:
     return gp_Lin(point(start.tolist(), z), gp_Dir(*(end - start).tolist(), 0.0))
 
 
-def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
+def _splines(outline: BSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
     """Curves of a spline, cut where a knot is repeated as often as its degree: there it may have a corner."""
     from OCP.Geom import Geom_BSplineCurve
     from OCP.gp import gp_Pnt
@@ -84,8 +84,7 @@ def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, t
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
     degree, control = outline.degree, outline.control
-    weights = outline.weights if isinstance(outline, RationalSpline) else np.ones(len(control))
-    if isinstance(outline, BSpline) and not outline.clamped:
+    if not outline.clamped:
         raise ValueError("a spline must begin and end at its first control point")
     knots, number = np.unique(outline.knots, return_counts=True)
     found = []
@@ -97,18 +96,17 @@ def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, t
         often[0] = often[-1] = degree + 1
         count = int(often.sum()) - degree - 1
         start = int(number[1 : begun + 1].sum())
-        poles, shares = TColgp_Array1OfPnt(1, count), TColStd_Array1OfReal(1, count)
+        poles = TColgp_Array1OfPnt(1, count)
         for i in range(count):
             x, y = control[start + i].tolist()
             poles.SetValue(i + 1, gp_Pnt(x, y, z))
-            shares.SetValue(i + 1, float(weights[start + i]))
         places, times = TColStd_Array1OfReal(1, len(here)), TColStd_Array1OfInteger(1, len(here))
         for i in range(len(here)):
             places.SetValue(i + 1, float(here[i]))
             times.SetValue(i + 1, int(often[i]))
         begun = k
         x, y = control[start].tolist()
-        found.append((Geom_BSplineCurve(poles, shares, places, times, degree), (x, y)))
+        found.append((Geom_BSplineCurve(poles, places, times, degree), (x, y)))
     return found
 
 

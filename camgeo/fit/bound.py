@@ -4,14 +4,9 @@ from __future__ import annotations
 
 import math
 
-from kin.numeric.errors import KinError
 from kin.numeric.records import dataclass
 
 Box = tuple[float, float, float, float]
-
-
-class FormError(KinError, ValueError):
-    """A contour that cannot be written in the form asked for, with the reason."""
 
 
 @dataclass(frozen=True)

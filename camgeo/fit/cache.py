@@ -30,9 +30,9 @@ class Fits:
     @overload
     def within(self, form: str, tolerance: float) -> Outline: ...
     def within(self, form: str, tolerance: float) -> Outline:
-        """Polygon, arcs or spline within a tolerance in mm, or the exact rational spline.
+        """Polygon, arcs or spline within a tolerance in mm.
 
-        Raises ToleranceError where the tolerance cannot be held, FormError where the form cannot tell the contour.
+        Raises ToleranceError where the tolerance cannot be held.
         """
         if (form, tolerance) not in self.made:
             with self.clock.stage(f"fit {form}"):
@@ -70,10 +70,6 @@ def _exactly_fitted(form: str, contour: Curve, tolerance: float) -> Outline:
         from camgeo.fit.spline import fit_spline
 
         return fit_spline(contour, tolerance)
-    if form == "exact":
-        from camgeo.fit.exact import fit_exact
-
-        return fit_exact(contour, tolerance)
     from camgeo.fit.polygon import fit_polygon
 
     return fit_polygon(contour, tolerance)

@@ -1,4 +1,4 @@
-"""The forms in which a fitted contour is written: polygon, arcs and B-spline; `camgeo.fit.rational` has the fourth.
+"""The forms in which a fitted contour is written: polygon, arcs and B-spline.
 
 Each is a closed contour in millimetres, counter-clockwise about its inside, with the shaft at the origin. The closing
 piece, from the last point to the first, is understood for polygons and arcs; the B-spline ends where it starts. Each
@@ -14,7 +14,6 @@ import numpy as np
 
 from camgeo.curve.ring import ArcChain
 from camgeo.fit.bound import Bound
-from camgeo.fit.rational import RationalSpline
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from camgeo.fit.bound import Box
     from kin.numeric.arrays import Array
 
-__all__ = ["ArcSpline", "BSpline", "Bound", "Outline", "Polygon", "RationalSpline"]
+__all__ = ["ArcSpline", "BSpline", "Bound", "Outline", "Polygon"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +256,7 @@ class BSpline:
         return np.flatnonzero(np.diff(inside) > 0.0) + self.degree
 
 
-Outline = Polygon | ArcSpline | BSpline | RationalSpline
+Outline = Polygon | ArcSpline | BSpline
 
 
 def _numbers(what: str, array: Array, shape: tuple[int, ...]) -> None:

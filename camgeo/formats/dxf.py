@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.pieces import BSpline, Outline, Polygon, RationalSpline
+from camgeo.fit.pieces import BSpline, Outline, Polygon
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
@@ -48,7 +48,6 @@ _CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then 
 _DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
 _GUID = "{00000000-0000-0000-0000-000000000000}"
 _COMMENT = 250  # characters; R12 readers may stop at 255
-_SPLINE_DEGREE = 25  # the highest that AutoCAD takes (ActiveX reference, Spline.ElevateOrder: order 26), and others
 
 
 @dataclass(frozen=True)
@@ -101,7 +100,7 @@ def write_dxf(
     """Write what is cut or engraved, with reference geometry, as a DXF drawing with the shaft at the origin.
 
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
-    control points, knots and weights if it is rational, a circle a CIRCLE. All lengths are given in mm; the drawing's
+    control points and knots, a circle a CIRCLE. All lengths are given in mm; the drawing's
     unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top.
     `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
     comments.
@@ -211,7 +210,7 @@ def _draw_outline(space: Modelspace, outline: Outline, mm: float, layer: str) ->
     """Add a closed contour; returns the entity and its extremes in drawing units."""
     x_min, y_min, x_max, y_max = outline.box()
     box = (x_min / mm, y_min / mm, x_max / mm, y_max / mm)
-    if isinstance(outline, BSpline | RationalSpline):
+    if isinstance(outline, BSpline):
         return _draw_spline(space, outline, mm, layer), box
     if isinstance(outline, Polygon):
         points, bulges = outline.vertices / mm, np.zeros(len(outline.vertices))
@@ -238,23 +237,16 @@ def _draw_path(space: Modelspace, points: Array) -> tuple[DXFGraphic, Box]:
     return entity, (x0, y0, x1, y1)
 
 
-def _draw_spline(space: Modelspace, spline: BSpline | RationalSpline, mm: float, layer: str) -> DXFGraphic:
+def _draw_spline(space: Modelspace, spline: BSpline, mm: float, layer: str) -> DXFGraphic:
     if space.dxfversion == VERSIONS["R12"]:
         raise ValueError("DXF R12 has no splines; export arcs or a polyline, or a later version")
-    if spline.degree > _SPLINE_DEGREE:
-        raise ValueError(f"DXF splines are of degree {_SPLINE_DEGREE} at most, not {spline.degree}")
-    if isinstance(spline, BSpline):
-        short = np.flatnonzero(np.all(np.ptp(spline.beziers() / mm, axis=1) == 0.0, axis=1))
-        if short.size:
-            raise ValueError(f"span {short[0]} of the spline has no length")
+    short = np.flatnonzero(np.all(np.ptp(spline.beziers() / mm, axis=1) == 0.0, axis=1))
+    if short.size:
+        raise ValueError(f"span {short[0]} of the spline has no length")
     entity = space.add_spline(degree=spline.degree, dxfattribs={"layer": layer})
     entity.control_points = np.column_stack((spline.control / mm, np.zeros(len(spline.control))))
     entity.knots = spline.knots.tolist()
-    if isinstance(spline, RationalSpline):
-        entity.weights = spline.weights.tolist()
-        entity.dxf.flags = entity.CLOSED | entity.RATIONAL
-    else:
-        entity.dxf.flags = entity.CLOSED | (0 if spline.clamped else entity.PERIODIC)
+    entity.dxf.flags = entity.CLOSED | (0 if spline.clamped else entity.PERIODIC)
     return entity
 
 

@@ -11,7 +11,6 @@ from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError, RegionError
-from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
@@ -152,9 +151,6 @@ class Job:
             yield
         except ToleranceError as error:
             raise self.refused(request, error) from error
-        except FormError as error:
-            where = f"{self.field(request)}.{request.kind}.as"
-            raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
         except RegionError as error:
             where = "part" if not recipe.part.plain else "cam" if recipe.part.bore is None else "part.bore"
             raise recipe.error(where, f"within the tolerance, {error}") from error

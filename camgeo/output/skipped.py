@@ -17,7 +17,7 @@ Skipped = tuple[str, str]
 
 def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
     """Name what was left out of a run that was asked for these files, and say why."""
-    found = [*_files(recipe, requests, design), *_harmonics(recipe, requests, design)]
+    found = _files(recipe, requests, design)
     if recipe.dynamics is None:
         found.append(("dynamics", "dynamics is not given"))
     if not any(request.parts == "all" for request in requests):
@@ -48,24 +48,6 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
 
         left = dict.fromkeys(each for single in design.single for each in unmilled(recipe, single))
         found += [(name, f"not milled: {why}") for name, why in left]
-    return found
-
-
-def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
-    """Harmonics that exact splines go without."""
-    exact = [request for request in requests if request.as_ == "exact" and request.compensation is None]
-    if not exact:
-        return []
-    from camgeo.fit.trigonometric import polynomial_of
-
-    found = []
-    for _, contour in design.contours:
-        p = polynomial_of(contour)
-        if not p.dropped:
-            continue
-        what = f"harmonic{'s' if len(p.dropped) > 1 else ''} {', '.join(map(str, p.dropped))} of p"
-        why = f"{'they move' if len(p.dropped) > 1 else 'it moves'} the contour by less than rounding, {p.rest:.2g} mm"
-        found += [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
     return found
 
 

@@ -35,7 +35,6 @@ As: TypeAlias = Literal[
     "arcs",
     "polyline",
     "spline",
-    "exact",
     "motion",
     "contacts",
     "polar",
@@ -231,7 +230,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "what the contour is made of",
                 default="arcs",
-                choices=("arcs", "polyline", "spline", "exact"),
+                choices=("arcs", "polyline", "spline"),
             ),
             Field(
                 "version",
@@ -268,7 +267,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "what the contour is made of: cylinders and planes, or the surface that a spline sweeps",
                 default="arcs",
-                choices=("arcs", "spline", "exact"),
+                choices=("arcs", "spline"),
             ),
             _OF_SOLID,
             _TOLERANCE,
@@ -408,7 +407,7 @@ def check_files(values: Values, reader: Reader) -> None:
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
             reader.fault_at(f"{path}.step.as", "the chamfer of a spline is not a spline", f"'{request.as_}'", remedy)
-        if request.as_ in {"spline", "exact"} and request.version == "R12":
+        if request.as_ == "spline" and request.version == "R12":
             remedy = "give arcs or polyline, or a later version"
             reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)
         if request in listed[:i]:

@@ -314,7 +314,7 @@ def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
     if file["kind"] in {"stl", "3mf"}:
         return "edges"
-    words = {"arcs": "arcs", "polyline": "edges", "spline": "spans", "exact": "spans"}
+    words = {"arcs": "arcs", "polyline": "edges", "spline": "spans"}
     return words.get(file.get("as") or "", "pieces")
 
 

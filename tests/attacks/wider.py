@@ -113,7 +113,7 @@ def furnished(rng: Random, number: int) -> Attack:
     text = cam.text("FILES")
     if rng.random() < 0.5:
         text = with_motion(text, rng.choice(MOTIONS))
-    way = rng.choice(["part", "part", "set", "train", "limits", "program", "ring", "trim", "exact"])
+    way = rng.choice(["part", "part", "set", "train", "limits", "program", "ring", "trim"])
     if way == "part":
         text = text.replace("bore: 8}", "bore: 8, " + ", ".join(rng.sample(FEATURES, rng.randrange(1, 4))) + "}")
         files = rng.sample(["dxf", "svg", "stl", "3mf", "glb"], 2)

@@ -180,11 +180,6 @@ def test_no_chamfer_runs_along_corners():
     assert next(one for one in made.checks if one.name == "chamfer").ok
 
 
-def test_corners_are_no_exact_spline(tmp_path):
-    with pytest.raises(RecipeErrors, match="the contour has corners"):
-        export(recipe_of(TRIANGLE + "export: {files: [{dxf: {as: exact}}]}\n"), tmp_path)
-
-
 def test_the_cutter_swings_about_the_corners_either_way():
     contour = designed(recipe_of(FIVE)).only_surface.contour
     path = cutter_path(contour, 3.0)

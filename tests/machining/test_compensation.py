@@ -118,13 +118,6 @@ def test_a_drawing_says_what_it_is(tmp_path):
     assert bore.dxf.radius == pytest.approx(0.195)
 
 
-def test_an_exact_spline_of_a_parallel(tmp_path):
-    _, report, _ = made(tmp_path, "{dxf: {as: exact, kerf: 0.4}}", cam=FOURIER)
-    assert report["files"][0]["measured_error"] < 1e-11
-    _, report, _ = made(tmp_path, "{dxf: {as: exact, kerf: 0.4}}", cam=SUPPORT)
-    assert report["files"][0]["measured_error"] < 1e-11
-
-
 @pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the integral of (|kappa'|/(124.7 e))^(1/3) ds
 
 
-def least_pieces(form: str, curve: Curve, tolerance: float) -> float | None:
-    """Least number of pieces of a form within `tolerance` mm; None for one without a formula (an exact spline).
+def least_pieces(form: str, curve: Curve, tolerance: float) -> float:
+    """Least number of pieces of a form within `tolerance` mm; raises ValueError for a form there is not.
 
     A form's pieces are counted as the report counts them. A piece at least is counted for each smooth stretch: the
     arcs' integral vanishes on a dwell.
@@ -30,7 +30,7 @@ def least_pieces(form: str, curve: Curve, tolerance: float) -> float | None:
         return least_arcs(curve, tolerance)
     if form == "spline":
         return least_spline(curve, tolerance)
-    return None
+    raise ValueError(f"unknown form: {form}")
 
 
 def least_arcs(curve: Curve, tolerance: float) -> float:

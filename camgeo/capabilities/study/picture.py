@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     from camgeo.checks.remedies import Entry
 
-COLOURS = {"polyline": "#0072B2", "arcs": "#D55E00", "spline": "#009E73", "stl": "#CC79A7", "exact": "#E69F00"}
-MARKS = {"polyline": "o", "arcs": "s", "spline": "^", "stl": "D", "exact": "*"}
+COLOURS = {"polyline": "#0072B2", "arcs": "#D55E00", "spline": "#009E73", "stl": "#CC79A7"}
+MARKS = {"polyline": "o", "arcs": "s", "spline": "^", "stl": "D"}
 SLOPES = {"polyline": 2, "arcs": 3, "spline": 5}  # error falls as pieces to the minus this
 DOTS = 150
 

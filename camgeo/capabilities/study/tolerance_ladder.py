@@ -3,8 +3,7 @@
 Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
 it warm: the exact curve and its bounds are made once and are separated as the stages of the design. A ladder ends
 where the form cannot hold the tolerance, which is reported with the reason and what can be held, or at a run (fit,
-write and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance:
-it has one rung.
+write and judge) that takes longer than the patience that is given.
 """
 
 from __future__ import annotations
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 FIRST_EXPONENT, LAST_EXPONENT = -1, -12  # of ten: the rungs, in the recipe's unit
-EXACT_EXPONENT = -9  # the one rung of an exact spline: below what others reach, above rounding
 REPEATS = 5
 QUICK = 0.3  # seconds: longer runs are repeated twice only, and runs above SLOW once, as the first run is cold
 SLOW = 2.0
@@ -98,9 +96,7 @@ def climb(
     Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `listener` hears
     of every rung before it begins. ValueError for a form there is not.
     """
-    exact = form == "exact"
-    first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
-    for exponent in range(first, last - 1, -1):
+    for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
         if listener is not None:
             listener(f"{form} within {10.0**exponent:.0e}")
@@ -114,15 +110,14 @@ def climb(
             why = f"fit, write and judge took {rung.seconds:.3g} s, longer than {patience:.3g} s"
             yield Ended(form, tolerance / 10.0, why)
             return
-    why = "exact to rounding: the same file at every tolerance" if exact else "the ladder's last rung"
-    yield Ended(form, 10.0 ** (last - 1) * recipe.mm, why)
+    yield Ended(form, 10.0 ** (LAST_EXPONENT - 1) * recipe.mm, "the ladder's last rung")
 
 
 def request_of(form: str, tolerance: float) -> FileRequest:
     """The file that stands for a form, within a tolerance in mm; ValueError for a form there is not."""
     if form == "stl":
         return FileRequest("stl", tolerance=tolerance)
-    if form in {"polyline", "arcs", "spline", "exact"}:
+    if form in {"polyline", "arcs", "spline"}:
         return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)  # type: ignore[arg-type] # one of these
     raise ValueError(f"unknown form: {form}")
 

@@ -37,7 +37,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, Path]:
 def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict, Path]) -> None:
     found, folder = study
     assert (folder / "study.png").stat().st_size > 10_000
-    assert {end["form"] for end in found["ended"]} == {"polyline", "arcs", "spline", "exact", "stl"}
+    assert {end["form"] for end in found["ended"]} == {"polyline", "arcs", "spline", "stl"}
     stl = next(end for end in found["ended"] if end["form"] == "stl")
     assert stl["tolerance"] == pytest.approx(1e-6)
     assert "single precision" in stl["why"]
@@ -65,22 +65,6 @@ def test_pieces_against_theory(study: tuple[dict, Path]) -> None:
     assert 1.0 <= rows["spline", 6]["pieces"] / rows["spline", 6]["least_pieces"] <= 1.2
 
 
-@pytest.mark.slow
-def test_an_exact_spline_has_one_rung(study: tuple[dict, Path], tmp_path: Path) -> None:
-    found = study[0]
-    (row,) = [row for row in found["rows"] if row["form"] == "exact"]
-    assert row["ok"]
-    assert row["pieces"] == 4
-    assert row["least_pieces"] is None
-    assert row["geometry_error"] < 1e-12
-    (end,) = [end for end in found["ended"] if end["form"] == "exact"]
-    assert "the same file at every tolerance" in end["why"]
-    recipe = load(RECIPES / "reuleaux.yaml")
-    (refused,) = climb(recipe, designed(recipe), "exact", tmp_path, patience=1.0)
-    assert isinstance(refused, Ended)
-    assert "pieced together from 6 stretches" in refused.why
-
-
 def test_least_arcs_against_the_closed_form_of_a_three_lobed_cam() -> None:
     # kappa = 1/rho, ds = rho dt, rho = 25 - 16 cos 3t: the integral of (|rho'|/124.7 e)^(1/3) dt over a turn
     recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}", Path("cam.yaml"))
@@ -98,7 +82,6 @@ def test_a_dwell_counts_as_one_arc_at_least() -> None:
     contour = designed(recipe).only_surface.contour
     assert contour is not None
     assert least_pieces("arcs", contour, 1e-3) == 6.0
-    assert least_pieces("exact", contour, 1e-3) is None
 
 
 def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
