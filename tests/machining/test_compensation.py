@@ -21,7 +21,6 @@ from kin.read.files import read_drawing
 
 SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 SMALL = "cam: {kind: support, p: 1 + 0.05*cos(3*t)}\n"
-FOURIER = "cam: {kind: support, fourier: {mean: 25, cos: {3: 2}}, shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 ARC = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, arc: {radius: 70}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 3, arm: 40, delta: {cos: {1: 200}}}\n"
