@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from camgeo.api.report import Report
     from camgeo.api.run import check, export, verify
     from camgeo.recipe.recipe import Recipe
-    from camgeo.schema.errors import DeprecatedKeyWarning, RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
 
 _HOMES = {
     "Arc": "api.edges",
@@ -24,7 +24,6 @@ _HOMES = {
     "CallError": "api.errors",
     "CamgeoError": "api.errors",
     "Check": "api.check",
-    "DeprecatedKeyWarning": "schema.errors",
     "Design": "api.design",
     "Edges": "api.edges",
     "Figure": "api.check",
@@ -48,7 +47,6 @@ __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file wi
     "CallError",
     "CamgeoError",
     "Check",
-    "DeprecatedKeyWarning",
     "Design",
     "Edges",
     "Figure",

@@ -7,7 +7,8 @@ from os import PathLike
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.common.arguments import is_a, path_of
-from camgeo.recipe.loading import announced, load_order, load_silent, load_text
+from camgeo.recipe.loading import load as load_file
+from camgeo.recipe.loading import load_order, load_text
 from camgeo.recipe.recipe import Order, Recipe
 
 if TYPE_CHECKING:
@@ -25,22 +26,22 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
 
     A `str` with a line break in it is a text, any other the path of a file. A recipe that is no file and gives no
     `name` is called recipe. Raises RecipeErrors, which has every fault with line, column and remedy, and TypeError for
-    what is none of the three; warns by DeprecatedKeyWarning of each former name.
+    what is none of the three.
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
         from camgeo.schema.change import written
 
-        return announced(load_text(written(source, NAME), NAME, NAME))
+        return load_text(written(source, NAME), NAME, NAME)
     if isinstance(source, str) and ("\n" in source or "\r" in source):
-        return announced(load_text(source, NAME))
-    return announced(load_silent(path_of("source", source)))
+        return load_text(source, NAME)
+    return load_file(path_of("source", source))
 
 
 def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:
     """Give a recipe of a cam or of a camshaft, read from its file where its path is given; raises as `load` does."""
     if isinstance(recipe, (str, PathLike)):
-        return announced(load_order(path_of("recipe", recipe)))
+        return load_order(path_of("recipe", recipe))
     is_a("recipe", recipe, Order, "a Recipe or the path of one")
     return recipe
 
@@ -48,4 +49,4 @@ def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:
 def recipe_of(recipe: RecipeSource) -> Recipe:
     """Give a recipe, read from its file where its path is given; raises as `load` does."""
     is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
-    return recipe if isinstance(recipe, Recipe) else announced(load_silent(path_of("recipe", recipe)))
+    return recipe if isinstance(recipe, Recipe) else load_file(path_of("recipe", recipe))

@@ -291,7 +291,6 @@ TABLE = Table(
             Kind.POINT,
             "place [x, y] of the shaft in the axes in which p is written",
             default="[0, 0]",
-            formerly="pivot",
         ),
         UNDERCUT,
         PRELOAD,

@@ -17,7 +17,6 @@ from camgeo.recipe.figures import (
     BACKLASH_LEFT,
     CONTACT_TRAVEL,
     FIGURES,
-    FORMER,
     LAW_ERROR,
     LEAST_WALL,
     PITCH_RADIUS,
@@ -91,7 +90,7 @@ class Declared:
     `remedy` says what would let it hold, empty where nothing would or where the check itself says it. `backlash` is
     whether it concerns what is left between contour and follower, `between` whether of a pair of discs it is made
     once, of the last of their files; `in_frame` whether under a linkage it concerns the cam in its frame alone, its
-    place being the relative angle then. `formerly` is its former name.
+    place being the relative angle then.
     """
 
     name: str
@@ -105,7 +104,6 @@ class Declared:
     backlash: bool = False
     between: bool = False
     in_frame: bool = False
-    formerly: str = ""
 
     def place(self, recipe: Recipe, file: str | None) -> str:
         """Give the recipe's field on which it hangs most."""
@@ -311,7 +309,7 @@ def _motion_lost(scene: Scene) -> str:
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
 
 CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder)
-PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, formerly=RADIUS)
+PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder)
 BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
 UNDERCUT_GLOBAL = Declared(
@@ -324,7 +322,6 @@ RATIO = Declared(
     _named(VELOCITY_RATIO),
     why_not=_no_swing,
     remedy=remedies.smaller_swing,
-    formerly=FORMER[VELOCITY_RATIO],
 )
 LAW = Declared(LAW_ERROR, ("deg",), _named(LAW_ERROR), field="cam.delta.harmonics", remedy=remedies.more_harmonics)
 PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
@@ -338,7 +335,7 @@ BREADTH = Declared(
     in_frame=True,
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
-TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate, formerly=FORMER[CONTACT_TRAVEL])
+TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate)
 FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
 JAM = Declared("guide-jam", ("deg", "mm"), _guided, field="dynamics.guide")
 WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
@@ -435,7 +432,6 @@ LEAST_BACKLASH = Declared(
     ("mm", "deg", "N"),
     _loose,
     lambda scene, file: _loose(scene) and _run_with(scene, file),
-    formerly=FORMER[BACKLASH_LEFT],
 )
 
 # --- a second opinion on files ----------------------------------------------------------------------------------------
@@ -477,10 +473,9 @@ def _of_figure(name: str, figure: Figure) -> Declared:
             return _driven(scene, file) if figure.needs == "linkage" else _contour(scene, file)
         return False
 
-    former = LIMIT + FORMER[name] if name in FORMER else ""
     # the check itself says what would do
     between = name == BACKLASH
-    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", between=between, formerly=former)
+    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", between=between)
 
 
 LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}

@@ -197,9 +197,9 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
-    from camgeo.cli.recipes import load
     from camgeo.cli.watch import watch
     from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
@@ -240,14 +240,15 @@ def _loaded(
 
     Those others come second, by their place in the call, as a list of reports has them.
     """
-    from camgeo.cli.recipes import load_any, unmade
+    from camgeo.cli.recipes import unmade
+    from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
     recipes: list[Recipe | CamshaftRecipe] = []
     refused: dict[int, Entry] = {}
     for i, path in enumerate(paths):
         try:
-            recipe = load_any(path)
+            recipe = load_order(path)
             if only and not any(request.kind in only for request in recipe.export.files):
                 raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
         except RecipeErrors as errors:
@@ -319,14 +320,14 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
-    from camgeo.cli.recipes import load_any
     from camgeo.common.errors import SurroundingsError
+    from camgeo.recipe.loading import load_order
     from camgeo.report.document import encoded
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
     try:
-        recipe = _at(load_any(arguments.recipe), arguments.tolerance)
+        recipe = _at(load_order(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         second = arguments.second_opinion

@@ -1,36 +1,17 @@
-"""Recipes for a command: read from their files, with a line on standard error for each former name in them."""
+"""Recipes of one command: which go into the same folder, and what is said of one that came to no report."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from camgeo.common.terminal import complain, escaped
-from camgeo.recipe.loading import load_order, load_silent
+from camgeo.common.terminal import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from os import PathLike
 
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.recipe.recipe import Order
     from camgeo.schema.errors import RecipeError
-
-
-def load(path: str | PathLike[str]) -> Recipe:
-    """Read a recipe, and say which former names it has; raises RecipeErrors as `camgeo.recipe.loading` does."""
-    recipe = load_silent(path)
-    for notice in recipe.notices:
-        complain(str(notice))
-    return recipe
-
-
-def load_any(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
-    """Read the recipe of a cam or of a camshaft in the same way."""
-    recipe = load_order(path)
-    for notice in recipe.notices:
-        complain(str(notice))
-    return recipe
 
 
 def in_one_folder(recipes: Sequence[Order]) -> list[str]:

@@ -53,7 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     With `--json` one recipe gives its page.json, several a list of theirs.
     """
-    from camgeo.cli.recipes import in_one_folder, load
+    from camgeo.cli.recipes import in_one_folder
+    from camgeo.recipe.loading import load
     from camgeo.report.document import encoded
     from camgeo.schema.errors import RecipeErrors
 

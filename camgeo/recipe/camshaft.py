@@ -255,8 +255,6 @@ def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
         path=path,
         text=source.text,
         marks=reader.marks,
-        renamed=reader.renamed,
-        notices=tuple(reader.notices),
         kinds=reader.kinds,
     )
     return _built(values, document)

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.arguments import is_a, number_of, path_of
 from camgeo.common.errors import SurroundingsError
-from camgeo.recipe.keys import RECIPE
 from camgeo.schema.errors import RecipeError, RecipeErrors
-from camgeo.schema.fields import present
-from camgeo.schema.yaml_source import Source, as_written
+from camgeo.schema.yaml_source import Source
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -25,16 +23,13 @@ if TYPE_CHECKING:
 class Document:
     """A recipe as written: `path` is where it was read, `text` what stands there.
 
-    `marks` are the places of the fields given, `renamed` the paths as written of those given by a former key, `notices`
-    what is to be said of those, `kinds` those of its mappings that have one. `unplaced` names in errors a text that
-    stands in no file, whose lines nobody has seen; empty where lines count.
+    `marks` are the places of the fields given, `kinds` those of its mappings that have one. `unplaced` names in errors
+    a text that stands in no file, whose lines nobody has seen; empty where lines count.
     """
 
     path: Path
     text: str = field(default="", repr=False, compare=False)
     marks: collections.abc.Mapping[str, Mark] = field(default_factory=dict, repr=False, compare=False)
-    renamed: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
-    notices: tuple[RecipeError, ...] = field(default=(), repr=False, compare=False)
     kinds: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
     unplaced: str = field(default="", repr=False, compare=False)
 
@@ -56,7 +51,7 @@ class Document:
 
     def locate(self, path: str) -> tuple[int, int]:
         """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
-        path = self.written(path)  # which refuses what is no text
+        is_a("path", path, str, "a str")
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
@@ -64,21 +59,11 @@ class Document:
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
         """Make the error that a later stage raises about a field, with the field's place in the file."""
         line, column = self.locate(path)
-        error = RecipeError(str(self.path), line, column, self.written(path), problem, value, remedy)
+        error = RecipeError(str(self.path), line, column, path, problem, value, remedy)
         return RecipeErrors([error.without_place(self.unplaced) if self.unplaced else error])
 
-    def written(self, path: str) -> str:
-        """Give a path as the recipe has it, with a former key where one stands."""
-        is_a("path", path, str, "a str")
-        return as_written(path, self.renamed)
-
-    def present(self, path: str) -> str:
-        """Give the path of a field of cam or linkage with present keys in the place of former ones."""
-        is_a("path", path, str, "a str")
-        return present(RECIPE, path, self.kinds)
-
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
-        """Give the recipe's text with other numbers by their paths, by former keys or present ones.
+        """Give the recipe's text with other numbers by their paths.
 
         Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
         """
@@ -88,7 +73,7 @@ class Document:
         for path in values:
             is_a("values: a path", path, str, "a str")
         numbers = {path: number_of(f"values[{path!r}]", value) for path, value in values.items()}
-        return with_values(self.text, {self.written(self.present(path)): value for path, value in numbers.items()})
+        return with_values(self.text, numbers)
 
     def source(self) -> Source:
         """Read the text as a tree."""
@@ -98,12 +83,8 @@ class Document:
         """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
         from camgeo.schema.change import changed
 
-        text, given = self.text, dict[str, str]()
+        text = self.text
         for path, value in values.items():
             is_a("path", path, str, "a str")
-            there = self.written(self.present(path))
-            if there in given:
-                raise self.error(there, f"the same field as {given[there]}", None, "give it one value")
-            given[there] = path
-            text = changed(Source.of(text, str(self.path)), there, value)
+            text = changed(Source.of(text, str(self.path)), path, value)
         return text

@@ -12,7 +12,7 @@ from camgeo.recipe.track import is_groove
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.motions.load_table import LoadTable
@@ -195,12 +195,7 @@ DYNAMICS = Table(
             at_most=_MOST,
             unit=Kind.THRUST,
         ),
-        replace(
-            length(
-                "backlash", "clearance between the cam and the two faces or rollers that hold it, in place of a spring"
-            ),
-            formerly="play",
-        ),
+        length("backlash", "clearance between the cam and the two faces or rollers that hold it, in place of a spring"),
         Field(
             "rate",
             Kind.NUMBER,
@@ -279,9 +274,8 @@ def check_train(train: Values, reader: Reader) -> None:
     _check_spring(train, reader)
     _check_coupler(train, reader)
     if "backlash" in train and "rate" in train:
-        key = reader.written("dynamics.backlash").removeprefix("dynamics.")
-        remedy = f"give preload in place of {key}, or leave the rate out"
-        reader.fault_at("dynamics.rate", f"a spring rate beside {key}", None, remedy)
+        remedy = "give preload in place of backlash, or leave the rate out"
+        reader.fault_at("dynamics.rate", "a spring rate beside backlash", None, remedy)
     if "backlash" in train and "linkage" in reader.marks:
         remedy = "give preload: clearance in the joints of a linkage is not modelled"
         reader.fault_at("dynamics.backlash", "backlash at the cam under a linkage", None, remedy)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
+from typing import Literal, TypeAlias, TypeVar
 
 from camgeo.schema.fields import Kind
 from kin.numeric.records import dataclass
-
-if TYPE_CHECKING:
-    import collections.abc
-
 
 Value = TypeVar("Value")
 
@@ -81,18 +77,6 @@ LAW_ERROR = "law-error"
 
 
 BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
-
-
-FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
-"""Former names of renamed figures: in this version they are read, and written beside the present ones."""
-
-
-PRESENT = {former: name for name, former in FORMER.items()}
-
-
-def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]:
-    """Give values by figures, and behind them those of renamed figures by their former names."""
-    return {**values, **{FORMER[name]: value for name, value in values.items() if name in FORMER}}
 
 
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"

@@ -13,7 +13,6 @@ from camgeo.recipe.figures import (
     NEEDS,
     ON_RETURN,
     ON_RISE,
-    PRESENT,
     PRESSURE_ANGLE,
     there,
 )
@@ -105,21 +104,14 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
         return None
     given = entries(node)
     limits = []
-    former = dict(field.former_choices)
-    for word, key in keys(node).items():
-        name, below = former.get(word, word), join(path, word)
-        if name != word:
-            reader.notice(key.mark, reader.written(below), name)
-            if name in given:
-                reader.fault(key.mark, below, f"the former name of {name}, which is given too", None, "leave it out")
-                continue
-            reader.renamed[join(path, name)] = below
+    for name, key in keys(node).items():
+        below = join(path, name)
         if name not in field.choices:
             known = tuple(here for here in of_recipe(reader) if here in field.choices)
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
-        value = given[word]
+        value = given[name]
         if field is LIMITS and name in AT_LIFT and isinstance(value, Sequence):
             for i, item in enumerate(reader.items(_bounded(field, name), value, below, MOST_LIFTS)):
                 own = _read_limit(reader, field, name, item, join(below, i))
@@ -167,8 +159,6 @@ def _limits_schema(field: Field) -> Schema:
     for name in AT_LIFT if field is LIMITS else ():  # one lift, or a list of them
         item = limits[name]
         limits[name] = {**item, "type": ["object", "array"], "items": item, "minItems": 1, "maxItems": MOST_LIFTS}
-    for former, name in field.former_choices:
-        limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}
 
 
@@ -186,7 +176,6 @@ LIMITS = Field(
     "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
     default="none",
     choices=tuple(FIGURES),
-    former_choices=tuple(PRESENT.items()),
     form=FORM,
 )
 

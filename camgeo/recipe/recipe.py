@@ -113,7 +113,7 @@ class Recipe(Order):
         """Give the recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
 
         Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
-        in the text stays, comments and former keys included. Raises RecipeErrors for a path that leads nowhere, and
+        in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and
         where the new recipe has faults; TypeError for a path that is no text.
         """
         is_a("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
@@ -164,8 +164,7 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
             recipe = read(data, path)
         except RecipeErrors as errors:
             raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
-        notices = tuple(notice.without_place(unplaced) for notice in recipe.notices)
-        return replace(recipe, notices=notices, unplaced=unplaced)
+        return replace(recipe, unplaced=unplaced)
     return of_source(read_source(data, str(path)), path)
 
 
@@ -202,8 +201,6 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         path=Path(path),
         text=source.text,
         marks=reader.marks,
-        renamed=reader.renamed,
-        notices=tuple(reader.notices),
         kinds=reader.kinds,
     )
     return _built(values, document)

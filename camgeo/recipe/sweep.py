@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES as EVERY
-from camgeo.recipe.figures import NEEDS, PRESENT, there
+from camgeo.recipe.figures import NEEDS, there
 from camgeo.recipe.limits import FORM, Limit, build_limits
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import (
@@ -20,7 +20,6 @@ from camgeo.schema.fields import (
     Kind,
     Table,
     field_at,
-    present,
 )
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, is_empty, join, scalars
@@ -71,9 +70,6 @@ FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
 """The figures that a sweep knows."""
 
 
-_FORMER = tuple((former, name) for former, name in PRESENT.items() if name in FIGURES)
-
-
 def _range_of(unit: Kind | None) -> Table:
     """Give the table of a range of numbers of some kind."""
     steps = "number of values, both ends included; for a grid"
@@ -115,14 +111,13 @@ def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Value
 
 def _varied(reader: Reader, path: str) -> Kind:
     """Say what the number at a path is, whose unit its values may carry; a length where the path itself is at fault."""
-    path = present(reader.root, path, reader.kinds)
     field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
     return Kind.LENGTH if field is None else field.unit or field.kind
 
 
 def _words(reader: Reader, node: Node, path: str, place: str) -> tuple[str, ...]:
     """Give the words of a list for a field that holds one; none where it is no such list, or no such field."""
-    if not isinstance(node, Sequence) or present(reader.root, path, reader.kinds) in reader.numbers:
+    if not isinstance(node, Sequence) or path in reader.numbers:
         return ()
     if path not in dict(scalars(reader.source.root)):
         return ()
@@ -179,7 +174,6 @@ SWEEP = (
         "figures that a design must keep within bounds",
         default="none",
         choices=tuple(FIGURES),
-        former_choices=_FORMER,
         form=FORM,
     ),
     Field(
@@ -188,7 +182,6 @@ SWEEP = (
         "figure by which the designs are ranked",
         required=True,
         choices=tuple(FIGURES),
-        former_choices=_FORMER,
     ),
     Field("keep", Kind.INTEGER, "number of best designs that become recipes", default="10", at_least=1, at_most=1000),
     Field(
@@ -210,16 +203,11 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
     """Note the faults of a sweep that was read."""
     _figures(sweep, reader)
     axes: list[Values] = sweep.get("vary", [])
-    design = [reader.written(path) for path in reader.numbers if path.startswith(_VARIED)]
+    design = [path for path in reader.numbers if path.startswith(_VARIED)]
     counts = Counter(id(scalar) for _, scalar in scalars(reader.source.root))
     shared = {path for path, scalar in scalars(reader.source.root) if counts[id(scalar)] > 1}
-    varied: dict[str, str] = {}
     for axis in axes:
-        path = _as_written(axis, reader)
-        if path in varied:  # a former key and the present one lead to the same number
-            reader.fault_at(axis["at"], f"varies the same number as {varied[path]}", None, "leave one of the two out")
-            continue
-        varied[path] = axis["path"]
+        path = axis["path"]
         if "words" in axis and path.startswith(_VARIED) and path not in shared:
             _listed(axis, reader)
         elif path not in design and not (path in shared and "words" in axis):
@@ -242,14 +230,6 @@ def _listed(axis: Values, reader: Reader) -> None:
             reader.fault_at(f"{axis['at']}[{i}]", "listed twice", shown(word), "leave one of the two out")
 
 
-def _as_written(axis: Values, reader: Reader) -> str:
-    """Give the path of an axis as the number itself has it, and take notice of a former key in it."""
-    found = present(reader.root, axis["path"], reader.kinds)
-    if found != axis["path"]:
-        reader.notice(reader.marks[axis["at"]], axis["path"].partition("[")[0], found.partition("[")[0])
-    return reader.written(found)
-
-
 def _figures(sweep: Values, reader: Reader) -> None:
     limits: list[Values] = sweep.get("limits", [])
     asked = [(limit["at"], limit["figure"]) for limit in limits]
@@ -265,11 +245,11 @@ def _figures(sweep: Values, reader: Reader) -> None:
 
 def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
     """Say why there is nothing to vary at a path."""
-    path, at = _as_written(axis, reader), axis["at"]
+    path, at = axis["path"], axis["at"]
     if any(error.path == path for error in reader.errors):  # a number, but a faulty one
         return
     such = f", such as {design[0]}" if design else ""
-    if path in map(reader.written, reader.numbers):
+    if path in reader.numbers:
         reader.fault_at(at, "no figure of a design depends on it", None, f"vary numbers of cam and linkage{such}")
     elif path in reader.marks:
         within = next((one for one in design if one.startswith((f"{path}.", f"{path}["))), None)
@@ -299,7 +279,7 @@ def _is_absent(path: str, reader: Reader) -> bool:
 def _values(axis: Values, reader: Reader) -> None:
     """Note values that the field itself would refuse."""
     path, at = axis["path"], axis["at"]
-    field = reader.numbers[present(reader.root, path, reader.kinds)]
+    field = reader.numbers[path]
     whole = field.kind is Kind.INTEGER
     if "values" in axis:
         given = {f"{at}[{i}]": value for i, value in enumerate(axis["values"])}

@@ -6,7 +6,6 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
-from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units, pounds
@@ -114,8 +113,6 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
     if (other := pounds(recipe.units, unit)) is not None and value is not None:
         name, many = other
         entry["pounds"] = {"value": value * many, "limit": None if limit is None else limit * many, "unit": name}
-    if check.name in EVERY and EVERY[check.name].formerly:
-        entry["formerly"] = EVERY[check.name].formerly
     if check.file is not None:
         entry["file"] = check.file
     if check.surface:

@@ -26,7 +26,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
         ("remedy", remedy(check, report, recipe)),
-        ("recipe", f"{place} {recipe.written(field)}"),
+        ("recipe", f"{place} {field}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 

@@ -146,9 +146,6 @@ def _file(recipe: Recipe, name: str, verdict: LinkageVerdict) -> dict[str, Any]:
         "centred": _error(recipe, verdict.centred),
         "backlash_across": _backlash(recipe, verdict.play_across),
         "backlash_along": _backlash(recipe, verdict.play_along),
-        # by their former names too, in this version
-        "play_across": _backlash(recipe, verdict.play_across),
-        "play_along": _backlash(recipe, verdict.play_along),
         "shaft_rate": verdict.least_rate,
     }
 

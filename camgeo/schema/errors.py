@@ -65,10 +65,6 @@ class RecipeErrors(KinError):  # noqa: N818 - it carries several errors
         return "\n".join(map(str, self.errors))
 
 
-class DeprecatedKeyWarning(FutureWarning):
-    """A recipe has a former name of a key or of a figure, which a coming version no longer reads."""
-
-
 def shown(text: str) -> str:
     """Quote a text for an error, shortened, with nothing in it that could disturb a terminal."""
     return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")

@@ -1,8 +1,7 @@
 """What a schema of a recipe is made of: fields and tables of fields, with their bounds.
 
 The tables themselves stand in the topics above this room. They are data: recipes are read and checked by them,
-`json_schema` publishes them, `starter` turns them into comments. A key that was renamed is read
-under its former name for one version, with a notice: `formerly` of its field is all that says so.
+`json_schema` publishes them, `starter` turns them into comments.
 """
 
 from __future__ import annotations
@@ -95,10 +94,7 @@ class Form(Generic[R]):
 
 @dataclass(frozen=True)
 class Field:
-    """One key of a table. Bounds are in the recipe's own units and degrees, as written.
-
-    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one.
-    """
+    """One key of a table. Bounds are in the recipe's own units and degrees, as written."""
 
     name: str
     kind: Kind
@@ -117,8 +113,6 @@ class Field:
     unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
     form: Form[Any] | None = None  # of a field of Kind.OWN
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
-    formerly: str = ""
-    former_choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def noun(self) -> str:
@@ -199,11 +193,6 @@ class Table:
         """The keys."""
         return tuple(item.name for item in self.fields)
 
-    @property
-    def former(self) -> Mapping[str, str]:
-        """The present key of each former one."""
-        return {item.formerly: item.name for item in self.fields if item.formerly}
-
     def field(self, name: str) -> Field:
         """Find a field by its key, which must be one of the table's."""
         return next(item for item in self.fields if item.name == name)
@@ -228,30 +217,18 @@ def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
     """Find the field at a path such as `cam.shaft[0]`, whichever entry of a list it is in, or None.
 
     `kinds` says which kind each mapping with kinds is of; one that it does not name may be of any. An entry of points,
-    numbers and harmonics has the field of the whole. Former keys are found as present ones.
+    numbers and harmonics has the field of the whole.
     """
-    return _walked(root, path, kinds)[0]
-
-
-def present(root: Table, path: str, kinds: Mapping[str, str]) -> str:
-    """Give a path with its present keys in the place of former ones, as far as fields are found along it."""
-    return _walked(root, path, kinds)[1]
-
-
-def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | None, str]:
-    """Find the field at a path, or None, and what the path is with present keys."""
     table: Table | None = root
     field: Field | None = None
-    parts = path.split(".")
-    for k, part in enumerate(parts):
+    for part in path.split("."):
         name, bracket, index = part.partition("[")
         if re.fullmatch(r"([0-9]+\]\[)*[0-9]+\]", index) is None and bracket:
-            return None, path
+            return None
         if field is not None and field.kind is Kind.HARMONICS:
-            return (field if name.isdecimal() else None), ".".join(parts)
-        if table is None or (name := table.former.get(name, name)) not in table.keys:
-            return None, ".".join(parts)
-        parts[k] = name + bracket + index
+            return field if name.isdecimal() else None
+        if table is None or name not in table.keys:
+            return None
         field = table.field(name)
         tables = field.form.tables if field.form else None
         instead = field.form.instead if field.form else None
@@ -262,7 +239,7 @@ def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | N
             table = tables.get(kinds[field.name])
         else:
             table = Table(tuple(item for each in tables.values() for item in each.fields))
-    return field, ".".join(parts)
+    return field
 
 
 def elsewhere(root: Table, name: str, here: Table) -> str:
@@ -272,11 +249,11 @@ def elsewhere(root: Table, name: str, here: Table) -> str:
         return f"it belongs under {either(below)}"
     if name in root.keys:
         return "it belongs at the top level"
-    plain = tuple(item.name for item in root.fields if item.table and name in (*item.table.keys, *item.table.former))
+    plain = tuple(item.name for item in root.fields if item.table and name in item.table.keys)
     places = [either(plain)] if plain else []
     of_group: dict[str, list[str]] = {}
     for group, kind, table in _grouped(root):
-        if name in (*table.keys, *table.former):
+        if name in table.keys:
             of_group.setdefault(group, []).append(kind)
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:

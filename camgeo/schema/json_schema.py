@@ -54,32 +54,25 @@ def table_schema(table: Table) -> Schema:
         "type": "object",
         "properties": {
             **{field.name: _field(field) for field in table.fields},
-            **{former: _deprecated(table.field(name)) for former, name in table.former.items()},
         },
         "additionalProperties": False,
     }
     if required := [field.name for field in table.fields if field.required]:
         found["required"] = required
     if table.alternatives:
-        former = {name: former for former, name in table.former.items()}
         names = [name for name, _ in table.alternatives]
-        names += [former[name] for name in names if name in former]
         found["oneOf"] = [_alternative(table, name) for name in names]
         if table.optional:
             found["oneOf"].append({"required": [], "properties": dict.fromkeys(sorted(names), False)})
     return found
 
 
-def _deprecated(field: Field) -> Schema:
-    return {**_kind(field), "description": f"former name of {field.name}", "deprecated": True}
-
-
 def _alternative(table: Table, chosen: str) -> Schema:
     """One alternative with its companions, and no other alternative's."""
     companions = dict(table.alternatives)
-    with_it = (chosen, *companions[table.former.get(chosen, chosen)])
+    with_it = (chosen, *companions[chosen])
     every = {name for key, names in companions.items() for name in (key, *names)}
-    others = {*every, *(former for former, name in table.former.items() if name in every)} - set(with_it)
+    others = every - set(with_it)
     return {"required": list(with_it), "properties": dict.fromkeys(sorted(others), False)}
 
 
@@ -103,9 +96,7 @@ def _kind(field: Field) -> Schema:
         case Kind.RATIO:
             return {"anyOf": [{"type": "integer", "minimum": 2}, {"type": "string", "pattern": _RATIO}]}
         case Kind.CHOICE:
-            words: Schema = {"enum": list(field.choices)}
-            former = {"enum": [former for former, _ in field.former_choices], "deprecated": True}
-            return {"anyOf": [words, former]} if field.former_choices else words
+            return {"enum": list(field.choices)}
         case Kind.POINT:
             return {"type": "array", "items": number_schema(unit=Kind.LENGTH), "minItems": 2, "maxItems": 2}
         case Kind.PAIR:

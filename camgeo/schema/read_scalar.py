@@ -40,9 +40,6 @@ def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | No
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
-    if present := dict(field.former_choices).get(scalar.text):
-        reader.notice(node.mark, reader.written(f"{path}: {scalar.text}"), present)
-        return present
     remedy = suggestion(scalar.text, field.choices, NEARER if field.others else NEAR)
     remedy = remedy or field.others or reader.wanted(field)
     reader.fault(node.mark, path, "not one of the choices", shown(scalar.text), remedy)

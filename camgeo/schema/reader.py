@@ -14,11 +14,9 @@ from camgeo.schema.yaml_source import (
     Mapping,
     Scalar,
     Sequence,
-    as_written,
     described,
     entries,
     is_empty,
-    is_within,
     join,
     keys,
 )
@@ -53,10 +51,9 @@ class Reader:
     """Reads one recipe; what it has found grows as it does.
 
     `root` is the table of the whole recipe. `errors`; `marks` of every field given and `numbers`, the fields of every
-    number given, by path; `renamed`, the paths as written of fields given by a former key, by their present paths, and
-    `notices` of those. All paths are present ones, but those in errors and notices, which are as written. Further what
-    decides how other fields read, which whoever reads the recipe finds first: its unit, the `kinds` of its mappings
-    with kinds, the kinds of field that hold an angle, and what figures its cam offers.
+    number given, by path. Further what decides how other fields read, which whoever reads the recipe finds first: its
+    unit, the `kinds` of its mappings with kinds, the kinds of field that hold an angle, and what figures its cam
+    offers.
     """
 
     def __init__(self, source: Source, readers: Readers, root: Table) -> None:
@@ -65,8 +62,6 @@ class Reader:
         self.root = root
         self.errors: list[RecipeError] = []
         self.marks: dict[str, Mark] = {}
-        self.renamed: dict[str, str] = {}
-        self.notices: list[RecipeError] = []
         self.numbers: dict[str, Field] = {}
         self.units = "mm"
         self.mm = 1.0
@@ -78,21 +73,11 @@ class Reader:
 
     def fault(self, mark: Mark, path: str, problem: str, value: str | None = None, remedy: str = "") -> None:
         """Note a fault."""
-        self.errors.append(RecipeError(self.source.file, *mark, self.written(path), problem, value, remedy))
+        self.errors.append(RecipeError(self.source.file, *mark, path, problem, value, remedy))
 
     def fault_at(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> None:
         """Note a fault of a field that was given."""
         self.fault(self.marks[path], path, problem, value, remedy)
-
-    def written(self, path: str) -> str:
-        """Give a path as the recipe has it, with a former key where one stands."""
-        return as_written(path, self.renamed)
-
-    def notice(self, mark: Mark, path: str, present: str) -> None:
-        """Note a former name that is read all the same, once for each."""
-        if all(notice.path != path for notice in self.notices):
-            problem = "a former name, read in this version alone"
-            self.notices.append(RecipeError(self.source.file, *mark, path, problem, None, f"write {present}"))
 
     def wanted(self, field: Field) -> str:
         """Say what would do for a field, with its unit: `give a length above 0 in mm`."""
@@ -143,7 +128,7 @@ class Reader:
 
     def table(self, table: Table, node: Mapping, path: str) -> Values:
         """Read a mapping's fields, each by its own kind; refuse what is unknown, missing or in each other's way."""
-        given = self._by_present_keys(table, node, path)
+        given = entries(node)
         self._refuse_unknown(table, node, path)
         self._refuse_alternatives(table, given, node, path)
         values: Values = {}
@@ -156,22 +141,6 @@ class Reader:
             elif field.required:
                 self.fault(node.mark, below, "missing", None, f"{self.wanted(field)}: {field.about}")
         return values
-
-    def _by_present_keys(self, table: Table, node: Mapping, path: str) -> dict[str, Node]:
-        """Give the values of a mapping by present keys, and take notice of former ones."""
-        given = entries(node)
-        for former, name in table.former.items():
-            if former not in given:
-                continue
-            mark, old, new = keys(node)[former].mark, self.written(join(path, former)), join(path, name)
-            if name in given:
-                self.fault(mark, old, f"the former name of {name}, which is given too", None, "leave it out")
-                continue
-            self.notice(mark, old, name)
-            self.renamed[new] = old
-            self.marks |= {new + at[len(old) :]: mark for at, mark in self.marks.items() if is_within(at, old)}
-            given[name] = given.pop(former)
-        return given
 
     def field(self, field: Field, node: Node, path: str) -> Any:  # noqa: ANN401 - settled by the field's kind
         """Read one field, or None where it is faulty."""
@@ -186,7 +155,7 @@ class Reader:
         known = table.keys
         for name, key in keys(node).items():
             below = join(path, name)
-            if name in known or name in table.former:
+            if name in known:
                 continue
             if name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
@@ -224,7 +193,7 @@ class Reader:
 
     def _key(self, path: str, name: str) -> str:
         """Name a key of a mapping as the recipe does."""
-        return self.written(join(path, name)).rpartition(".")[2]
+        return join(path, name).rpartition(".")[2]
 
     # --- kinds that several readers share ----------------------------------------------------------------------------
 

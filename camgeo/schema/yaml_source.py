@@ -18,7 +18,6 @@ from camgeo.schema.errors import RecipeError, RecipeErrors, shown
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    import collections.abc
     from collections.abc import Iterator
 
 MAX_BYTES = 1_000_000
@@ -164,14 +163,6 @@ def join(path: str, key: str | int) -> str:
 def is_within(path: str, outer: str) -> bool:
     """Tell whether a path is another or lies below it."""
     return path == outer or path.startswith((f"{outer}.", f"{outer}["))
-
-
-def as_written(path: str, renamed: collections.abc.Mapping[str, str]) -> str:
-    """Put the paths as written in the place of the present ones in `renamed`."""
-    for new, old in renamed.items():
-        if is_within(path, new):
-            return old + path[len(new) :]
-    return path
 
 
 def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:

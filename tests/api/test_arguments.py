@@ -79,8 +79,6 @@ def surface() -> Functions:
         "Recipe.replace": (recipe.replace, {"path": "name", "value": "other"}),
         "Recipe.save": (recipe.save, {"path": "saved.yaml"}),
         "Recipe.locate": (recipe.locate, {"path": "cam.kind"}),
-        "Recipe.written": (recipe.written, {"path": "cam.kind"}),
-        "Recipe.present": (recipe.present, {"path": "cam.kind"}),
         "Recipe.error": (recipe.error, {"path": "cam.kind"}),
         "Recipe.text_with": (recipe.text_with, {"values": {"verify.angles": 30}}),
         "Design.motion": (design.motion, {"theta": 0.5, "derivative": 1}),

@@ -99,7 +99,6 @@ def test_former_bases_are_kept() -> None:
     assert issubclass(CurveError, ValueError)
     assert issubclass(MissingExtraError, ImportError)
     assert issubclass(UnsettledError, ArithmeticError)
-    assert issubclass(camgeo.DeprecatedKeyWarning, Warning)
 
 
 def test_errors_of_a_call_can_be_pickled() -> None:

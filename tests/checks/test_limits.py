@@ -21,7 +21,7 @@ from camgeo.cli.main import main
 from camgeo.measures.figures import of_design
 from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
-from camgeo.recipe.figures import FIGURES, PRESENT
+from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.starter import KINDS, starter
@@ -394,8 +394,7 @@ def test_what_would_do_does(text: str, name: str, bound: str, said: str, change:
 
 def test_the_schema_knows_every_limit() -> None:
     schema = json_schema(RECIPE)["properties"]["limits"]
-    assert set(schema["properties"]) == {*FIGURES, *PRESENT}
-    assert all(schema["properties"][former]["deprecated"] for former in PRESENT)
+    assert set(schema["properties"]) == set(FIGURES)
     assert schema["additionalProperties"] is False
     more = {"pressure-angle": {"on_return"}, **{f"peak-{one}-at-speed": {"rpm"} for one in ("velocity", "jerk")}}
     more["peak-acceleration-at-speed"] = {"rpm"}

@@ -49,8 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
     from camgeo.capabilities.study.document import document, table
     from camgeo.capabilities.study.margins import margins
-    from camgeo.cli.recipes import load
     from camgeo.common.errors import SurroundingsError
+    from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import designed
 

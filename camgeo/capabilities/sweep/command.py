@@ -10,11 +10,9 @@ from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
-from camgeo.recipe.figures import PRESENT
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Mapping
 
     from camgeo.capabilities.sweep.search.ask import Ask
     from camgeo.capabilities.sweep.search.run import Listener
@@ -45,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
     from camgeo.capabilities.sweep.search.ask import EXACT, Ask
-    from camgeo.cli.recipes import load
+    from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
     try:
@@ -147,7 +145,7 @@ def _summary(report: Entry, folder: Path) -> str:
         value = _value(report, rank, best["figures"][rank])
         return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
     reasons = [_stuck(report)] if counts["not_turning"] else []
-    reasons += [f"{number:,} break the limit of {figure}" for figure, number in _by_figure(counts["failing"]) if number]
+    reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
     near = _nearest(report) if report["nearest"] is not None else ""
     return f"{report['recipe']}: no design is within the limits, of {looked}: {', '.join(reasons)}{near}; {folder}"
 
@@ -161,11 +159,6 @@ def _nearest(report: Entry) -> str:
     values = ", ".join(f"{path} {_as_told(value)}" for path, value in near["values"].items())
     figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
     return f"; nearest: {values}, with {figure} where {asked} is required"
-
-
-def _by_figure(values: Mapping[str, Number]) -> list[tuple[str, Number]]:
-    """Give values by figures without their former names, under which a report has them too."""
-    return [(name, value) for name, value in values.items() if name not in PRESENT]
 
 
 def _stuck(report: Entry) -> str:
@@ -187,11 +180,11 @@ def _table(report: Entry) -> str:
     """The counts and the first of the best designs."""
     counts = report["counts"]
     lines = [f"  {_stuck(report)}"]
-    lines += [f"  {number:,} break the limit of {figure}" for figure, number in _by_figure(counts["failing"])]
+    lines += [f"  {number:,} break the limit of {figure}" for figure, number in counts["failing"].items()]
     if counts["rows"] < counts["kept"]:
         lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
     for design in report["best"][:_SAID]:
         values = ", ".join(f"{path} {_as_told(value)}" for path, value in design["values"].items())
-        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in _by_figure(design["figures"]))
+        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in design["figures"].items())
         lines.append(f"  {design['file']}: {values}\n    {figures}")
     return "\n".join(lines)

@@ -70,7 +70,7 @@ class Cams:
         linear = cam.linear
         place = linear.shaft if linear is not None else (0.0, 0.0)
         of_cam = ("cam.", "linkage.") if cam.by_linkage else "cam."
-        columns = {recipe.present(path): column for column, path in enumerate(paths) if path.startswith(of_cam)}
+        columns = {path: column for column, path in enumerate(paths) if path.startswith(of_cam)}
         shaft = tuple((columns.pop(f"cam.shaft[{i}]", None), place[i]) for i in (0, 1))
         terms = []
         for path in list(columns):

@@ -12,7 +12,6 @@ from camgeo.capabilities.sweep.search.pictures import draw_best, draw_map
 from camgeo.capabilities.sweep.search.recipes import curve_of, loaded, recipe_text
 from camgeo.capabilities.sweep.search.table import as_csv, as_parquet, columns, with_polished
 from camgeo.files.errors import install
-from camgeo.recipe.figures import with_former
 from camgeo.recipe.sweep import FIGURES
 from camgeo.report.document import encoded
 from camgeo.report.listed import listed
@@ -169,24 +168,22 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
             "count": ask.plan.count,
             "seed": None if sweep.method == "grid" else sweep.seed,
             "angles": sweep.angles,
-            "limits": with_former(bounds),
+            "limits": bounds,
             "rank": sweep.rank,
             "best": FIGURES[sweep.rank].best,
             "keep": sweep.keep,
             "refine": sweep.refine,
         },
-        "figures": with_former(
-            {
-                name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in designs.figures}
-                for name in FIGURES
-                if name in designs.figures or any(name in design.figures for design in best)
-            }
-        ),
+        "figures": {
+            name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in designs.figures}
+            for name in FIGURES
+            if name in designs.figures or any(name in design.figures for design in best)
+        },
         "counts": {
             "computed": counts.computed,
             "not_turning": counts.not_turning,
             "reasons": {reasons[number]: count for number, count in counts.reasons},
-            "failing": with_former(dict(counts.failing)),
+            "failing": dict(counts.failing),
             "kept": counts.kept,
             "rows": designs.rows,
             "most_rows": MOST_ROWS,
@@ -200,7 +197,7 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
                 "index": design.index,
                 "polished": design.polished,
                 "values": ask.told(design.values),
-                "figures": with_former({name: value / units[name].divisor for name, value in design.figures.items()}),
+                "figures": {name: value / units[name].divisor for name, value in design.figures.items()},
             }
             for design in best
         ],

@@ -51,18 +51,14 @@ def with_polished(designs: Gathered, best: Sequence[Best], ranking: Ranking) -> 
 def columns(plan: Plan, designs: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
     """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
 
-    Renamed figures, and forces, whose heads had no unit, stand under their former heads too, behind all others; last
-    marks, 0 or 1.
+    Last stand marks, 0 or 1.
     """
     figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
-    former = {FORMER[name]: name for name in figures if name in FORMER}
     return {
         "place": np.arange(1, designs.rows + 1),
         "index": designs.index,
         **{axis.path: _told(axis, designs.values[:, i]) for i, axis in enumerate(plan.axes)},
         **{_head(name, units[name].name): values for name, values in figures.items()},
-        **{_head(old, units[name].name): figures[name] for old, name in former.items()},
-        **{name: values for name, values in figures.items() if units[name].name.startswith("N")},
         **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},
     }
 
