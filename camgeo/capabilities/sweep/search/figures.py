@@ -2,8 +2,8 @@
 
 Designs that differ in the place of the shaft, the lengths of a linkage and the harmonics of a cam are computed
 together, in blocks that stay in the cache; other fields of a cam cost one evaluation of its lift for each distinct cam.
-Dyads, and recipes without a linkage, are computed design by design (`camgeo.capabilities.sweep.search.rebuilt`). All is sampled at
-the recipe's `angles`, a multiple of 4, and rounded so that it does not depend on which designs are computed together.
+Dyads, and recipes without a linkage, are computed design by design (`rebuilt.py`). All is sampled at the recipe's
+`angles`, a multiple of 4, and rounded so that it does not depend on which designs are computed together.
 """
 
 from __future__ import annotations

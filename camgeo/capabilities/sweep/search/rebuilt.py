@@ -32,7 +32,7 @@ _ROUND = 720  # angles at which faces are held against the shaft
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What `camgeo.capabilities.sweep.search.linkages.LoopArrays` knows of m mechanisms at n relative angles, (m, n) each."""
+    """What `LoopArrays` (`linkages.py`) knows of m mechanisms at n relative angles, (m, n) each."""
 
     output: Array
     rate: Array
