@@ -269,12 +269,6 @@ def test_a_recipe_from_a_mapping_has_no_lines() -> None:
     assert str(caught.value) == "recipe: export.tolerance: not above 0, given -1; give a length above 0 in mm"
 
 
-def test_a_field_is_replaced_once() -> None:
-    recipe = camgeo.load("cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [4, 3]}\n")
-    with pytest.raises(camgeo.RecipeErrors, match=r"cam\.shaft\[0\]: the same field as cam\.pivot\[0\]; give it one"):
-        recipe.replace({"cam.pivot[0]": 1, "cam.shaft[0]": 2})
-
-
 def test_assertions_keep_the_rule_too(tmp_path: Path) -> None:
     path = tmp_path / "a.dxf"
     path.write_text("0\nEOF\n")

@@ -753,10 +753,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         (
             "[{dxf: {as: curves, version: R14, tolerance: 0}}]",
             [
-                (
-                    "29: export.files[0].dxf.as: not one of the choices, given 'curves'; "
-                    "give arcs, polyline, spline or exact"
-                ),
+                "29: export.files[0].dxf.as: not one of the choices, given 'curves'; give arcs, polyline or spline",
                 "46: export.files[0].dxf.version: not one of the choices, given 'R14'; give R12, R2000, R2010 or R2013",
                 f"62: export.files[0].dxf.tolerance: not above 0, given 0; {LENGTH}",
             ],
