@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from camgeo.capabilities.sweep.search.gather import MOST_ROWS
-from camgeo.recipe.figures import FORMER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
