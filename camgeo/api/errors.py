@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from camgeo.common.errors import BusyError, CallError, SurroundingsError
-from kin.numeric.errors import KinError as CamgeoError
+from kin.numeric.errors import CamgeoError
 
 __all__ = ["BusyError", "CallError", "CamgeoError", "SurroundingsError"]

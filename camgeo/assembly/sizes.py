@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward, upward
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ LINE = 0.4  # mm: one line of it, the least that any size of a body may be
 LEAST_CLEARANCE = 1e-3  # mm: no body is made finer
 
 
-class BodyError(KinError, ValueError):
+class BodyError(CamgeoError, ValueError):
     """A body that cannot be made as asked: `field` of the recipe to blame, what is wrong, and what would do.
 
     Message and remedy name lengths, mm, in braces: they are reported in the recipe's unit.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import Field, Kind
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Margin(NamedTuple):
     of: str
 
 
-class GrownError(KinError, ValueError):
+class GrownError(CamgeoError, ValueError):
     """A follower of which nothing would be left."""
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-class CallError(KinError, ValueError):
+class CallError(CamgeoError, ValueError):
     """What a function was asked for cannot be: a file that is none, an unknown form; `faults` has a line for each."""
 
     def __init__(self, *faults: str) -> None:
@@ -23,7 +23,7 @@ class CallError(KinError, ValueError):
         return "\n".join(self.faults)
 
 
-class SurroundingsError(KinError):
+class SurroundingsError(CamgeoError):
     """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
 
     def __init__(self, message: str, path: Path) -> None:

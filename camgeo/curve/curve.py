@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ MOST_CELLS = 20_000  # of the whole curve, where halving does not help: bounds s
 SHIFT = 1e-12  # relative and rad: far above the rounding by which parts of a turn are moved onto each other
 
 
-class CurveError(KinError, ValueError):
+class CurveError(CamgeoError, ValueError):
     """A curve for which no finite bound can be proved, with the parameter near which the proof fails."""
 
     def __init__(self, message: str, parameter: float) -> None:

@@ -1,13 +1,13 @@
 """What a writer refuses: a library that is not installed, a region that has no triangles."""
 
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 
-class MissingExtraError(KinError, ImportError):
+class MissingExtraError(CamgeoError, ImportError):
     """An extra of this package is not installed; the message names it and says how to get it."""
 
 
-class RegionError(KinError, ValueError):
+class RegionError(CamgeoError, ValueError):
     """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
 
 

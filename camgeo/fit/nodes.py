@@ -8,7 +8,7 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ ROUNDING_STEPS = 64.0  # a tolerance below this many units in the last place of 
 TRIES = 40
 
 
-class ToleranceError(KinError, ValueError):
+class ToleranceError(CamgeoError, ValueError):
     """A tolerance that cannot be held; `reached` is what can, in mm."""
 
     def __init__(self, message: str, reached: float) -> None:

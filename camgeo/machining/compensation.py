@@ -18,7 +18,7 @@ from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Compensated:
     checks: tuple[Check, ...]
 
 
-class NothingLeftError(KinError, ValueError):
+class NothingLeftError(CamgeoError, ValueError):
     """An opening that is no wider than what is taken from it."""
 
 

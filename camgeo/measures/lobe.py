@@ -15,7 +15,7 @@ import numpy as np
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.monotone import RoughError, between, cells, pieces
 from kin.numeric.quadrature import gauss
 
@@ -52,7 +52,7 @@ class Event(NamedTuple):
         return degrees(0.5 * (self.opening + self.closing) % TURN)
 
 
-class EventError(KinError, ValueError):
+class EventError(CamgeoError, ValueError):
     """A lift that a lobe does not cross once on either flank."""
 
 

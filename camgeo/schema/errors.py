@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class RecipeError:
         return replace(self, file=file, line=0, column=0)
 
 
-class RecipeErrors(KinError):  # noqa: N818 - it carries several errors
+class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
     """All faults of a recipe, by line; `str()` gives one line each."""
 
     errors: tuple[RecipeError, ...]

@@ -16,7 +16,7 @@ from camgeo.common.rounding import upward
 from camgeo.recipe.linkage import with_other_lengths
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.monotone import RoughError
 from kin.numeric.records import dataclass
 
@@ -121,7 +121,7 @@ def _turns(linkage: Linkage, like: Mechanism) -> bool:
         made = Mechanism(linkage.loop, like.lift, like.breadth, linkage.dyads)
         rate = made.at(np.linspace(0.0, TURN, LOOKS, endpoint=False), 1).shaft[1]  # at few places: most fail there
         return bool(rate.min() > 0.0) and made.mobility().turns
-    except (KinError, ValueError):
+    except (CamgeoError, ValueError):
         return False
 
 

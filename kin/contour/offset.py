@@ -12,7 +12,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left
 from kin.contour.contour import Contour
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ SETTLED = 1e-13  # of the size: a meeting is found to this
 SMOOTH = 1e-3  # times `fine`: what a joint's corner may move a parallel by before it counts as one
 
 
-class TightError(KinError, ValueError):
+class TightError(CamgeoError, ValueError):
     """A piece that has no parallel at the distance, with its number and a place on it."""
 
     def __init__(self, message: str, piece: int, place: tuple[float, float]) -> None:

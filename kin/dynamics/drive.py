@@ -15,7 +15,7 @@ import numpy as np
 from kin.numeric.angles import TURN
 from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted
 from kin.numeric.distinct import distinct
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ _MOST_STRETCHES = 200_000
 _CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
-class DriveError(KinError, ValueError):
+class DriveError(CamgeoError, ValueError):
     """A motion that no series follows; `at` is the shaft angle, radians."""
 
     def __init__(self, message: str, angle: float) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from kin.numeric.chebyshev import together, value
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ CALL = 100  # places that a look costs besides those it takes
 _STRIDE = 40  # places that a stride of a flight costs
 
 
-class SpentError(KinError):
+class SpentError(CamgeoError):
     """More places would be looked at than may be."""
 
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from kin.dynamics.oscillator import Free
 from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _SAMPLES = 33  # of a stretch, at least
 _SILENT = 1e-11  # a free motion below this share of all else is not sampled for
 
 
-class StiffnessError(KinError, ValueError):
+class StiffnessError(CamgeoError, ValueError):
     """More parts than can be held: the damping is so strong that one rate of decay lies far below the other."""
 
 

@@ -24,7 +24,7 @@ from kin.dynamics.oscillator import Oscillator
 from kin.dynamics.peaks import Peaks, ResponseFigure
 from kin.dynamics.response import Forcing, Response, response
 from kin.numeric.angles import TURN
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ _STRETCHES = 500  # of a turn that a damping is advised for: a file has more tha
 MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the mass hardly counts
 
 
-class DynamicsError(KinError, ValueError):
+class DynamicsError(CamgeoError, ValueError):
     """What keeps a train from having the figure that is asked for."""
 
 

@@ -17,7 +17,7 @@ from kin.contour.contour import apart
 from kin.linkage.loop import BindingError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.elementary import Jet
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.newton import zeros
 from kin.numeric.records import dataclass
 
@@ -32,7 +32,7 @@ SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in roundi
 SHORT = 1e-6  # rad: over less, the mean rate of the shaft is rounding
 
 
-class FrameError(KinError, ValueError):
+class FrameError(CamgeoError, ValueError):
     """The contour does not drive the mechanism all round; the message says at which relative angle and why."""
 
 

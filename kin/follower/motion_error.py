@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import degrees
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class Judged(NamedTuple):
     reach: Extremes | None = None
 
 
-class ContactError(KinError, ValueError):
+class ContactError(CamgeoError, ValueError):
     """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
 
     def __init__(self, message: str, angle: float) -> None:

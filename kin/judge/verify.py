@@ -20,7 +20,7 @@ from kin.judge.contour_checks import judge_contour
 from kin.judge.surfaces import SIZED, Parted, deepest, parted
 from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.places import place_text
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
@@ -51,7 +51,7 @@ OTHERS = (
 )  # what a file that states no unit may be drawn in, in mm, and what says so
 
 
-class UnitsError(KinError, ValueError):
+class UnitsError(CamgeoError, ValueError):
     """A unit was given for a file that states another one itself."""
 
 

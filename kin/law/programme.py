@@ -16,7 +16,7 @@ import numpy as np
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Alike, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.jet import finite, horner
 from kin.numeric.records import dataclass, replace
 from kin.numeric.taylor import sine_rows
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _END_TOLERANCE = 1e-12  # of a polynomial law at u = 0 and 1
 
 
-class IntentError(KinError, ValueError):
+class IntentError(CamgeoError, ValueError):
     """An intended motion that no cam can have, with the reason and the figure.
 
     `field` is the path of what is at fault below the recipe's `cam`; `at_deg` the shaft angle, if there is one.

@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.numeric.arrays import Array
 from kin.numeric.elementary import Jet, sqrt
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _CLOSE = 2.0**-15
 _STILL = 1e-30
 
 
-class BindingError(KinError, ValueError):
+class BindingError(CamgeoError, ValueError):
     """A loop that cannot be closed, or one in a limit position asked for its derivatives.
 
     `message` says by how much; `indices` (k,) are the points, out of the n asked for, at which it is so.

@@ -8,22 +8,22 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-class KinError(Exception):
-    """Base of every error that kin and camgeo raise on purpose; the library knows it as `camgeo.CamgeoError`."""
+class CamgeoError(Exception):
+    """Base of every error that kin and camgeo raise on purpose: `camgeo.CamgeoError` of the library."""
 
-    def __reduce__(self) -> tuple[Callable[..., KinError], tuple[object, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., CamgeoError], tuple[object, ...]]:
         """Travel between processes as it is: what an error is made of is not what its text is."""
         return _again, (type(self), self.args, self.__dict__)
 
 
-def _again(kind: type[KinError], args: tuple[object, ...], state: dict[str, object]) -> KinError:
+def _again(kind: type[CamgeoError], args: tuple[object, ...], state: dict[str, object]) -> CamgeoError:
     error = kind.__new__(kind, *args)
     error.args = args
     error.__dict__.update(state)
     return error
 
 
-class UnsettledError(KinError, ArithmeticError):
+class UnsettledError(CamgeoError, ArithmeticError):
     """A search that ended short of its promise: what was sought, and how far it came.
 
     `at` is the parameter near which it ended, None where there is no such place.

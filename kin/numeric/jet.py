@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 import numpy as np
 
 from kin.numeric import interval
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.interval import Ball
 from kin.numeric.taylor import (
     ball_product,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-class DomainError(KinError, ArithmeticError):
+class DomainError(CamgeoError, ArithmeticError):
     """A jet left the domain of an operation or the finite numbers.
 
     `operation` says which, in words; `indices` (k,) are the points, out of the n of the jet, at which it did.

@@ -19,7 +19,7 @@ import numpy as np
 
 from kin.numeric.bernstein import halves, restrict, rising_root, values
 from kin.numeric.distinct import distinct
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ END_MARGIN = 1e-9
 SAME = 1e-6
 
 
-class RoughError(KinError, ArithmeticError):
+class RoughError(CamgeoError, ArithmeticError):
     """A function that no polynomials follow to the resolution asked for; `at` is one of the places."""
 
     def __init__(self, place: float, resolution: float) -> None:

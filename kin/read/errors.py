@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +27,7 @@ REASONS = {
 }
 
 
-class ReadError(KinError, ValueError):
+class ReadError(CamgeoError, ValueError):
     """A file from which no contour can be read.
 
     reason      a short code, a key of REASONS

@@ -91,6 +91,13 @@ def test_every_error_has_the_one_base() -> None:
     assert [one for one in found if not issubclass(one, camgeo.CamgeoError)] == []
 
 
+def test_an_error_is_called_what_the_library_calls_it() -> None:
+    """A traceback names the class that an `except` clause takes."""
+    for name in camgeo.__all__:
+        one = getattr(camgeo, name)
+        assert not inspect.isclass(one) or one.__name__ == name
+
+
 def test_former_bases_are_kept() -> None:
     from camgeo.curve.curve import CurveError
     from camgeo.files.errors import MissingExtraError

@@ -12,13 +12,13 @@ import pytest
 import camgeo
 import kin
 from kin.law.programme import IntentError
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-def kinds(of: type[KinError]) -> Iterator[type[KinError]]:
+def kinds(of: type[CamgeoError]) -> Iterator[type[CamgeoError]]:
     yield of
     for each in of.__subclasses__():
         yield from kinds(each)
@@ -38,7 +38,7 @@ def test_every_kind_of_error() -> None:
                     importlib.import_module(found.name)
                 except ImportError:  # an extra that is not installed
                     continue
-    for kind in set(kinds(KinError)):
+    for kind in set(kinds(CamgeoError)):
         error = kind.__new__(kind, "what is wrong", 3.5)
         error.args, error.__dict__["at"] = ("what is wrong", 3.5), 3.5
         back = pickle.loads(pickle.dumps(error))
@@ -46,8 +46,8 @@ def test_every_kind_of_error() -> None:
         assert (back.args, back.__dict__["at"]) == (("what is wrong", 3.5), 3.5), kind
 
 
-@pytest.mark.parametrize("cause", [None, KinError("first")])
-def test_an_error_s_text_is_kept(cause: KinError | None) -> None:
-    error = KinError("at last")
+@pytest.mark.parametrize("cause", [None, CamgeoError("first")])
+def test_an_error_s_text_is_kept(cause: CamgeoError | None) -> None:
+    error = CamgeoError("at last")
     error.__cause__ = cause
     assert str(pickle.loads(pickle.dumps(error))) == "at last"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius, reversals
 from camgeo.curve.parallel import Parallel
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from camgeo.curve.undercut.bottleneck import Neck, OpenNeckError
 
 
-class UndercutError(KinError, ValueError):
+class UndercutError(CamgeoError, ValueError):
     """No single contour is left by trimming; `parameter` says where the reason lies, None if all round.
 
     `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it was not asked for.

@@ -14,7 +14,7 @@ import numpy as np
 
 from kin.numeric import elementary
 from kin.numeric.elementary import BallJet, DomainError, Jet
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.interval import Ball
 from kin.numeric.records import dataclass
 
@@ -56,7 +56,7 @@ GREATEST_EXPONENT = 199
 _LIBRARY = 2.0**-49  # relative error allowed to a function of an exact constant
 
 
-class FormulaError(KinError, ValueError):
+class FormulaError(CamgeoError, ValueError):
     """What is wrong with a formula: `message`, and the `column` in its text, from 0."""
 
     def __init__(self, message: str, column: int) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kin.contour.bezier import Beziers
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -19,7 +19,7 @@ LARGEST = 1e7
 LARGEST_BULGE = 1e6
 
 
-class UnfitError(KinError):
+class UnfitError(CamgeoError):
     """An entity that is no part of a plane contour: a reason out of read_error.REASONS, and what is wrong with it."""
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.capabilities.sweep.search.job import VersionsError, result, versions
 from camgeo.common import workers
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
@@ -33,7 +33,7 @@ _CHATTY = frozenset({"distributed", "tornado", "asyncio"})  # whose loggers prin
 _WORKERLESS = 6  # times as long for its first worker to come
 
 
-class EngineError(KinError):
+class EngineError(CamgeoError):
     """The chunks cannot be computed for want of something around the run; what has landed stays."""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.capabilities.sweep.search.store import encode
 from camgeo.version import __version__
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ REVISION = 3  # raised with every change of what a figure comes to, as the versi
 Compute = Callable[[Any, "NDArray[np.float64]"], Mapping[str, "NDArray[np.float64]"]]
 
 
-class VersionsError(KinError):
+class VersionsError(CamgeoError):
     """A worker would compute something else: its versions, or its reading of the recipe, are not those of the sweep."""
 
 

@@ -20,7 +20,7 @@ from camgeo.capabilities.sweep.screen.certify import slack
 from camgeo.capabilities.sweep.search.figures import DWELLS, Evaluator
 from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, recipe_with
 from camgeo.common.rounding import downward
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ _ROOM = 1.05  # times the output error of the start: that of designs near it dif
 _ROUNDS = 3  # of a search whose result has a greater output error than it was sought with
 
 
-class PolishError(KinError, ValueError):
+class PolishError(CamgeoError, ValueError):
     """A design that cannot be polished."""
 
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from camgeo.common.errors import SurroundingsError
 from camgeo.common.system import patient
-from kin.numeric.errors import KinError
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
 
-class ChunkError(KinError, ValueError):
+class ChunkError(CamgeoError, ValueError):
     """Bytes that are not the result of the chunk they are taken for."""
 
 
