@@ -20,7 +20,9 @@ from camgeo.curve.curve import Curve, CurveError
 from camgeo.curve.extremes import divided
 from camgeo.curve.measures import StarError, nearest, polar_parameters
 from camgeo.curve.undercut.causes import UndercutError
+from camgeo.formats.csv import DIGITS as PLACES
 from camgeo.machining.cutter import cutter_path
+from camgeo.recipe.export import COARSEST, FINEST
 from camgeo.synthesis.checks import hollow_radius
 from kin.judge.grinding import Grinding
 
@@ -37,7 +39,6 @@ CELLS = 16_384  # intervals of the turn over which the second derivative is boun
 SHARE = 0.99  # of the tolerance that straight joins may take, the rest being for the table's digits
 TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
 BELOW = 0.95  # of the largest wheel, with which rows need not be too close
-COARSEST, FINEST = 10.0, 1e-3  # degrees
 NOTHING = 1e-13  # of a direction or of the size: rounding about 0
 DIGITS = 5e-12  # of a length as a table has it
 
@@ -74,7 +75,7 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
         raise recipe.error(field, str(failure), None, "leave the table out") from failure
     distance = np.hypot(at.point[:, 0], at.point[:, 1])
     degrees, unit = 360.0 * np.arange(count + 1) / count, "in" if recipe.units == "inch" else "mm"
-    length = _length(2.0 * wheel.radius, recipe)
+    length = _exact_length(2.0 * wheel.radius, recipe)
     head = [f"{recipe.name}: {{}}; c_deg: direction of its centre from the shaft, as the part is drawn"]
     if request.as_ == "lift":
         zero = _zero(path)
@@ -82,7 +83,7 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
         rows = [degrees, _closed(lift / recipe.mm)]
         columns: tuple[str, ...] = ("c_deg", f"lift_{unit}")
         head[0] = head[0].format(f"lift of a roller {length} across on a stem through the shaft")
-        head.append(f"at lift 0 its centre is {_length(zero, recipe)} from the shaft")
+        head.append(f"at lift 0 its centre is {_exact_length(zero, recipe)} from the shaft")
     else:
         outward = np.where(np.abs(at.normal) < NOTHING, 0.0, at.normal)
         normal = np.mod(np.degrees(np.arctan2(turned * outward[:, 1], outward[:, 0])), 360.0)
@@ -214,3 +215,8 @@ def _closed(column: Array) -> Array:
 
 def _length(value: float, recipe: Recipe) -> str:
     return f"{value / recipe.mm:.6g} {recipe.units}"
+
+
+def _exact_length(value: float, recipe: Recipe) -> str:
+    """A length with as many digits as rows have: whoever reads the table takes it as it stands."""
+    return f"{value / recipe.mm:.{PLACES}g} {recipe.units}"

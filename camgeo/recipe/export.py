@@ -75,6 +75,9 @@ GROUND = frozenset({"grinding", "lift"})
 WHOLE = 1e-9  # rad by which steps may miss a turn
 
 
+COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one with finer ones is too large to read
+
+
 SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their own
 
 
@@ -289,8 +292,8 @@ FILES: dict[str, Table] = {
                 Kind.ANGLE,
                 "of grinding and lift, between rows; 360 degrees are a whole number of it",
                 default="the largest that holds the tolerance",
-                above=0,
-                at_most=10,
+                at_least=FINEST,
+                at_most=COARSEST,
             ),
             length("roller", "of lift, diameter of the roller on a stem through the shaft whose lift it is"),
             _OF_RECIPE,

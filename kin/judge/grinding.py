@@ -14,11 +14,13 @@ two joins meet outward the parallels are cut off where they cross, where they me
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.contour.offset import TightError, chain_of, parallel
+from kin.judge.check import Check, at_most
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.nesting import Chain
@@ -28,9 +30,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour.arcs import Arcs
+    from kin.follower.envelope import Envelope
     from kin.numeric.arrays import Array
 
-UNITS = {"mm": 1.0, "in": 25.4}
+UNITS = {"mm": 1.0, "in": 25.4, "inch": 25.4}
+COLUMNS = frozenset({"c_deg", "x_mm", "x_in", "lift_mm", "lift_in", "normal_deg"})
+WHEEL, ROLLER = re.compile(r"\bwheel (\S+) (mm|inch) across"), re.compile(r"\broller (\S+) (mm|inch) across")
+CENTRE = re.compile(r"\bcentre is (\S+) (mm|inch) from the shaft")
+ERROR = re.compile(r"\bwithin (\S+) (mm|inch) of the exact contour")
+STATED = 1e-9  # share by which a length in the head may differ: it has twelve digits
+SHORT = 1e-5  # share by which the error in the head may be short: it has six
 SHOWN = 80  # characters of a header in a message
 FULL = 1e-9  # degrees within which a table closes
 FINE = 1e-3  # of the tolerance: what pieces of the metal are left out by
@@ -53,37 +62,93 @@ class Grinding:
 
 
 class Ground(NamedTuple):
-    """What a table leaves: the contour, the unit of its lengths, mm, and by how much the contour may be off, mm."""
+    """What a table leaves, and what else it states.
+
+    chain    the contour
+    units    of the table's lengths, mm
+    off      by how much the contour may be off, mm
+    faults   what the head lacks, or states otherwise than is meant
+    error    greatest distance from the exact contour that the head states, mm; None where it states none
+    centres  of the wheel (n, 2), mm, row by row
+    normals  unit vectors (n, 2) by the column of normals; None where there is none
+    radius   of the wheel or roller, mm
+    """
 
     chain: Chain
     units: float
     off: float
+    faults: tuple[str, ...]
+    error: float | None
+    centres: Array
+    normals: Array | None
+    radius: float
 
 
 def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
     """Simulate a table of the wheel's or the roller's places; raises ReadError for what is none or grinds no lobe."""
-    angles, distance, radius, units = _rows(path, grinding)
-    loop, off = _joins(angles, distance, path)
+    table = _read(path, grinding)
+    loop, off = _joins(table.angles, table.distance, path)
     fine = FINE * tolerance
     try:
-        edge = parallel(loop, radius, fine)
+        edge = parallel(loop, table.radius, fine)
     except TightError as error:
-        told = f"the wheel of radius {radius:.6g} mm leaves no single contour: {error}"
+        told = f"the wheel of radius {table.radius:.6g} mm leaves no single contour: {error}"
         raise ReadError("open", told, path) from error
-    short = np.abs(loop.length * (1.0 - loop.curvature * radius)) <= fine
-    return Ground(Chain(edge, pieces=len(angles)), units, off + (fine if short.any() else 0.0))
+    short = np.abs(loop.length * (1.0 - loop.curvature * table.radius)) <= fine
+    off += fine if short.any() else 0.0
+    centres = table.distance[:, None] * _unit(table.angles)
+    normals = None if table.normal is None else _unit(table.normal)
+    faults, stated = _head_faults(table, grinding), min(_lengths(table.head, ERROR), default=None)
+    chain = Chain(edge, pieces=len(table.angles))
+    return Ground(chain, table.units, off, faults, stated, centres, normals, table.radius)
 
 
-def _rows(path: Path, grinding: Grinding) -> tuple[Array, Array, float, float]:
-    """Angles, rad, and distances of the centre, mm, (n,) each, without the closing row; its radius and the unit, mm."""
+def normals_check(table: Ground, envelope: Envelope, tolerance: float, *, mirrored: bool) -> Check | None:
+    """Check the column of normals: how far the places of contact that it gives lie from the exact ones, mm.
+
+    The wheel touches an exact contour where its centre has its foot. None where there is no such column.
+    """
+    if table.normals is None:
+        return None
+    drawn = np.array([1.0, -1.0 if mirrored else 1.0])
+    exact = envelope.feet(drawn * table.centres).normal
+    off = table.radius * np.hypot(*(drawn * table.normals - exact).T)
+    row = int(np.argmax(off))
+    angle = math.degrees(math.atan2(table.centres[row, 1], table.centres[row, 0])) % 360.0
+    return at_most("normals", float(off[row]), tolerance, "mm", detail=f"the worst is at c_deg = {angle:.6g}")
+
+
+def stated_check(measured: float, stated: float, tolerance: float) -> Check:
+    """Check the error that a table states against the measured one, mm, which is as fine as a tolerance asks for."""
+    return at_most("stated-error", measured, stated, "mm", slack=SHORT * stated + FINE * tolerance)
+
+
+class _Table(NamedTuple):
+    """Rows without the closing one: angles and normals, rad, and distances of the centre, mm, (n,) each.
+
+    `word` is that of the column of lengths, `head` the lines behind a #.
+    """
+
+    word: str
+    head: str
+    angles: Array
+    distance: Array
+    normal: Array | None
+    radius: float
+    units: float
+
+
+def _read(path: Path, grinding: Grinding) -> _Table:
+    """Read a table; raises ReadError."""
     try:
         lines = contents(path, "csv").decode("ascii").splitlines()
     except UnicodeDecodeError as error:
         raise ReadError("syntax", "the table is not plain text", path) from error
+    head = " ".join(line for line in lines if line.startswith("#"))
     lines = [line for line in lines if line.strip() and not line.startswith("#")]
     names = [name.strip() for name in lines[0].split(",")] if lines else []
-    kind = next((name for name in names if name.partition("_")[0] in {"x", "lift"}), "")
-    word, _, unit = kind.partition("_")
+    kinds = [name for name in names if name.partition("_")[0] in {"x", "lift"}]
+    word, _, unit = kinds[0].partition("_") if kinds else ("", "", "")
     radius = grinding.wheel if word == "x" else grinding.roller
     if "c_deg" not in names or unit not in UNITS or radius is None:
         wheel = "c_deg and x_mm or x_in with manufacture.wheel"
@@ -91,20 +156,69 @@ def _rows(path: Path, grinding: Grinding) -> tuple[Array, Array, float, float]:
         there = ", ".join(name for name in names if name)[:SHOWN] or "none"
         message = f"of a CSV the columns {wheel}, or {roller}, are judged; its columns are {there}"
         raise ReadError("unsupported", message, path)
-    columns = names.index("c_deg"), names.index(kind)
+    if len(kinds) > 1 or len(set(names)) < len(names) or not COLUMNS.issuperset(names):
+        wanted = f"c_deg, {kinds[0]} and normal_deg are read, each once"
+        raise ReadError("unsupported", f"columns {', '.join(names)[:SHOWN]}: of a table of a grinder {wanted}", path)
     try:
         rows = [line.split(",") for line in lines[1:]]
-        values = np.array([[float(row[column]) for column in columns] for row in rows], dtype=np.float64)
-    except (ValueError, IndexError) as error:
+        values = np.array([[float(cell) for cell in row] for row in rows], dtype=np.float64)
+        values = values.reshape(len(rows), len(names))
+    except ValueError as error:
         raise ReadError("syntax", f"a row is no row of {len(names)} numbers", path) from error
     if not LEAST_ROWS < len(values) <= MOST_ROWS:
         raise ReadError("range", f"the table has {len(values)} rows; {LEAST_ROWS} to {MOST_ROWS} are read", path)
-    degrees, distance = values[:, 0], UNITS[unit] * values[:, 1] + (0.0 if word == "x" else grinding.zero)
+    degrees, distance = values[:, names.index("c_deg")], UNITS[unit] * values[:, names.index(kinds[0])]
+    distance = distance + (0.0 if word == "x" else grinding.zero)
+    normal = values[:, names.index("normal_deg")] if "normal_deg" in names else None
     if not (np.isfinite(values).all() and (np.diff(degrees) > 0.0).all() and (distance > 0.0).all()):
         raise ReadError("range", "the angles must rise, and the distances be above 0", path)
-    if abs(degrees[-1] - degrees[0] - 360.0) > FULL or abs(distance[-1] - distance[0]) > FULL * distance[0]:
+    closes = abs(distance[-1] - distance[0]) <= FULL * distance[0]
+    if normal is not None:
+        closes &= abs(math.remainder(normal[-1] - normal[0], 360.0)) <= FULL
+    if abs(degrees[-1] - degrees[0] - 360.0) > FULL or not closes:
         raise ReadError("open", f"the table does not close: it covers {degrees[-1] - degrees[0]:.9g} degrees", path)
-    return np.radians(degrees[:-1]), distance[:-1], radius, UNITS[unit]
+    normal = None if normal is None else np.radians(normal[:-1])
+    return _Table(word, head, np.radians(degrees[:-1]), distance[:-1], normal, radius, UNITS[unit])
+
+
+def _unit(angles: Array) -> Array:
+    """Unit vectors (n, 2) at angles (n,), rad."""
+    return np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _head_faults(table: _Table, grinding: Grinding) -> tuple[str, ...]:
+    """What the head lacks of wheel, or roller and its centre at lift 0, and what it states otherwise than is meant."""
+    if table.word == "x":
+        wanted = [(WHEEL, "wheel", 2.0 * table.radius, "wheel {} across")]
+    else:
+        wanted = [
+            (ROLLER, "roller", 2.0 * table.radius, "roller {} across"),
+            (CENTRE, "centre at lift 0", grinding.zero, "at lift 0 its centre is {} from the shaft"),
+        ]
+    faults = []
+    for pattern, name, meant, example in wanted:
+        unit = "mm" if table.units == 1.0 else "inch"
+        length = f"{meant / table.units:.12g} {unit}"
+        stated = _lengths(table.head, pattern)
+        if not stated:
+            faults.append(f"no line states the {name}, such as `# {example.format(length)}`")
+        faults += [
+            f"the {name} is stated as {value / table.units:.9g} {unit}, {length} is expected"
+            for value in stated
+            if not abs(value - meant) <= STATED * meant
+        ]
+    return tuple(faults)
+
+
+def _lengths(head: str, pattern: re.Pattern[str]) -> list[float]:
+    """All lengths that a head states in some words, mm; nan where there is no number."""
+    lengths = []
+    for number, unit in pattern.findall(head):
+        try:
+            lengths.append(UNITS[unit] * float(number))
+        except ValueError:
+            lengths.append(math.nan)
+    return lengths
 
 
 def _joins(angles: Array, distance: Array, path: Path) -> tuple[Arcs, float]:

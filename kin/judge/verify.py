@@ -96,6 +96,10 @@ def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], ang
             )
             checks += [replace(check, surface=surface.name) for check in more]
             surfaces.append(found)
+            if file.stated_error is not None and found.measured_error is not None:
+                from kin.judge.grinding import stated_check  # tables alone state it
+
+                checks.append(stated_check(found.measured_error - file.uneven, file.stated_error, limits.tolerance))
         if part.closures:
             from kin.judge.closure import judge_closures  # most cams have one surface
 
@@ -113,6 +117,7 @@ class _Read(NamedTuple):
     """The checks on what a file holds, its surfaces and all chains in mm as if not mirrored, mm in its unit.
 
     `uneven`: by how much a solid's other sections differ from these, mm, where only rounding is behind it.
+    `stated_error`: greatest distance from the exact contour, mm, as the file itself states it.
     """
 
     checks: list[Check]
@@ -120,6 +125,7 @@ class _Read(NamedTuple):
     chains: Sequence[Chain]
     units: float
     uneven: float = 0.0
+    stated_error: float | None = None
 
 
 def _demand_same(stated: float | None, units: float | None, path: Path) -> None:
@@ -163,14 +169,17 @@ def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | Non
 
 def _of_table(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
     """Read a grinder's table, and the surface that its wheel leaves."""
-    from kin.judge.grinding import ground
+    from kin.judge.grinding import ground, normals_check
 
     if part.grinding is None or len(part.surfaces) > 1:
         raise ReadError("unsupported", "of a CSV the table that grinds a cam of one surface is judged", path)
-    made = ground(path, part.grinding, limits.tolerance)
-    _demand_same(made.units, units, path)
-    chains = scaled((made.chain,), 1.0, mirrored=part.mirrored)
-    return _Read([], tuple(chains), chains, made.units, made.off)
+    table = ground(path, part.grinding, limits.tolerance)
+    _demand_same(table.units, units, path)
+    chains = scaled((table.chain,), 1.0, mirrored=part.mirrored)
+    checks = [_count_check("head", list(table.faults))]
+    normals = normals_check(table, part.surfaces[0].gauge.envelope, limits.tolerance, mirrored=part.mirrored)
+    checks += [] if normals is None else [normals]
+    return _Read(checks, tuple(chains), chains, table.units, table.off, table.error)
 
 
 def _opening_checks(

@@ -13,12 +13,15 @@ from support.cases import examples
 from camgeo.cli.main import main
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from camgeo.formats.csv import write_table
 from camgeo.machining.grinding import greatest_bend
 from camgeo.output import pipeline
+from camgeo.recipe.export import FINEST
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from kin.judge.grinding import bend
+from kin.judge.grinding import MOST_ROWS, bend
+from kin.read.size import MOST_BYTES
 
 FLAT = """
 cam:
@@ -177,11 +180,85 @@ def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
             rows = np.delete(rows, np.arange(worst, worst + 20), axis=0)
         case "inch":
             lines[first] = lines[first].replace("_mm", "_in")
-    body = [",".join(f"{value:.12g}" for value in row) for row in rows]
+    lines[first] = lines[first].removesuffix(",normal_deg")  # without normals, which would be caught by themselves
+    body = [",".join(f"{value:.12g}" for value in row[:2]) for row in rows]
     table.write_text("\n".join([*lines[: first + 1], *body]) + "\n")
     assert main(["verify", str(path), str(table)]) == 1
     said = capsys.readouterr()
     assert "FAILED" in said.out + said.err
+
+
+LIFT = "{csv: {as: lift, roller: 60}}"
+
+
+@pytest.mark.parametrize(
+    ("files", "change", "wanted"),
+    [
+        (GRINDING % "", ("wheel 60 mm", "wheel 64 mm"), r"head .*the wheel is stated as 64 mm, 60 mm is expected"),
+        (GRINDING % "", ("wheel 60 mm", "wheel 60 inch"), r"head .*the wheel is stated as 1524 mm, 60 mm is expected"),
+        (GRINDING % "", ("wheel 60 mm", "wheel s mm"), r"head .*the wheel is stated as nan mm, 60 mm is expected"),
+        (GRINDING % "", ("# ", "#"), ""),
+        (GRINDING % "", ("wheel", "stone"), r"head .*no line states the wheel, such as `# wheel 60 mm across`"),
+        (GRINDING % "", (r"within \S+ mm", "within 0.0005 mm"), r"stated-error .*: 0\.000[89]\d+ mm, at most 0\.0005"),
+        (LIFT, ("roller 60 mm", "roller 62 mm"), r"head .*the roller is stated as 62 mm, 60 mm is expected"),
+        (LIFT, ("centre is 60 mm", "centre is 60.001 mm"), r"head .*lift 0 is stated as 60\.001 mm, 60 mm is expected"),
+        (LIFT, ("#.*\n", ""), r"head .*: 2 faults.*`# roller 60 mm across`.*`# at lift 0 its centre is 60 mm from"),
+    ],
+)
+def test_head_of_a_table_is_judged(files, change, wanted, tmp_path, capsys) -> None:
+    text = "rotation: ccw\n" + FLAT % (0.001, files)
+    text = text.replace(re.search(r"\{lobe.*", text)[0], UNEVEN).replace("18", "30").replace("400", "60")
+    path, table, _ = made(tmp_path, text)
+    assert main(["verify", str(path), str(table)]) == 0
+    capsys.readouterr()
+    table.write_text(re.sub(*change, table.read_text()))
+    assert main(["verify", str(path), str(table)]) == (1 if wanted else 0)
+    assert re.search(wanted, capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("rotation", ["cw", "ccw"])
+@pytest.mark.parametrize("fault", [(slice(None), 5.0, 1), (70, 0.003, 1), (70, -0.0015, 0)])
+def test_normals_of_a_table_are_judged(rotation, fault, tmp_path, capsys) -> None:
+    """A wheel of radius 30 touches 0.00157 mm beside the place where its normal is 0.003 degrees off."""
+    which, by, status = fault
+    text = f"rotation: {rotation}\n" + FLAT % (0.001, GRINDING % "")
+    text = text.replace(re.search(r"\{lobe.*", text)[0], UNEVEN).replace("18", "30").replace("400", "60")
+    path, table, _ = made(tmp_path, text)
+    head, rows = [line for line in table.read_text().splitlines() if not line[0].isdigit()], rows_of(table)
+    rows[which, 2] += by
+    table.write_text("\n".join([*head, *(",".join(f"{value:.12g}" for value in row) for row in rows)]) + "\n")
+    capsys.readouterr()
+    assert main(["verify", str(path), str(table)]) == status
+    said = capsys.readouterr().out
+    if status:
+        off = float(re.search(r"normals .*: (\S+) mm, at most 0\.001", said)[1])
+        assert off == pytest.approx(60.0 * np.sin(np.radians(by) / 2.0), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wanted"),
+    [
+        ("c_deg,x_mm,normal_deg", "c_deg,x_mm,feed_mm", "columns c_deg, x_mm, feed_mm: .* c_deg, x_mm and normal_deg"),
+        ("c_deg,x_mm,normal_deg", "c_deg,x_mm,lift_mm", "columns c_deg, x_mm, lift_mm"),
+        ("c_deg,x_mm,normal_deg", "c_deg,x_mm,c_deg", "columns c_deg, x_mm, c_deg"),
+        ("\n0,(.*),0\n", r"\n0,\1,1\n", "does not close"),
+        ("\n0,(.*),0\n", r"\n0,\1\n", "a row is no row of 3 numbers"),
+    ],
+)
+def test_columns_that_are_not_judged_are_refused(old, new, wanted, tmp_path, capsys) -> None:
+    path, table, _ = made(tmp_path, FLAT % (0.002, GRINDING % ", step: 1"))
+    capsys.readouterr()
+    table.write_text(re.sub(old, new, table.read_text()))
+    assert main(["verify", str(path), str(table)]) == 1
+    assert re.search(wanted, capsys.readouterr().out)
+
+
+def test_the_finest_table_can_be_read_back(tmp_path) -> None:
+    """The longest rows of the finest step a table may have, all digits of each number and an exponent."""
+    rows = np.column_stack([np.arange(360.0 / FINEST + 1.0) * FINEST, *[np.full(360_001, 0.000123456789012)] * 2])
+    write_table(tmp_path / "t.csv", ("c_deg", "x_in", "normal_deg"), rows, head=("wheel",) * 4)
+    assert (tmp_path / "t.csv").stat().st_size < MOST_BYTES["csv"]
+    assert len(rows) <= MOST_ROWS
 
 
 @pytest.mark.slow
@@ -224,6 +301,8 @@ def test_wheel_too_large_is_refused_with_the_largest() -> None:
         (GRINDING % ", roller: 9", ("", ""), r"csv\.roller: belongs to a table as lift"),
         ("{csv: {as: motion, step: 1}}", ("", ""), r"csv\.step: belongs to a table as grinding"),
         (GRINDING % "", ("{wheel: 400}", "{wheel: 400, feed: 3}"), r"manufacture\.cutter: missing"),
+        (GRINDING % ", step: 1e-4", ("", ""), r"csv\.step: below 0\.001, given 1e-4; give an angle from 0\.001 to 10"),
+        (GRINDING % ", step: 1e-9", ("", ""), r"csv\.step: below 0\.001"),
         (GRINDING % ", tolerance: 1e-9", ("", ""), r"csv\.tolerance: joined by straight lines a table of 360000 rows"),
     ],
 )
