@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from camgeo.schema.quantity import FORCES, MOMENTS
 
@@ -27,10 +27,17 @@ def pounds(units: str, unit: str) -> tuple[str, float] | None:
     return _POUNDS.get(unit) if units == "inch" else None
 
 
-def with_pounds(units: str, value: float | None, unit: str) -> str:
-    """A unit, and behind it the value in pounds where the check has it: `N (115.2 lbf)`."""
+@overload
+def in_pounds(units: str, value: float, unit: str) -> tuple[float, str]: ...
+@overload
+def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]: ...
+def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]:
+    """A force, a moment or a pressure as a recipe in inches shows it: the value in pounds, and their unit.
+
+    Other figures, and those of recipes in mm, stay.
+    """
     other = pounds(units, unit)
-    return unit if other is None or value is None else f"{unit} ({value * other[1]:.6g} {other[0]})"
+    return (value, unit) if other is None else (None if value is None else value * other[1], other[0])
 
 
 def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | None, str]:

@@ -28,7 +28,7 @@ from camgeo.measures.file_result import FileResult
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load, load_text
 from camgeo.report.document import ROUNDING
-from camgeo.report.page import svg, tables
+from camgeo.report.page import curves, svg, tables
 from camgeo.report.page.asset import asset
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read
@@ -375,9 +375,12 @@ def test_two_rollers_keep_their_distance_from_the_cam() -> None:
 
 def test_errors_round_the_contour_are_those_that_the_judge_found(made: Made) -> None:
     reports = {file["path"]: file for file in made.outcome.report["files"]}
-    assert {error.name for error in made.content.errors} == {n for n in reports if not n.endswith(".csv")}
+    drawn = [name for error in made.content.errors for name in error.name.split(", ")]
+    assert sorted(drawn) == sorted(name for name in reports if not name.endswith(".csv"))
     for error in made.content.errors:
-        measured = reports[error.name]["measured_error"]
+        report = reports[error.name.split(", ")[0]]
+        assert error.tolerance == pytest.approx(report["tolerance"])
+        measured = report["measured_error"]
         worst = max(np.nanmax(error.high), -np.nanmin(error.low))
         assert worst <= measured + MEASURED * made.recipe.export.tolerance / made.recipe.mm
         assert worst >= 0.5 * measured - 1e-9
@@ -636,7 +639,70 @@ def test_derivatives_are_by_second_where_the_speed_is_given() -> None:
 def test_limits_of_the_pressure_angle_are_lines_in_its_plot(limit: str, lines: set[float]) -> None:
     assert plots_of("")["Pressure angle"][3] == ()
     shown = plots_of(f"limits: {{pressure-angle: {limit}}}\n")["Pressure angle"][3]
-    assert set(shown) == {(line, f"limit {abs(line):g}°") for line in lines}
+    assert set(shown) == {(line, f"limit {abs(line):g}") for line in lines}
+
+
+def test_limits_of_forces_and_peaks_are_lines_too() -> None:
+    shown = plots_of(
+        "part: {thickness: 10}\n"
+        "dynamics: {mass: 1, preload: 500, rate: 2000, rpm: 120, load: 30,"
+        " material: {E: 206000, nu: 0.3, limit: 900}}\n"
+        "limits: {contact-force-greatest: {at_most: 700}, contact-force-least: {at_least: 50}, shaft-torque: {at_most:"
+        " 9}, contact-pressure: {at_most: 800}, peak-velocity-at-speed: {at_most: 200}, pitch-radius: {at_least: 20},"
+        " radius-of-curvature: {at_least: 15}}\n"
+    )
+    lines = {title: [(line, name) for line, name in plot[3]] for title, plot in shown.items()}
+    assert lines["Velocity"] == [(200.0, "limit 200"), (-200.0, "limit 200")]
+    assert sorted(lines["Contact force"]) == [(50.0, "at least 50"), (700.0, "limit 700")]
+    assert lines["Torque of the shaft"] == [(9.0, "limit 9"), (-9.0, "limit 9")]
+    assert lines["Contact pressure"] == [(800.0, "limit 800"), (900.0, "material 900")]
+    assert lines["Load"] == []
+    assert shown["Load"][0] == "N"
+    assert shown["Load"][1] == pytest.approx(30.0)
+    # of a roller of 9 mm: the curvature of the pitch curve at which either radius is at its limit
+    radii = {name: 1.0 / line for line, name in lines["Curvature of the pitch curve"]}
+    assert radii == pytest.approx(
+        {"undercut by the roller": 9.0, "limit of pitch-radius": 20.0, "limit of radius-of-curvature": 24.0}
+    )
+
+
+def test_the_edges_of_a_face_and_the_tolerance_of_a_file_are_lines() -> None:
+    recipe = load(RECIPES / "disc-flat.yaml")
+    shown = {plot.title: plot for plot in content(recipe, designed(recipe), []).plots}
+    assert [line for line, _ in shown["Contact on the face"].limits] == [17.0, -17.0]
+    assert shown["Radius of curvature"].limits == ((0.0, ""), (10.0, "at least 10"))
+    error = curves.off(recipe, "a.dxf, inner", (np.zeros(STEPS), np.ones(STEPS) * 1e-4), 0.002)
+    assert error.limits == ((2.0, "tolerance 2"), (-2.0, ""))
+    assert error.holds == (2.0, -2.0)
+    assert error.axis == "error"
+
+
+def test_what_is_the_same_is_plotted_once() -> None:
+    wave, more = np.sin(SHAFT), np.sin(SHAFT) + 1e-3
+    plots = [
+        curves.Plot(title, "mm", (curves.Series("a", values),), limits=limits)
+        for title, values, limits in (
+            ("Error of a.dxf", wave, ()),
+            ("Error of a.svg", wave + 1e-9, ()),
+            ("Error of a.stl", more, ()),
+            ("Error of b.dxf", wave, ((1.0, ""),)),
+        )
+    ]
+    titles = [plot.title for plot in curves.once(plots)]
+    assert titles == ["Error of a.dxf and a.svg", "Error of a.stl", "Error of b.dxf"]
+    assert curves.joined(["Radius, inner", "Radius, outer", "Radius, third"]) == "Radius, inner, outer and third"
+    assert curves.joined(["Output", "Output of the first loop"]) == "Output and Output of the first loop"
+
+
+def test_files_that_draw_the_same_are_one_error(tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    path.write_text(
+        "cam: {kind: support, p: 25 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf, svg, {dxf: {as: polyline}}]}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    assert [error.name for error in made.content.errors] == ["a-arcs.dxf, a.svg", "a-polyline.dxf"]
+    assert [error["tolerance"] for error in made.data["errors"]] == [0.01, 0.01]
 
 
 # --- the watch --------------------------------------------------------------------------------------------------------

@@ -16,7 +16,9 @@ from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
 from support.rendered import rendered, share
 
 from camgeo.cli.watch import watch
+from camgeo.report.page.page import page
 from camgeo.synthesis.design import designed
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -154,7 +156,7 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         page_ = opened(browser, made, tmp_path)
         assert page_.ask("document.documentElement.scrollWidth") <= width
         overlapping = page_.ask("""(() => {
-          const boxes = [...document.querySelectorAll('main > *, .below > *, .plot, .controls > *')]
+          const boxes = [...document.querySelectorAll('main > *, .left > *, .plot, .controls > *')]
             .filter((e) => e.offsetParent).map((e) => [e, e.getBoundingClientRect()]);
           const found = [];
           for (const [a, p] of boxes) for (const [b, q] of boxes) {
@@ -190,6 +192,36 @@ def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -
     assert [y for y, _ in axes][:3] == ["output, °", "velocity, °/rad", "acceleration, °/rad²"]
     units = [plot["unit"] for plot in made.data["plots"]]
     assert all(y.endswith(unit) for (y, _), unit in zip(axes, units, strict=False))
+    assert all(re.match(r"[a-z ]+, ", y) for y, _ in axes)
+
+
+def test_a_force_begins_at_0_and_nothing_is_0_without_digits(browser: Browser, tmp_path: Path) -> None:
+    """The lowest line of a pressure that is never 0 is at 0, that of an error that is 0 at its tolerance."""
+    path = tmp_path / "even.yaml"
+    path.write_text(
+        "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8},"
+        " motion: [{rise: 10, over: 180, law: cycloidal}, {return: 10, over: 180, law: cycloidal}]}\n"
+        "part: {thickness: 10}\ndynamics: {mass: 1, preload: 300, rate: 0, rpm: 30, material: steel}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    (error,) = made.content.errors
+    exact = replace(made.content, errors=(replace(error, low=0.0 * error.low, high=0.0 * error.high),))
+    made.text = page(made.recipe, exact, made.outcome.report)
+    page_ = opened(browser, made, tmp_path)
+    first = """Object.fromEntries([...document.querySelectorAll('.plot')].map((plot) => [
+      plot.querySelector('b').textContent,
+      [[...plot.querySelectorAll('svg text')].map((text) => text.textContent),
+       plot.querySelector('.value').textContent],
+    ]))"""
+    shown = page_.ask(first)
+    for title in ("Contact force", "Contact pressure"):
+        assert shown[title][0][0] == "0"
+    texts, value = shown["Error of even.dxf"]
+    assert value == "0 µm"
+    assert "tolerance 1" in texts
+    assert "but for rounding on the exact contour" in page_.ask("document.getElementById('error-note').textContent")
+    assert page_.problems == []
 
 
 @pytest.mark.slow

@@ -242,7 +242,8 @@ def test_a_ring_s_file_is_held_against_its_opening() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "limit", "margin"), [("shoe", (1.0 / 60.0, "shoe"), True), ("ring", (-1.0 / 9.0, "roller"), False)]
+    ("name", "limit", "margin"),
+    [("shoe", (1.0 / 60.0, "undercut by the shoe"), True), ("ring", (-1.0 / 9.0, "undercut by the roller"), False)],
 )
 def test_the_curvature_is_held_against_that_of_what_touches(name: str, limit: tuple[float, str], margin: bool) -> None:
     _, found = drawn(name, "cw")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.measures.units import pounds, with_pounds
+from camgeo.measures.units import in_pounds, pounds
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.report.document import summary, table
@@ -84,7 +84,12 @@ def test_text_and_page() -> None:
     assert f"N ({failed['value'] / PER_LBF:.6g} lbf)" in table(inches)
     force, pressure = inches["forces"]["contacts"][0]["max"], inches["forces"]["pressure"][0]["max"]
     page = tables.forces(inches) + tables.checks(inches)
-    for told in (f"N ({force / PER_LBF:.6g} lbf)", f"N/mm² ({pressure / PER_PSI:.6g} psi)", "lbf in)"):
+    for value, told in (
+        (force / PER_LBF, f"lbf ({force:.6g} N)"),
+        (pressure / PER_PSI, f"psi ({pressure:.6g} N/mm²)"),
+        (failed["limit"] / PER_LBF, "lbf in ("),
+    ):
+        assert f"{value:.6g}" in page
         assert told in page
     for text in (summary(mm), table(mm), tables.forces(mm), tables.checks(mm)):
         assert "lbf" not in text
@@ -96,7 +101,9 @@ def test_the_page_of_an_elastic_train() -> None:
     ]
     found = report(elastic + "export: {files: [csv]}\n")
     peak = found["dynamics"]["runs"][0]["steady"]["peak_force"]
-    assert f" ({peak / PER_LBF:.6g} lbf)" in tables.dynamics(found)
+    table = tables.dynamics(found)
+    assert "peak force, lbf" in table
+    assert f">{peak / PER_LBF:.6g}<" in table
 
 
 def test_the_table_has_columns_behind(tmp_path: Path) -> None:
@@ -117,8 +124,11 @@ def test_the_table_has_columns_behind(tmp_path: Path) -> None:
 def test_units_that_have_none() -> None:
     assert pounds("mm", "N") is None
     assert pounds("inch", "mm") is None
-    assert with_pounds("inch", None, "N") == "N"
-    assert with_pounds("inch", 4.4482216152605, "N") == "N (1 lbf)"
+    assert in_pounds("inch", None, "N") == (None, "lbf")
+    value, unit = in_pounds("inch", 4.4482216152605, "N")
+    assert value == pytest.approx(1.0)
+    assert unit == "lbf"
+    assert in_pounds("inch", 2.0, "mm") == (2.0, "mm")
 
 
 def test_sweeps_name_the_unit_of_forces() -> None:
@@ -129,16 +139,23 @@ def test_sweeps_name_the_unit_of_forces() -> None:
     json.dumps({name: unit.name for name, unit in ask.units(("mass", "inertia")).items()})
 
 
-def test_plots_say_what_a_newton_is() -> None:
+def test_plots_are_in_pounds() -> None:
     from camgeo.report.page.curves import forces
     from camgeo.synthesis.design import designed
 
     recipe = read(INCHES.encode(), "pounds.yaml")
-    notes = [plot.note for plot in forces(recipe, designed(recipe))]
-    assert [note.rpartition("; ")[2] for note in notes] == [
-        "1 N is 0.224809 lbf",
-        "1 N m is 8.85075 lbf in",
-        "1 N/mm² is 145.038 psi",
-    ]
-    recipe = read(metric(INCHES).encode(), "pounds.yaml")
-    assert all("lbf" not in plot.note for plot in forces(recipe, designed(recipe)))
+    metres = read(metric(INCHES).encode(), "pounds.yaml")
+    shown, plain = ({plot.title: plot for plot in forces(one, designed(one))} for one in (recipe, metres))
+    assert list(shown) == ["Load", "Contact force", "Torque of the shaft", "Contact pressure"]
+    per = {"N": ("lbf", PER_LBF), "N m": ("lbf in", PER_LBF_IN), "N/mm²": ("psi", PER_PSI)}
+    for title, plot in shown.items():
+        other = plain[title]
+        unit, many = per[other.unit]
+        assert plot.unit == unit
+        assert plot.series[0].values * many == pytest.approx(other.series[0].values, rel=1e-9, abs=1e-9)
+        assert plot.holds == (0.0,)
+    assert shown["Load"].series[0].values == pytest.approx(5.0)
+    ((line, name),) = shown["Contact force"].limits
+    assert line == pytest.approx(20.0)
+    assert name == "limit 20"
+    assert [value for value, _ in shown["Torque of the shaft"].limits] == pytest.approx([300.0, -300.0])

@@ -17,7 +17,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -33,11 +33,20 @@ PUSHED = "above 0 where a disc pushes its own contact outwards"
 
 @dataclass(frozen=True, eq=False)
 class FileError:
-    """How far a file lies outside the exact contour in each step: least and greatest (STEPS,), negative inside."""
+    """How far a file lies outside the exact contour in each step: least and greatest (STEPS,), negative inside.
+
+    Files that show the same are one, under their names together; `tolerance` is theirs.
+    """
 
     name: str
     low: Array
     high: Array
+    tolerance: float
+
+    def like(self, other: FileError) -> bool:
+        """Whether another file's error is the same, to what a picture shows."""
+        alike = curves.equal(self.low, other.low) and curves.equal(self.high, other.high)
+        return self.tolerance == other.tolerance and alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,15 +75,21 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     groups = outline.together(files, len(design.discs))
     drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots += curves.preload(design) + curves.forces(recipe, design)
+    plots += curves.preload(recipe, design) + curves.forces(recipe, design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
-    measured = [
-        (file.name, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items()
-    ]
+    measured = [(file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items()]
     # round the contour errors are drawn of a cam that has one, of others over the turn alone
-    plots += [curves.off(recipe, f"{name}, {surface}", error) for name, surface, error in measured if surface]
-    errors = [FileError(name, *(row / recipe.mm for row in error)) for name, surface, error in measured if not surface]
+    plots += [
+        curves.off(recipe, f"{file.name}, {surface}", error, file.tolerance)
+        for file, surface, error in measured
+        if surface
+    ]
+    errors = _together(
+        FileError(file.name, low / recipe.mm, high / recipe.mm, file.tolerance / recipe.mm)
+        for file, surface, (low, high) in measured
+        if not surface
+    )
     exact = next(iter(exacts.values()))
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
@@ -83,7 +98,19 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         flip = np.array([1.0, -1.0])
         scene, point, normal = scene.mirrored(), point * flip, normal * flip
     rests = tuple(curves.rests(recipe, design))
-    return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
+    return Content(scene, tuple(curves.once(plots)), rests, relative, point, normal, errors)
+
+
+def _together(errors: Iterable[FileError]) -> tuple[FileError, ...]:
+    """Return errors, of those that are the same the first under the names of all."""
+    kept: list[FileError] = []
+    for error in errors:
+        same = next((rank for rank, first in enumerate(kept) if first.like(error)), None)
+        if same is None:
+            kept.append(error)
+        else:
+            kept[same] = replace(kept[same], name=f"{kept[same].name}, {error.name}")
+    return tuple(kept)
 
 
 Drawn: TypeAlias = "tuple[str, tuple[tuple[Ring, ...], ...]]"
@@ -221,7 +248,10 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
 def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
     """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
-    plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, {"contact": place})]
+    plots = [
+        curves.pressure(view.recipe, {view.touch.word: angle}),
+        curves.along(view.recipe, {"contact": place}, view.touch.width),
+    ]
     margin = guided.MARGIN * size
     found = _contacts(view, size)
     return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots

@@ -9,10 +9,25 @@ import numpy as np
 
 from camgeo.common.units import INCH
 from camgeo.curve.support import is_sharp
-from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
+from camgeo.measures.units import in_pounds
+from camgeo.recipe.figures import (
+    AT_SPEED,
+    BACKLASH,
+    BACKLASH_LEFT,
+    FORCE_GREATEST,
+    FORCE_LEAST,
+    ON_RETURN,
+    ON_RISE,
+    PEAKS,
+    PITCH_RADIUS,
+    PRESSURE,
+    PRESSURE_ANGLE,
+    RADIUS,
+    TORQUE,
+)
 from camgeo.report.page.followers import SHAFT
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,6 +43,7 @@ DERIVATIVES = ("", "velocity", "acceleration", "jerk")
 POWERS = ("/rad", "/rad²", "/rad³")
 TIMES = ("/s", "/s²", "/s³")
 DEGREES = 180.0 / math.pi
+SAME = 1e-4  # of a curve's range: what is nearer is drawn once
 COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
 
 
@@ -41,7 +57,11 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """Curves over one angle; `limits` are lines across (value, name), `note` a remark below."""
+    """Curves over one angle; `limits` are lines across (value, name), `note` a remark below.
+
+    `axis` is the quantity's name beside the upright axis, the title where it is empty. That axis `holds` these values
+    whatever the curves are: 0 of a force, the tolerance of an error.
+    """
 
     title: str
     unit: str
@@ -50,6 +70,41 @@ class Plot:
     limits: tuple[tuple[float, str], ...] = ()
     dwells: bool = False
     note: str = ""
+    axis: str = ""
+    holds: tuple[float, ...] = ()
+
+
+def once(plots: Sequence[Plot]) -> list[Plot]:
+    """Return the plots, of those that show the same curves the first alone, under the titles of all."""
+    kept: dict[int, list[Plot]] = {}
+    for plot in plots:
+        same = next((rank for rank, (first, *_) in kept.items() if _alike(first, plot)), len(kept))
+        kept.setdefault(same, []).append(plot)
+    return [replace(alike[0], title=joined([plot.title for plot in alike])) for alike in kept.values()]
+
+
+def _alike(plot: Plot, other: Plot) -> bool:
+    """Whether two plots show the same curves, to what a picture shows, between the same limits."""
+    if (plot.unit, plot.over, plot.limits) != (other.unit, other.over, other.limits):
+        return False
+    pairs = zip(plot.series, other.series, strict=False)
+    return len(plot.series) == len(other.series) and all(equal(a.values, b.values) for a, b in pairs)
+
+
+def equal(values: Array, others: Array) -> bool:
+    """Whether two curves differ by less than a picture shows, `SAME` of their range."""
+    span = float(np.ptp(values[np.isfinite(values)])) if np.isfinite(values).any() else 0.0
+    return bool(np.allclose(values, others, rtol=1e-12, atol=SAME * span, equal_nan=True))
+
+
+def joined(titles: Sequence[str]) -> str:
+    """Return titles as one: `Error of a.dxf` and `Error of a.svg` are `Error of a.dxf and a.svg`."""
+    first, *others = titles
+    head = max((first.rfind(mark) + len(mark) for mark in (" of ", ", ") if mark in first), default=0)
+    tails = [title[head:] for title in others if title.startswith(first[:head])]
+    whole = tails if len(tails) == len(others) else others
+    *before, last = [first, *whole]
+    return f"{', '.join(before)} and {last}" if before else last
 
 
 @dataclass(frozen=True)
@@ -67,7 +122,10 @@ def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot
     for order, name in enumerate(DERIVATIVES[1:], start=1):
         factor, power, note = per(recipe, order)
         series = (Series(name, factor * rows[order]),)
-        found.append(Plot(name.capitalize(), unit + power, series, dwells=True, note=note))
+        peak = PEAKS[order - 1] if recipe.dynamics is None else AT_SPEED[order - 1]
+        scale = recipe.mm if unit == length_unit(recipe) else 1.0
+        lines = limits(recipe, {peak: (1.0, -1.0)}, series, 1.0 / scale)
+        found.append(Plot(name.capitalize(), unit + power, series, limits=lines, dwells=True, note=note))
     return found
 
 
@@ -98,83 +156,108 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
         first, scale_1 = mechanism.linkage, DEGREES if mechanism.linkage.unit == "deg" else 1.0 / recipe.mm
         values = scale_1 * np.concatenate([at.outputs[0][0], end.outputs[0][0]])
         name = "°" if first.unit == "deg" else length_unit(recipe)
-        found.append(Plot("Output of the first loop", name, (Series("first loop", values),)))
+        found.append(Plot("Output of the first loop", name, (Series("first loop", values),), axis="output"))
     frame = DEGREES * np.concatenate([at.over_shaft(at.frame[:2]), end.over_shaft(end.frame[:2])], axis=1)
     found.append(Plot("Frame", "°", (Series("angle of the frame", frame[0]),)))
     factor, power, note = per(recipe, 1)
     turning = (Series("velocity of the frame", factor * frame[1]),)
-    found.append(Plot("Velocity of the frame", f"°{power}", turning, note=note))
+    found.append(Plot("Velocity of the frame", f"°{power}", turning, note=note, axis="velocity"))
     names = ("transmission angle", "force angle")
     angles = tuple(Series(name, DEGREES * row) for name, row in zip(names, driven.angles(), strict=True))
     note = "force angle: between the force of the frame and the direction in which it does nothing"
-    found.append(Plot("Transmission and force angle", "°", angles, limits=((0.0, ""),), note=note))
+    bounds = limits(recipe, {"transmission-angle": (1.0,), "force-angle": (1.0,)}, angles)
+    found.append(
+        Plot("Transmission and force angle", "°", angles, limits=((0.0, ""), *bounds), note=note, axis="angle")
+    )
     return found
 
 
 def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plot:
     """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches, and of their limits."""
     series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
-    return Plot("Pressure angle", "°", series, limits=_bounds(recipe, series), dwells=True, note=note)
+    sides = {PRESSURE_ANGLE: (1.0, -1.0), ON_RISE: (1.0,), ON_RETURN: (-1.0,)}  # above 0 a rise, below 0 a return
+    lines = limits(recipe, sides, series)
+    return Plot("Pressure angle", "°", series, limits=lines, dwells=True, note=note)
 
 
-def _bounds(recipe: Recipe, series: Sequence[Series]) -> tuple[tuple[float, str], ...]:
-    """Return the limits of a pressure angle on the sides on which it is plotted: above 0 a rise, below 0 a return."""
-    values = np.concatenate([one.values for one in series])
-    sides = {PRESSURE_ANGLE: (1.0, -1.0), ON_RISE: (1.0,), ON_RETURN: (-1.0,)}
-    return tuple(
-        (side * limit.at_most, f"limit {limit.at_most:g}°")
-        for limit in recipe.limits
-        if limit.at_most is not None
-        for side in sides.get(limit.figure, ())
-        if (side * values).max() > 0.0
-    )
+def limits(
+    recipe: Recipe, sides: Mapping[str, Sequence[float]], series: Sequence[Series], scale: float = 1.0
+) -> tuple[tuple[float, str], ...]:
+    """Return the recipe's limits of figures as lines across curves, each on the sides, 1 or -1, on which curves are.
+
+    `scale` is a plot's values over the limits'. A limit of a peak at a speed that is not the plotted one has no line.
+    """
+    values = np.concatenate([row.values for row in series])
+    rpm = None if recipe.dynamics is None else recipe.dynamics.rpm
+    lines = []
+    for limit in recipe.limits:
+        for side in sides.get(limit.figure, ()) if limit.rpm in {None, rpm} else ():
+            bounds = ((limit.at_least, "at least"), (limit.at_most, "limit"))
+            lines += [
+                (side * scale * bound, f"{word} {scale * bound:.4g}")
+                for bound, word in bounds
+                if bound is not None and np.nanmax(side * values) > 0.0
+            ]
+    return tuple(lines)
 
 
 def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
     """Return the plot of the levers of a flat pair's contacts about its pivot, mm (STEPS + 1,) each."""
     series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", lengths, strict=True))
     note = "a flat face is pushed along its normal; the lever is that of the push about the pivot"
-    return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
+    return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note, axis="lever")
 
 
 def forces(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return the plots of forces at the contacts and of the shaft's torque; none but of a rigid train."""
+    """Return the plots of load, forces at the contacts and of the shaft's torque; none but of a rigid train.
+
+    Of a recipe in inches they are in pounds.
+    """
     from camgeo.measures.running_forces import running_of
-    from camgeo.measures.units import pounds
 
     running = None if recipe.dynamics is None else running_of(recipe, design)
     if running is None or running.jam_deg is not None:
         return []
     state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
 
-    def noted(unit: str) -> str:
-        other = pounds(recipe.units, unit)
-        return note if other is None else f"{note}; 1 {unit.replace('^2', '²')} is {other[1]:.6g} {other[0]}"
+    def plot(title: str, axis: str, si: str, rows: Mapping[str, Array], sides: Mapping[str, Sequence[float]]) -> Plot:
+        factor, unit = shown_in(recipe, si)
+        series = tuple(Series(name, factor * row) for name, row in rows.items())
+        lines = limits(recipe, sides, series, factor)
+        return Plot(title, unit, series, limits=lines, dwells=True, note=note, axis=axis, holds=(0.0,))
 
-    def opposite(title: str, unit: str, rows: Array) -> list[Plot]:
+    def opposite(title: str, axis: str, si: str, rows: Array, sides: Mapping[str, Sequence[float]]) -> list[Plot]:
         """Return a plot for one contact, or for two that stand opposite each other."""
-        series = [Series(name, row) for name, row in zip(running.turn.names, rows, strict=True)]
-        step = max(1, len(series) // 2)
-        groups = [tuple(series[k::step]) for k in range(step)]
-        titles = [title if step == 1 else f"{title}, {' and '.join(one.name for one in group)}" for group in groups]
-        return [
-            Plot(name, unit.replace("^2", "²"), group, dwells=True, note=noted(unit))
-            for name, group in zip(titles, groups, strict=True)
-        ]
+        named = list(zip(running.turn.names, rows, strict=True))
+        step = max(1, len(named) // 2)
+        groups = [dict(named[k::step]) for k in range(step)]
+        titles = [title if step == 1 else f"{title}, {' and '.join(group)}" for group in groups]
+        return [plot(name, axis, si, group, sides) for name, group in zip(titles, groups, strict=True)]
 
-    plots = opposite("Contact force", "N", state.normal)
-    plots.append(Plot("Torque of the shaft", "N m", (Series("torque", state.torque),), dwells=True, note=noted("N m")))
+    load = running.load(SHAFT)
+    plots = [plot("Load", "load", running.turn.unit, {"load against the follower": load}, {})] if load.any() else []
+    plots += opposite("Contact force", "force", "N", state.normal, {FORCE_GREATEST: (1.0,), FORCE_LEAST: (1.0,)})
+    plots.append(plot("Torque of the shaft", "torque", "N m", {"torque": state.torque}, {TORQUE: (1.0, -1.0)}))
     if recipe.linkage is not None:
-        across, along, *joints = (Series(name, row) for name, row in state.reactions.items())
-        plots.append(Plot("Forces of the frame", "N", (across, along), dwells=True, note=noted("N")))
+        across, along, *joints = state.reactions.items()
+        plots.append(plot("Forces of the frame", "force", "N", dict([across, along]), {}))
         if joints:
-            plots.append(Plot("Forces at joint D", "N", tuple(joints), dwells=True, note=noted("N")))
+            plots.append(plot("Forces at joint D", "force", "N", dict(joints), {}))
     if state.pressure is not None:
-        plots += opposite("Contact pressure", "N/mm^2", state.pressure)
+        pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
+        most, (factor, _) = running.most_pressure, shown_in(recipe, "N/mm^2")
+        borne = () if most is None else ((factor * most, f"material {factor * most:.4g}"),)
+        plots += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
     return plots
 
 
-def preload(design: Design) -> list[Plot]:
+def shown_in(recipe: Recipe, si: str) -> tuple[float, str]:
+    """Return how many of the shown unit one SI unit of force, moment or pressure is, and the unit as it is read."""
+    factor, unit = in_pounds(recipe.units, 1.0, si)
+    return factor, unit.replace("^2", "²")
+
+
+def preload(recipe: Recipe, design: Design) -> list[Plot]:
     """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
     given = design.exact.preload
     if given is None or given.stiffness is None:
@@ -185,15 +268,22 @@ def preload(design: Design) -> list[Plot]:
     force = elastic(turn, given, rows).preload
     normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
     note = "along the normal of each contact, without load"
-    return [Plot("Preload", "N", tuple(Series(name, values) for name, values in normal), note=note)]
+    factor, unit = shown_in(recipe, "N")
+    series = tuple(Series(name, factor * values) for name, values in normal)
+    return [Plot("Preload", unit, series, note=note, axis="force", holds=(0.0,))]
 
 
-def along(recipe: Recipe, places: Mapping[str, Array]) -> Plot:
-    """Return the plot of where flat faces are touched, mm (STEPS + 1,) each, by their names."""
+def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = None) -> Plot:
+    """Return the plot of where flat faces are touched, mm (STEPS + 1,) each, by their names.
+
+    A `width`, mm, is that of a face centred on its stem, whose edges are drawn.
+    """
     note = "along the face, from the axis of its stem or the pivot of its arm"
     unit = length_unit(recipe)
     series = tuple(Series(name, place / recipe.mm) for name, place in places.items())
-    return Plot("Contact on the face", unit, series, dwells=True, note=note)
+    half = 0.0 if width is None else 0.5 * width / recipe.mm
+    edges = () if width is None else ((half, "edge of the face"), (-half, ""))
+    return Plot("Contact on the face", unit, series, limits=edges, dwells=True, note=note, axis="place")
 
 
 def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exact: Exact) -> Plot:
@@ -214,25 +304,37 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
         series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
+        grown = {PITCH_RADIUS: 0.0, RADIUS: radius}  # mm by which the pitch curve's radius is greater than the figure's
+        lines = [
+            (recipe.mm / (bound.at_least + grown[bound.figure]), f"limit of {bound.figure}")
+            for bound in recipe.limits
+            if bound.figure in grown and bound.at_least is not None and bound.at_least + grown[bound.figure] > 0.0
+        ]
         return Plot(
             f"Curvature of the pitch curve{name}",
             f"1/{unit}",
             series,
             over,
-            ((limit, touch),),
+            ((limit, f"undercut by the {touch}"), *lines),
             note=margin,
+            axis="curvature",
         )
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     series = (Series("radius of curvature", values),)
-    return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""),), note=margin)
+    bounds = limits(recipe, {RADIUS: (1.0,)}, series, 1.0 / recipe.mm)
+    return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""), *bounds), note=margin, axis="radius")
 
 
-def off(recipe: Recipe, name: str, error: tuple[Array, Array]) -> Plot:
-    """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm."""
+def off(recipe: Recipe, name: str, error: tuple[Array, Array], tolerance: float) -> Plot:
+    """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm.
+
+    Lines show the file's tolerance, mm, to either side.
+    """
     rows, (unit, scale) = zip(("least", "greatest"), error, strict=True), small_unit(recipe)
     series = tuple(Series(word, scale * closed(row)) for word, row in rows)
-    note = "distance outside the exact contour, negative inside"
-    return Plot(f"Error of {name}", unit, series, limits=((0.0, ""),), note=note)
+    note, most = "distance outside the exact contour, negative inside", scale * tolerance
+    lines = ((most, f"tolerance {most:.4g}"), (-most, ""))
+    return Plot(f"Error of {name}", unit, series, limits=lines, note=note, axis="error", holds=(most, -most))
 
 
 def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot]:
@@ -256,7 +358,12 @@ def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot
         names = " and ".join(file.name for file in files)
         note = f"of the follower between {closure.pushes} and {closure.stops}; below 0 they interfere"
         series = (Series("backlash", scale * values),)
-        found.append(Plot(f"Backlash, {names}", unit, series, limits=((0.0, ""),), dwells=True, note=note))
+        sides = {BACKLASH: (1.0,), BACKLASH_LEFT: (1.0,)}
+        lines = ((0.0, ""), *limits(recipe, sides, series, scale if unit != "°" else 1.0))
+        plot = Plot(
+            f"Backlash, {names}", unit, series, limits=lines, dwells=True, note=note, axis="backlash", holds=(0.0,)
+        )
+        found.append(plot)
     return found
 
 

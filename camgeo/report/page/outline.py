@@ -52,8 +52,8 @@ class Read:
     """A file's contours as they were read, mm and as if the shaft turned clockwise.
 
     `contours` and `arcs` are those of each surface by its name, `pieces` of all in number. `rings` are for drawing, of
-    each disc in the file: the outline and its holes, of a ring the contour among them. `disc` is the one that it holds,
-    None for all.
+    each disc in the file: the outline and its holes, of a ring the contour among them. `tolerance`, mm, is the file's.
+    `disc` is the one that it holds, None for all.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Read:
     arcs: dict[str, Arcs]
     pieces: int
     rings: tuple[tuple[Ring, ...], ...]
+    tolerance: float
     disc: int | None = None
 
 
@@ -73,7 +74,8 @@ def read(recipe: Recipe, file: FileResult) -> Read | None:
     fine = max(MEASURED * recipe.export.tolerance, ROUNDING * size)
     arcs = {name: contour.as_arcs(fine)[0] for name, contour in contours.items()}
     rings = tuple(tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in body) for body in file.bodies)
-    return Read(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, file.disc)
+    tolerance = recipe.export.tolerance if file.tolerance is None else file.tolerance
+    return Read(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, tolerance, file.disc)
 
 
 def together(files: Sequence[Read], discs: int) -> list[list[Read]]:

@@ -37,12 +37,13 @@
     };
   }
 
-  function tidy(value, unit) {
+  // a value with its unit; what is nothing beside `span`, the range of its plot, is 0 without digits
+  function tidy(value, unit, span = 0) {
     if (!Number.isFinite(value)) return "–";
     const size = Math.abs(value);
-    const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 0.1 ? 3 : size >= 0.001 ? 4 : 2;
-    const text = size > 0 && size < 0.001 ? value.toExponential(2) : value.toFixed(digits);
-    return text.replace("-", "−").replace(/^−(0(\.0*)?)$/, "$1") + (unit === "°" ? "°" : unit ? " " + unit : "");
+    const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 0.1 ? 3 : 4;
+    const text = size <= 1e-5 * span ? "0" : size < 0.001 ? value.toExponential(2) : value.toFixed(digits);
+    return text.replace("-", "−") + (unit === "°" ? "°" : unit ? " " + unit : "");
   }
 
   // --- state --------------------------------------------------------------------------------------------------------
@@ -197,8 +198,9 @@
   const TOP = 8;
   const BOTTOM = 36;
   const [HEAD, SAVED] = [40, 560]; // px of a saved plot: above it for its title, and its width
-  const LETTERS = 22; // that fit along the upright axis
-  const KEPT = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font-size"]; // of a style, in a saved plot
+  const LETTERS = 22; // that fit along the upright axis; of more the name is drawn narrower
+  const FAR = 3; // spans of the curves: a limit that is farther from them is named below, not drawn
+  const KEPT = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font-size", "paint-order"]; // of a style, in a saved plot
 
   class Plot {
     constructor(plot) {
@@ -225,7 +227,7 @@
       save.setAttribute("aria-label", `save ${title} as SVG`);
       save.addEventListener("click", () => this.save());
       this.svg = made("svg", { role: "img", "aria-label": `${title}, ${plot.unit}: ${told}` }, this.figure);
-      if (plot.note) html("small", "", this.figure, plot.note);
+      if (this.note) html("small", "", this.figure, this.note);
       this.svg.addEventListener("pointerdown", (event) => {
         this.svg.setPointerCapture(event.pointerId);
         this.drag(event);
@@ -242,12 +244,17 @@
         row.most = Math.max(...good);
         [low, high] = [Math.min(low, row.least), Math.max(high, row.most)];
       }
+      for (const value of this.plot.holds) [low, high] = [Math.min(low, value), Math.max(high, value)];
       const span = high - low || Math.abs(high) || 1;
-      this.limits = this.plot.limits.filter(([value]) => value > low - 3 * span && value < high + 3 * span);
+      const near = ([value]) => value > low - FAR * span && value < high + FAR * span;
+      this.limits = this.plot.limits.filter(near);
+      const far = this.plot.limits.filter((limit) => limit[1] && !near(limit)).map(([, name]) => `${name} lies beyond this plot`);
+      this.note = [this.plot.note, ...new Set(far)].filter(Boolean).join("; ");
       for (const [value] of this.limits) [low, high] = [Math.min(low, value), Math.max(high, value)];
       if (high - low < 1e-12 * Math.abs(high) || high === low) [low, high] = [low - 0.5 * span, high + 0.5 * span];
-      const room = 0.06 * (high - low);
-      [this.low, this.high] = [low - room, high + room];
+      const margin = 0.06 * (high - low);
+      const foot = low === 0 && this.plot.holds.includes(0); // of forces, whose axis begins at 0
+      [this.low, this.high] = [foot ? 0 : low - margin, high + margin];
     }
 
     x(angle) {
@@ -282,12 +289,11 @@
         const text = made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end" }, this.svg);
         text.textContent = digits > 4 ? value.toExponential(0) : value.toFixed(digits).replace("-", "−");
       }
-      const name = this.plot.title[0].toLowerCase() + this.plot.title.slice(1);
-      const measure = counted + this.plot.unit;
-      const upright = name.length + measure.length < LETTERS ? `${name}, ${measure}` : measure;
+      const upright = `${this.plot.axis}, ${counted}${this.plot.unit}`;
       const middle = [0.5 * (LEFT + this.width - RIGHT), 0.5 * (TOP + HEIGHT - BOTTOM)];
       const axis = (text, place) => (made("text", { ...place, "text-anchor": "middle" }, this.svg).textContent = text);
-      axis(upright, { class: "axis", transform: `translate(11 ${middle[1]}) rotate(-90)` });
+      const narrow = upright.length > LETTERS ? { textLength: HEIGHT - TOP - BOTTOM, lengthAdjust: "spacingAndGlyphs" } : {};
+      axis(upright, { class: "axis", transform: `translate(11 ${middle[1]}) rotate(-90)`, ...narrow });
       axis(`${this.plot.over === "relative" ? "relative" : "shaft"} angle, °`, { class: "axis", x: middle[0], y: HEIGHT - 5 });
       for (let angle = 0; angle <= 360; angle += 90) {
         line("grid", this.x(angle), TOP, this.x(angle), HEIGHT - BOTTOM);
@@ -295,16 +301,18 @@
         place["text-anchor"] = angle === 360 ? "end" : "middle";
         made("text", place, this.svg).textContent = `${angle}°`;
       }
+      const names = [];
       for (const [value, name] of this.limits) {
         line("limit", LEFT, this.y(value), this.width - RIGHT, this.y(value));
         const below = value > 0.5 * (this.low + this.high);
         const place = { x: this.width - RIGHT - 2, y: this.y(value) + (below ? 11 : -4), "text-anchor": "end" };
-        if (name) made("text", place, this.svg).textContent = name;
+        if (name) names.push([{ class: "named", ...place }, name]);
       }
       this.rows.forEach((row, i) => {
         const d = row.high ? this.band(row) : this.path(row.values);
         made("path", { class: `${row.high ? "band" : "line"}${i ? " second" : ""}`, d }, this.svg);
       });
+      for (const [place, name] of names) made("text", place, this.svg).textContent = name;
       this.cursor = line("cursor", 0, TOP, 0, HEIGHT - BOTTOM);
       this.dots = this.rows.map((row, i) => made("circle", { class: `dot${i ? " second" : ""}`, r: 3.5 }, this.svg));
     }
@@ -345,7 +353,7 @@
           this.dots[i].setAttribute("cy", this.y(Math.min(Math.max(value, this.low), this.high)));
         }
         const name = this.rows.length > 1 ? `${row.name.replace(/ angle$/, "")} ` : "";
-        this.spans[i].textContent = (i ? ", " : "") + name + tidy(value === null ? NaN : value, this.plot.unit);
+        this.spans[i].textContent = (i ? ", " : "") + name + tidy(value === null ? NaN : value, this.plot.unit, this.high - this.low);
       });
     }
 
@@ -368,7 +376,7 @@
       const title = made("text", { x: 6, y: 17 - HEAD, "font-size": "13px", fill: colour("--ink") });
       title.textContent = `${data.name}: ${this.plot.title}`;
       const note = made("text", { x: 6, y: 32 - HEAD, "font-size": "11px", fill: colour("--quiet") });
-      note.textContent = this.plot.note;
+      note.textContent = this.note;
       copy.prepend(made("rect", { y: -HEAD, width: SAVED, height: high, fill: colour("--panel") }), title, note);
       this.draw();
       show();
@@ -395,11 +403,14 @@
   const scaled = (row, by) =>
     "c" in row ? { c: row.c * by } : "n" in row ? { n: row.n.map((v) => v && v * by) } : { d: row.d - Math.log10(by), v: row.v };
   const over = data.linked ? "relative" : "shaft";
-  const errors = data.errors.map(({ file, low, high }) => ({
+  const lines = (most) => [[most, `tolerance ${Number(most.toPrecision(4))}`], [-most, ""]];
+  const errors = data.errors.map(({ file, low, high, tolerance }) => ({
     title: `Error of ${file}`,
     unit: micro[0],
+    axis: "error",
     series: [{ name: file, ...scaled(low, micro[1]), high: scaled(high, micro[1]) }],
-    limits: [[0, ""]],
+    limits: lines(tolerance * micro[1]),
+    holds: [tolerance * micro[1], -tolerance * micro[1]],
     note: "distance outside the exact contour, negative inside",
     over,
   }));
@@ -417,7 +428,8 @@
   const told = [["shaft", (x) => `${((360 * x) / N).toFixed(1)}°`, "4.2em"]];
   if (data.linked) told.push(["relative", (x) => `${(((relative(x) % 360) + 360) % 360).toFixed(1)}°`, "4.2em"]);
   for (const plot of plots.slice(0, 1)) {
-    told.push([plot.plot.title.toLowerCase(), (x) => tidy(plot.rows[0].at(x), plot.plot.unit), "6.2em"]);
+    const span = plot.high - plot.low;
+    told.push([plot.plot.title.toLowerCase(), (x) => tidy(plot.rows[0].at(x), plot.plot.unit, span), "6.2em"]);
   }
   for (const [name, text, width] of told) {
     const span = html("span", "", now, `${name} `);
@@ -439,17 +451,20 @@
     const view = [lowX - pad, lowY - pad, highX - lowX + 2 * pad, highY - lowY + 2 * pad];
     const svg = made("svg", { viewBox: view.join(" "), role: "img" }, ring);
     const exact = made("path", { class: "exact" }, svg);
+    const limits = [1, -1].map((side) => [side, made("path", { class: "limit" }, svg)]);
     const band = made("path", { class: "band" }, svg);
     const place = made("circle", { class: "place", r: 0.012 * extent }, svg);
     const point = (i, off) => `${(px0[i] + nx[i] * off).toPrecision(7)} ${(y0[i] - ny[i] * off).toPrecision(7)}`;
-    exact.setAttribute("d", `M${px0.map((_, i) => point(i, 0)).join("L")}Z`);
+    const along = (off) => `M${px0.map((_, i) => point(i, off)).join("L")}Z`;
+    exact.setAttribute("d", along(0));
     for (const { file } of data.errors) chosen.append(new Option(file, file));
     const rows = data.errors.map(({ low, high }) =>
       [low, high].map((row) => unpacked(row) || Array(N).fill(row.c)));
     const redraw = () => {
       const [low, high] = rows[Math.max(chosen.selectedIndex, 0)];
-      const worst = Math.max(...low.concat(high).filter((v) => v !== null).map(Math.abs)) || 1e-9 * extent;
-      const natural = (0.1 * extent) / worst;
+      const { file, tolerance } = data.errors[Math.max(chosen.selectedIndex, 0)];
+      const worst = Math.max(...low.concat(high).filter((v) => v !== null).map(Math.abs));
+      const natural = (0.1 * extent) / Math.max(worst, tolerance);
       const wanted = natural * 10 ** ((Number(find("magnify").value) - 50) / 50);
       const power = 10 ** Math.floor(Math.log10(wanted));
       const by = Math.round((wanted / power) * 10) * power / 10;
@@ -460,9 +475,11 @@
         return `M${there.concat(back).join("L")}Z`;
       };
       band.setAttribute("d", runs(low).map(outline).join(""));
-      const name = data.errors[Math.max(chosen.selectedIndex, 0)].file;
-      const most = tidy(worst * micro[1], micro[0]);
-      find("error-note").textContent = `${name}, up to ${most} off the exact contour (the thin line), drawn ${tidy(by)} times as large.`;
+      for (const [side, path] of limits) path.setAttribute("d", along(side * by * tolerance));
+      const most = worst ? `up to ${tidy(worst * micro[1], micro[0])} off` : "but for rounding on";
+      const within = `tolerance of ${Number((tolerance * micro[1]).toPrecision(4))} ${micro[0]} (dashed)`;
+      find("error-note").textContent =
+        `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${tidy(by)} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
     };
     chosen.addEventListener("change", redraw);

@@ -90,7 +90,13 @@ def data(recipe: Recipe, content: Content) -> dict[str, Any]:
         "linked": any(plot.over == "relative" for plot in content.plots),
         "contour": [packed(row) for row in at],
         "errors": [
-            {"file": error.name, "low": packed(error.low), "high": packed(error.high)} for error in content.errors
+            {
+                "file": error.name,
+                "low": packed(error.low),
+                "high": packed(error.high),
+                "tolerance": float(f"{error.tolerance:.6g}"),
+            }
+            for error in content.errors
         ],
     }
 
@@ -114,6 +120,8 @@ def _plot(plot: Plot) -> dict[str, Any]:
         "series": [{"name": series.name, **packed(series.values)} for series in plot.series],
         "limits": [[value, name] for value, name in plot.limits if math.isfinite(value)],
         "note": plot.note,
+        "axis": plot.axis or plot.title.lower(),
+        "holds": list(plot.holds),
     }
     if plot.over == "relative":
         entry["over"] = "relative"

@@ -8,8 +8,8 @@ from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
 from camgeo.measures.frame_forces import REACTIONS
-from camgeo.measures.units import with_pounds
-from camgeo.report.bound import sign, title, unit_text
+from camgeo.measures.units import in_pounds
+from camgeo.report.bound import sign, title
 from camgeo.report.document import measured, pieces_word, value_text
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def checks(report: dict[str, Any]) -> str:
 
 def _check(check: dict[str, Any], *, linked: bool) -> str:
     side = {">=": "≥", "<=": "≤"}.get(sign(check), sign(check))
-    limit = NONE if check["limit"] is None else f"{escape(side)} {number(check['limit'])}"
+    bound = check.get("pounds", check).get("limit")
+    limit = NONE if bound is None else f"{escape(side)} {number(bound)}"
     over = "relative" if linked and _is_in_frame(check) else "shaft"
     state = ("ok", "holds") if check["ok"] else ("failed", "fails")
     return _row(state, check, limit, over, check.get("detail", ""))
@@ -69,15 +70,17 @@ def _remark(remark: dict[str, Any]) -> str:
 
 def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, text: str) -> str:
     """Return the row of a check or a remark; `state` is its class and its word."""
-    value = number(check["value"])
+    shown = check.get("pounds", check)
+    value = number(shown["value"])
     if state[1] == "holds" and check["value"] is not None:
-        value = _hinted(value_text(check), check["value"])
+        value = _hinted(value_text({**check, **shown}), shown["value"])
     detail = f'<div class="detail">{escape(text)}</div>' if text else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
-        f"<td>{escape(_unit(unit_text(check)))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
+        f"<td>{_beside(shown['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
+        f"{_cell(_place(check['at_deg'], over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
@@ -213,7 +216,9 @@ def forces(report: dict[str, Any]) -> str:
     ]
     rows += [
         (
-            f"that pressure over the {one['limit']:.6g} N/mm² that the material bears",
+            "that pressure over the {:.6g} {} that the material bears".format(
+                *in_pounds(report["units"], one["limit"], "N/mm^2")
+            ),
             one["share_of_limit"],
             "",
             None,
@@ -229,11 +234,12 @@ def forces(report: dict[str, Any]) -> str:
 
 
 def _figures(title: str, figures: Sequence[_Row], units: str) -> str:
-    """Return a table of figures with their units and places; of a recipe in inches with pounds beside N."""
+    """Return a table of figures with their units and places; of a recipe in inches in pounds, N behind."""
     rows = []
-    for name, value, si, at in figures:
-        told = escape(_unit(with_pounds(units, value, si)))
-        cells = f'<td class="number">{number(value)}</td><td>{told}</td><td>{_place(at, "shaft")}</td>'
+    for name, si_value, si, at in figures:
+        value, unit = in_pounds(units, si_value, si)
+        cells = f'<td class="number">{number(value)}</td><td>{_beside(unit, si_value, si)}</td>'
+        cells += f"<td>{_place(at, 'shaft')}</td>"
         rows.append(f'<tr><th scope="row">{escape(name)}</th>{cells}</tr>')
     return _table(title, ("figure", "value", "unit", "at"), rows)
 
@@ -244,6 +250,7 @@ def dynamics(report: dict[str, Any]) -> str:
     if section is None:
         return ""
     unit, rows = section["force_unit"], list[str]()
+    shown = in_pounds(report["units"], None, unit)[1]
     for run in section["runs"]:
         steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
         cells = [
@@ -256,8 +263,8 @@ def dynamics(report: dict[str, Any]) -> str:
         rows.append(f'<tr><th scope="row">{escape(run["from"])}</th>{body}</tr>')
     head = (
         "driven by",
-        f"peak force, {unit}",
-        f"least force, {unit}",
+        f"peak force, {shown}",
+        f"least force, {shown}",
         "floats from, rpm",
         "impacts a turn",
         "fastest",
@@ -271,12 +278,11 @@ def dynamics(report: dict[str, Any]) -> str:
 
 
 def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
-    """Return an extreme of a train's force with the place where it is; of a recipe in inches with pounds."""
+    """Return an extreme of a train's force with the place where it is; of a recipe in inches in pounds."""
     value, angle = steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")
     if value is None or angle is None:
         return number(value)
-    told = with_pounds(units, value, si).removeprefix(si)
-    return f"{number(value)}{told} {_place(angle, 'shaft')}"
+    return f"{number(in_pounds(units, value, si)[0])} {_place(angle, 'shaft')}"
 
 
 def skipped(report: dict[str, Any]) -> str:
@@ -326,6 +332,12 @@ def _cell(text: str, kind: str = "") -> str:
     """Return a cell, marked where there is nothing in it."""
     name = " ".join(filter(None, (kind, "none" if text in {NONE, ""} else "")))
     return f'<td class="{name}">{text}</td>' if name else f"<td>{text}</td>"
+
+
+def _beside(unit: str, value: float | None, si: str) -> str:
+    """Return a unit as it is read, behind one of pounds the value in N, N m or N/mm²."""
+    behind = "" if unit == si or value is None else f" ({value:.6g} {si})"
+    return escape(_unit(f"{unit}{behind}"))
 
 
 def _unit(name: str) -> str:
