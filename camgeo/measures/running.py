@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.motions.load_table import MOST_LOAD
 from camgeo.recipe.dynamics import contact_width
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
@@ -123,7 +124,7 @@ class Running(ABC):
     def load(self) -> Callable[[Array], Array]:
         """The load over shaft angles (n,), N or N m, above 0 against F.
 
-        Raises RecipeErrors where it has no value, or no bound.
+        Raises RecipeErrors where it has no value or no bound, or is beyond MOST_LOAD.
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
@@ -132,13 +133,17 @@ class Running(ABC):
             return given
         formula = Formula(given)
         try:
-            at = unbounded(formula)
+            at, beyond = unbounded(formula), place_beyond(formula, MOST_LOAD)
             formula(self.turn.shaft(self.turn.places))
         except FormulaDomainError as error:
             raise self.recipe.error("dynamics.load", str(error)) from error
         if at is not None:
             why = f"it has no bound near {degrees(at):.6g} degrees"
             raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
+        if beyond is not None:
+            value = abs(float(formula(np.array([beyond]))[0]))
+            why = f"it reaches {value:.4g} {self.turn.unit} at {degrees(beyond):.6g} degrees, above {MOST_LOAD:.0f}"
+            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a smaller load")
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def rest(self, t: Array, y: Array) -> Array:
@@ -242,4 +247,23 @@ def unbounded(formula: Formula) -> float | None:
         sides = np.array([at - NARROW, at + 2.0 * NARROW])
         if float(np.abs(formula(sides)).max()) > LARGE * usual:
             return float(at)
+    return None
+
+
+def place_beyond(formula: Formula, most: float) -> float | None:
+    """A shaft angle, rad, at which a formula is above `most` or below its negative; None where it is nowhere.
+
+    What intervals do not prove to be within it is halved until it is as narrow as angles are told apart.
+    """
+    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
+    high: Array = low + TURN / STRETCHES
+    while len(low) and float((high - low).max()) > NARROW:
+        middle = 0.5 * (low + high)
+        beyond = np.abs(formula(middle)) > most
+        if beyond.any():
+            return float(middle[np.argmax(beyond)])
+        enclosure = formula.ball(low, high, 0)
+        within = np.abs(enclosure.mid[0]) + enclosure.rad[0] <= most
+        low, middle, high = (row[~within][:MOST_OPEN] for row in (low, middle, high))
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     return None

@@ -95,6 +95,8 @@ FEATURES = [
     "flat: {across: 7}",
     "set_screw: {diameter: 3}",
 ]
+LOADS = ["40*sin(t)", "1e12*cos(t)", "5e12", "-1e60", "1e300*t*1e300", "1/(t - 1)", "1e11/(1.0001 + sin(t))"]
+GUIDED = "guide: {overhang: 40, length: 50, friction: 0.1}"
 MILLING = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 3, safe_height: 5}\n"
 MOTIONS = [
     "{formula: 3*(1 - cos(t))}",
@@ -113,7 +115,7 @@ def furnished(rng: Random, number: int) -> Attack:
     text = cam.text("FILES")
     if rng.random() < 0.5:
         text = with_motion(text, rng.choice(MOTIONS))
-    way = rng.choice(["part", "part", "set", "train", "limits", "program", "ring", "trim"])
+    way = rng.choice(["part", "part", "set", "train", "rigid", "limits", "program", "ring", "trim"])
     if way == "part":
         text = text.replace("bore: 8}", "bore: 8, " + ", ".join(rng.sample(FEATURES, rng.randrange(1, 4))) + "}")
         files = rng.sample(["dxf", "svg", "stl", "3mf", "glb"], 2)
@@ -126,6 +128,13 @@ def furnished(rng: Random, number: int) -> Attack:
         more += f"{rng.choice([0, 20, 1000])}, preload: {10 ** rng.uniform(-1, 4):.3g}, "
         more += f"rpm: {10 ** rng.uniform(0, 4):.3g}{transient}}}\n"
         seconds = 10.0 if transient else seconds
+    elif way == "rigid":
+        more = f"dynamics: {{mass: {10 ** rng.uniform(-3, 9):.3g}, rpm: {10 ** rng.uniform(0, 5):.3g}, "
+        more += rng.choice(["preload: 300", "preload: 1e12", "least_force: 5"])
+        more += f", load: {rng.choice(LOADS)}" * rng.randrange(2) + rng.choice(["", f", {GUIDED}"])
+        more += rng.choice(["", ", material: steel", f", material: steel, width: {rng.uniform(0.5, 12):.3g}"]) + "}\n"
+        text = text.replace("bore: 8}", "bore: 8, " + rng.choice(["chamfer: 0.4}", "density: 7850}"]))
+        files = ["{csv: {as: forces}}", "html"]
     elif way == "limits":
         figures = [
             "pressure-angle",

@@ -208,6 +208,8 @@ def test_of_many_checks_those_of_files_that_hold_are_folded_up(made: Made, monke
         (np.where(SHAFT < 1.0, np.nan, SHAFT), "n"),
         (np.zeros(STEPS + 1), "c"),
         (-1e6 * SHAFT, "v"),
+        (7e21 * np.cos(SHAFT), "v"),
+        (1e300 * SHAFT, "v"),
     ],
 )
 def test_packed_rows_come_back_within_a_hundred_thousandth(values: np.ndarray, kind: str) -> None:

@@ -14,7 +14,7 @@ import pytest
 from camgeo.measures.figures import of_design
 from camgeo.measures.force_figures import extremes_of, forces_section, forces_table
 from camgeo.measures.running_forces import running_of
-from camgeo.output.pipeline import export
+from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -257,6 +257,9 @@ def test_contact_that_a_weak_spring_loses():
         (LOBE, "mass: 1, rpm: 100, preload: 1, load: 3*x", "dynamics.load", "x"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, load: 1/(t - 1)", "dynamics.load", "no bound near 57.2958 degrees"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, load: sqrt(sin(t))", "dynamics.load", "sqrt of a negative number"),
+        (LOBE, "mass: 1, rpm: 100, preload: 1, load: 1e60", "dynamics.load", "1e+60 N at 0.703125 degrees, above 4000"),
+        (LOBE, "mass: 1, rpm: 100, preload: 1, load: -4.01e12*sin(t)**80", "dynamics.load", "give a smaller load"),
+        (LOBE, "mass: 1, rpm: 100, preload: 1, load: 9e12*exp(-1e6*(t - 2)**2)", "dynamics.load", "N at 114.6"),
         (LOBE, "mass: 1, rpm: 100, preload: 1, material: cheese", "dynamics.material", "steel"),
         (GROOVE, "mass: 1, rpm: 100, stiffness: 1.0e6, preload: 1", "dynamics.stiffness", "leave it out"),
         (DISCS, "mass: 1, rpm: 100, stiffness: 1.0e6, preload: 1", "dynamics.stiffness", "leave it out"),
@@ -275,6 +278,14 @@ def test_loads_that_are_bounded(load):
     """Corners and roots of 0 are no poles."""
     found = extremes_of(running(GROOVE, f"mass: 1, rpm: 100, load: {load}"))
     assert all(least.value == 0.0 for least, _ in found.contacts) or load == "40"
+
+
+def test_the_greatest_load_that_is_taken():
+    """As of a table, 4e12 N; the page draws what presses then, and the mean force is no overflow."""
+    source = LOBE + "dynamics: {mass: 4e12, rpm: 2e6, rate: 4e12, preload: 4e12, load: 4e12*cos(t)}\n"
+    report = check(read((source + "export: {files: [html]}\n").encode(), Path("x.yaml"))).report
+    assert report["forces"]["contacts"][0]["max"] > 1e20
+    assert math.isfinite(report["forces"]["rollers"][0]["mean_force"])
 
 
 def test_a_table_needs_forces():

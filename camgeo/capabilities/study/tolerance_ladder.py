@@ -126,27 +126,30 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
     request = request_of(form, tolerance)
     path = folder / f"{form}.{request.kind}"
     begun = time.perf_counter()
-    first, _, failed = _once(recipe, design, request, path)
+    files, _, failed = _once(recipe, design, request, path)
     taken = time.perf_counter() - begun
     repeats = REPEATS if taken < QUICK else 2 if taken < SLOW else 1
     runs = [_once(recipe, design, request, path)[1] for _ in range(repeats)]
     medians = {name: statistics.median(run[name] for run in runs) for name in runs[0]}
-    motion = first.motion
-    output = None if first.linkage is None else first.linkage.error
+    motion = max((file.motion for file in files if file.motion is not None), key=lambda one: one.max, default=None)
+    output = next((file.linkage.error for file in files if file.linkage is not None), None)
+    measured = [file.measured_error for file in files if file.measured_error is not None]
+    counts = [file.pieces for file in files if file.pieces is not None]
+    proved = [file.bound.worst for file in files if file.bound is not None]
     return Rung(
         form=form,
         tolerance=tolerance,
-        geometry_error=first.measured_error,
-        proved=None if first.bound is None else first.bound.worst,
+        geometry_error=max(measured, default=None),
+        proved=max(proved) if len(proved) == len(files) else None,
         motion_error=None if motion is None else motion.max,
         motion_unit="" if motion is None else motion.unit,
         output_error=None if output is None else output.max,
         output_unit="" if output is None else output.unit,
         seconds=math.fsum(medians.values()),
         stages=medians,
-        pieces=first.pieces,
+        pieces=sum(counts) if len(counts) == len(files) else None,
         least_pieces=_least_pieces(design, form, tolerance),
-        bytes=path.stat().st_size,
+        bytes=sum(file.path.stat().st_size for file in files),
         failed=failed,
     )
 
@@ -160,15 +163,15 @@ def _least_pieces(design: Design, form: str, tolerance: float) -> float | None:
 
 def _once(
     recipe: Recipe, design: Design, request: FileRequest, path: Path
-) -> tuple[FileResult, dict[str, float], tuple[str, ...]]:
-    """Fit, write and judge once: the file, the seconds of each stage, the checks that do not hold."""
+) -> tuple[tuple[FileResult, ...], dict[str, float], tuple[str, ...]]:
+    """Fit, write and judge once: a file for each disc, the seconds of each stage, the checks that do not hold."""
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
     job = Job.of(recipe, design)
-    (file,), checks = make(job, request, path)
+    files, checks = make(job, request, path)
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
     for name, seconds in job.clock.stages:
         step = name.split()[0]
         stages["write" if step == "mesh" else step] += seconds  # a solid's triangles are made to be written
-    return file, stages, tuple(check.name for check in checks if not check.ok)
+    return tuple(files), stages, tuple(check.name for check in checks if not check.ok)

@@ -15,6 +15,7 @@ from camgeo.capabilities.study.least_pieces import least_pieces
 from camgeo.capabilities.study.margins import Margin, margins
 from camgeo.capabilities.study.tolerance_ladder import Ended, Rung, climb
 from camgeo.cli import main
+from camgeo.output.pipeline import export
 from camgeo.recipe.loading import load, read
 from camgeo.synthesis.design import designed
 
@@ -91,6 +92,21 @@ def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
     assert isinstance(found[1], Ended)
     assert found[1].why.startswith("fit, write and judge took")
     assert "longer than" in found[1].why
+
+
+def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
+    """Its pieces and bytes are those of both, its errors those of the worse."""
+    recipe = load(RECIPES / "conjugate-stem.yaml")
+    rung = next(one for one in climb(recipe, designed(recipe), "arcs", tmp_path, patience=0.0) if isinstance(one, Rung))
+    files = sorted(tmp_path.glob("*.dxf"))
+    assert len(files) == 2
+    assert rung.bytes == sum(file.stat().st_size for file in files)
+    wider = recipe.replace({"export.tolerance": rung.tolerance, "export.files": [{"dxf": {"as": "arcs"}}]})
+    report = export(wider, tmp_path / "whole").report
+    entries = [one for one in report["files"] if one["path"].endswith(".dxf")]
+    assert rung.pieces == sum(one["pieces"] for one in entries)
+    assert rung.geometry_error == pytest.approx(max(one["measured_error"] for one in entries), rel=1e-9)
+    assert not rung.failed
 
 
 def test_margins_of_a_four_bar() -> None:
