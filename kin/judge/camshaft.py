@@ -17,7 +17,7 @@ import numpy as np
 from kin.judge.bore import bore_check, round_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
-from kin.judge.layers import SAME, between_sections
+from kin.judge.layers import SAME, between_sections, settled
 from kin.judge.limits import limit_of
 from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
@@ -118,6 +118,7 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     if len(solid.sections) < len(stretches):
         text = "the solid has no section where the camshaft has a lobe or a journal"
         return Verdict(kind, (about(failed("readable", text), path.name),))
+    solid = settled(solid, (), intent.tolerance)
     sections = _Sections(solid, intent.mirrored)
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     checks = [at_most("watertight", len(solid.faults), 0, "faults", detail="; ".join(solid.faults))]

@@ -13,13 +13,13 @@ import numpy as np
 from kin.contour.arcs import cross
 from kin.contour.contour import Contour
 from kin.numeric.quadrature import gauss
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.judge.holes import Hole
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.files import AnySolid
 
 GAUSS = 48  # nodes for each smooth part of a cross hole
@@ -66,13 +66,30 @@ class CrossHole:
 class Lean(NamedTuple):
     """Where walls are meant to lean, mm, and the check that reports them.
 
-    They do so evenly from `low` to `high`, or anyhow between these and within `reach` from the axis.
+    They do so evenly from `low` to `high`, `inward` mm a mm of height, or anyhow between these and within `reach` from
+    the axis.
     """
 
     kind: str
     low: float
     high: float
     reach: float | None = None
+    inward: float = 0.0
+
+    def means(self, rows: Array, slack: float) -> Mask:
+        """Which walls (k, 4) of a solid are meant to lean, within `slack`, mm.
+
+        What leans from end to end is known by the sections between; what does so on a part of the way is where it
+        should be, if that section is, by going inward as much as it should.
+        """
+        low, high, reach, inward = rows.T
+        inside: Mask = (low >= self.low - slack) & (high <= self.high + slack)
+        if self.reach is not None:
+            inside &= reach <= self.reach + slack
+            return inside
+        whole: Mask = (np.abs(low - self.low) <= slack) & (np.abs(high - self.high) <= slack)
+        steep: Mask = np.abs(inward - self.inward) * (self.high - self.low) <= slack
+        return whole | (inside & steep)
 
 
 def heights(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[tuple[float, Layer]]:
@@ -126,8 +143,44 @@ def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lea
     for layer in sorted(layers, key=lambda layer: layer.low):
         if layer.inset != (0.0, 0.0):
             low = found.pop().low if found and found[-1].high == layer.low else layer.low
-            found.append(Lean("chamfer", low, layer.high))
+            inward = (layer.inset[1] - layer.inset[0]) / _height(layer)
+            found.append(Lean("chamfer", low, layer.high, inward=inward))
     return found
+
+
+def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySolid:
+    """Take the faces of a solid that only the rounding of its numbers keeps from being level for level.
+
+    Corners of such a face differ in height by no more than that rounding in all; by how much is counted in `slivers`.
+    What is meant to lean does.
+    """
+    rows = solid.leaning
+    level = rows[:, 1] - rows[:, 0] <= solid.rounding
+    for lean in leaning:
+        level &= ~lean.means(rows, tolerance + SAME)
+    if not level.any():
+        return solid
+    faces = np.array(solid.faces)
+    heights = np.concatenate([rows[level, 0], rows[level, 1], faces])
+    order = np.argsort(heights, kind="stable")
+    group = np.empty(len(heights), dtype=np.intp)
+    group[order] = np.cumsum(np.diff(heights[order], prepend=-np.inf) > solid.rounding) - 1
+    heads = np.searchsorted(group[order], np.arange(group.max() + 1))
+    low, high = np.minimum.reduceat(heights[order], heads), np.maximum.reduceat(heights[order], heads)
+    uneven = high - low
+    of_row = group[: int(level.sum())]
+    even = np.zeros(len(uneven), dtype=bool)
+    even[of_row] = True
+    even &= uneven <= solid.rounding
+    merged = np.flatnonzero(level)[even[of_row]]
+    more = np.column_stack([rows[merged, :3], uneven[of_row][even[of_row]]])
+    left = faces[~even[group[2 * len(of_row) :]]]
+    return replace(
+        solid,
+        faces=tuple(np.sort(np.concatenate([left, 0.5 * (low + high)[even]])).tolist()),
+        leaning=np.delete(rows, merged, axis=0),
+        slivers=np.concatenate([solid.slivers, more]),
+    )
 
 
 def between_sections(
@@ -148,13 +201,8 @@ def between_sections(
             told.append(("thickness", fault))
     rows = solid.leaning
     for lean in leaning:
-        low, high, reach = rows.T
-        if lean.reach is None:
-            meant_so = (np.abs(low - lean.low) <= slack) & (np.abs(high - lean.high) <= slack)
-        else:
-            meant_so = (low >= lean.low - slack) & (high <= lean.high + slack) & (reach <= lean.reach + slack)
-        rows = rows[~meant_so]
-    for low, high, _ in rows[:MOST_NAMED].tolist():
+        rows = rows[~lean.means(rows, slack)]
+    for low, high, *_ in rows[:MOST_NAMED].tolist():
         bottom, top = _together(solid.leaning, low, high, slack)
         near = (lean.kind for lean in leaning if bottom < lean.high + slack and lean.low - slack < top)
         fault = f"walls lean between z = {low:.9g} and {high:.9g} mm, where none should"

@@ -278,6 +278,10 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
         if solid.units_mm is None:
             told += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
         raise ReadError("empty", told, path)
+    if part.layers:
+        from kin.judge.layers import leans, settled
+
+        solid = settled(solid, leans(part.layers, part.cross_holes), limits.tolerance)
     found = _found(solid, part, limits.tolerance, path)
     checks = [_watertight_check(solid, found), *(less_sure(one, solid.uneven) for one in found.checks)]
     contours = [chain.contour for chain in found.surfaces]

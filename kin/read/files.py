@@ -78,8 +78,9 @@ def read_solid(
         volume=units**3 * found.volume,
         sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
         faces=tuple(units * z for z in found.faces),
-        leaning=units * found.leaning,
+        leaning=found.leaning * [units, units, units, 1.0],
         slivers=units * found.slivers,
+        rounding=units * found.rounding,
     )
 
 
@@ -117,6 +118,6 @@ def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySoli
         height=solid.height - level,
         sections=tuple(Section(one.chains, z) for z, one in zip(heights, solid.sections, strict=False)),
         faces=tuple(z - level for z in solid.faces),
-        leaning=solid.leaning - [level, level, 0.0],
+        leaning=solid.leaning - [level, level, 0.0, 0.0],
         slivers=solid.slivers - [level, level, 0.0, 0.0],
     )

@@ -17,6 +17,7 @@ from kin.read.mesh.prism import walls
 from kin.read.mesh.stl import read_stl
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 DISC = """\
@@ -93,6 +94,69 @@ def test_a_bump_or_a_dent_between_sections(
     assert "thickness" in found
     assert "volume" not in found
     assert "lean" in found["thickness"] or "sections at different heights differ" in found["thickness"]
+
+
+def moved(path: Path, target: Path, move: Callable[[np.ndarray], np.ndarray]) -> Path:
+    """The same mesh with its vertices (n, 3) elsewhere."""
+    mesh = trimesh.load(path)
+    mesh.vertices = move(mesh.vertices.copy())
+    mesh.export(target)
+    return target
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("amount", [1e-30, 1e-9, 5e-6, 1e-4])
+def test_noise_in_height_is_rounding_for_every_kind(
+    solid: tuple[str, Path, Path], tmp_path: Path, amount: float
+) -> None:
+    """Faces of single precision, 1e-5 mm at 50 mm, are level with it, and it is counted; faces of 1e-4 mm are not."""
+    _, recipe, path = solid
+
+    def noisy(vertices: np.ndarray) -> np.ndarray:
+        shifts = np.random.default_rng(0).uniform(-amount, amount, len(vertices))
+        return vertices + np.column_stack([np.zeros((len(vertices), 2)), shifts])
+
+    spoilt = moved(path, tmp_path / "cam.stl", noisy)
+    assert ("thickness" in failing(recipe, spoilt)) is (amount > 1e-5)
+    if amount == 5e-6:
+        quiet, noise = (
+            next(check.value for check in camgeo.verify(recipe, one).checks if check.name == "thickness")
+            for one in (path, spoilt)
+        )
+        assert 0.9 * amount < noise - quiet < 4.0 * amount
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize(("amount", "turned"), [(1e-4, False), (0.0, True)])
+def test_leans_of_all_walls_and_turns_there_and_back(
+    solid: tuple[str, Path, Path], tmp_path: Path, amount: float, turned: bool
+) -> None:
+    """What is turned onto its side and back in single precision stands upright; what is sheared does not."""
+    _, recipe, path = solid
+
+    def there_and_back(vertices: np.ndarray) -> np.ndarray:
+        turn = trimesh.transformations.euler_matrix(0.7, 0.3, 0.0)[:3, :3]
+        on_its_side = (vertices @ turn.T).astype(np.float32).astype(float)
+        return on_its_side @ turn
+
+    def sheared(vertices: np.ndarray) -> np.ndarray:
+        return vertices + np.outer(vertices[:, 2], [amount / vertices[:, 2].max(), 0.0, 0.0])
+
+    spoilt = moved(path, tmp_path / "cam.stl", there_and_back if turned else sheared)
+    assert (not failing(recipe, spoilt)) is turned
+
+
+@pytest.mark.parametrize("out", [0.0, 0.05])
+def test_a_chamfer_with_vertices_on_its_way(tmp_path: Path, out: float) -> None:
+    """As remeshing leaves it, every triangle cut in four; and one vertex halfway up drawn out."""
+    recipe, path = exported("chamfer", tmp_path)
+    mesh = trimesh.load(path).subdivide()
+    vertices = mesh.vertices.copy()
+    halfway = np.flatnonzero(np.abs(vertices[:, 2] - 9.75) < 1e-6)
+    vertices[halfway[0], :2] *= 1.0 + out / 40.0
+    mesh.vertices = vertices
+    mesh.export(tmp_path / "fine.stl")
+    assert set(failing(recipe, tmp_path / "fine.stl")) == ({"chamfer"} if out else set())
 
 
 @pytest.mark.parametrize("kind", ["hub", "groove", "camshaft"])
@@ -197,7 +261,7 @@ def test_slivers_side_by_side_lean_together(needles: int, leans: bool) -> None:
 
 class _Solid:
     faces: tuple[float, ...] = (0.0, 4.0, 9.0)
-    leaning = np.array([[4.0, 9.0, 20.0]])
+    leaning = np.array([[4.0, 9.0, 20.0, 1.0]])
 
 
 @pytest.mark.parametrize(
@@ -207,6 +271,9 @@ class _Solid:
         (Lean("chamfer", 4.009, 8.991), None),
         (Lean("chamfer", 4.02, 9.0), "chamfer"),
         (Lean("chamfer", 3.98, 9.0), "chamfer"),  # a part of it is no even lean
+        (Lean("chamfer", 3.0, 9.5, inward=1.001), None),  # but as steep as it should be
+        (Lean("chamfer", 3.0, 9.5, inward=1.002), "chamfer"),
+        (Lean("chamfer", 3.0, 9.5, inward=-1.0), "chamfer"),
         (Lean("chamfer", 0.0, 3.9), "thickness"),
         (Lean("set-screw", 3.0, 9.5, 20.0), None),
         (Lean("set-screw", 3.0, 9.5, 19.98), "set-screw"),
@@ -214,7 +281,7 @@ class _Solid:
     ],
 )
 def test_what_may_lean_and_what_may_not(lean: Lean, named: str | None) -> None:
-    """Evenly from end to end, or within heights and reach; each within the tolerance."""
+    """Evenly from end to end or as steeply, or within heights and reach; each within the tolerance."""
     told = between_sections(_Solid, [0.0, 4.0, 9.0], [lean], 0.01)
     assert [kind for kind, _ in told] == ([] if named is None else [named])
     assert named is None or "between z = 4 and 9 mm" in told[0][1]
@@ -227,7 +294,7 @@ def test_one_face_where_one_is_meant(faces: tuple[float, ...], double: bool) -> 
     """Two within the tolerance are a fin; what is farther off is for the checks on faces."""
 
     class Faced(_Solid):
-        leaning = np.empty((0, 3))
+        leaning = np.empty((0, 4))
 
     Faced.faces = faces
     assert bool(between_sections(Faced, [0.0, 9.0], [], 0.01)) is double

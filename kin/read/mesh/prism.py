@@ -49,9 +49,10 @@ class Evened(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """Triangles that lean (k, 3): least and greatest height, distance from the axis, mm; those that rounding explains.
+    """Triangles that lean (k, 4), and those that rounding explains (k, 4).
 
-    `slivers` (k, 4) are the latter: the same, and by how much they lean, mm.
+    `leaning` has their least and greatest height and reach from the axis, mm, and by how much they go inward a mm of
+    height; `slivers` the same three, and by how much they lean, mm.
     """
 
     leaning: Array
@@ -65,18 +66,21 @@ def walls(mesh: Mesh, apart: float) -> Walls:
     where none leans the sections are the same but for slivers no wider than `apart`, whose area in all is no more than
     `apart` along the mean section: should there be so many that it is, each is one that leans.
     """
-    x, y, z = (np.abs(part) for part in mesh.area_vectors)
+    x, y, upward = mesh.area_vectors
+    across, z = np.hypot(x, y), np.abs(upward)
     corners = mesh.points[mesh.corners]
     low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
     side = np.roll(corners, -1, axis=1)[:, :, :2] - corners[:, :, :2]
     width = z / np.maximum(np.hypot(side[:, :, 0], side[:, :, 1]).max(axis=1), np.finfo(float).tiny)
     lean = (low < high) & (z > 0.0)
     sliver = lean & (width <= apart)
-    if float(z[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(np.hypot(x, y).sum()):
+    if float(z[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(across.sum()):
         sliver[:] = False
     reach = np.hypot(corners[:, :, 0], corners[:, :, 1]).max(axis=1)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        inward = upward / across
     return Walls(
-        np.column_stack([low, high, reach])[lean & ~sliver], np.column_stack([low, high, reach, width])[sliver]
+        np.column_stack([low, high, reach, inward])[lean & ~sliver], np.column_stack([low, high, reach, width])[sliver]
     )
 
 

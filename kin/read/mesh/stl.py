@@ -66,10 +66,11 @@ class Solid(Nest, Slivered):
     height              at which the section was taken
     prism               the walls stand upright and every section is the same, to the file's rounding
                         (`kin.read.mesh.prism`)
-    leaning             triangles neither level nor upright, to that rounding (k, 3): least and greatest height, reach
-                        from the axis
-    slivers             where a point of the mesh is off such a prism or such walls through that rounding (k, 4): as
-                        `leaning`, and by how much, mm
+    leaning             triangles that are not level, nor upright to that rounding (k, 4): least and greatest height,
+                        reach from the axis, mm, and by how much they go inward a mm of height
+    slivers             where a point of the mesh is off such a prism or such walls through that rounding (k, 4): least
+                        and greatest height, reach, and by how much, mm
+    rounding            by how much heights may differ through that rounding, mm; 0 where all are as they are meant
     volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
@@ -93,8 +94,9 @@ class Solid(Nest, Slivered):
     form: Form
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
-    leaning: Array = field(default_factory=partial(no_rows, 3))
+    leaning: Array = field(default_factory=partial(no_rows, 4))
     slivers: Array = field(default_factory=partial(no_rows, 4))
+    rounding: float = 0.0
     units_mm: float | None = None
 
     def section(self, z: float) -> Section:
@@ -146,7 +148,8 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
     found = upright(corners)
-    read, leaning, slivers = found.mesh, no_rows(3), no_rows(4)  # faults are those of the mesh as it is in the file
+    read, leaning, slivers = found.mesh, no_rows(4), no_rows(4)  # faults are those of the mesh as it is in the file
+    apart = 0.0
     if not found.prism:
         moved = evened(corners)
         again = None if moved is None else upright(moved.corners)
@@ -155,14 +158,15 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     mesh, outline = found.mesh, found.outline
     if not found.prism:
         _refuse_apart(read, path, deepest)
-        leaning, slivers = walls(mesh, 2.0 * rounding(corners))
+        apart = 2.0 * rounding(corners)
+        leaning, slivers = walls(mesh, apart)
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
     levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
     if outline is None:
-        stepped = len(levels) > 2 and not len(heights)
-        height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
+        steps = no_rows(0) if len(heights) else _steps(corners, apart)
+        height, outline = widest(mesh, steps, path) if len(steps) > 2 else cut(mesh, height, path)
     try:
         chains = sectioned(outline, path, deepest, across=whole is None)
     except ReadError as error:
@@ -189,7 +193,15 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         faces=tuple(levels.tolist()),
         leaning=leaning,
         slivers=slivers,
+        rounding=apart,
     )
+
+
+def _steps(corners: Corners, apart: float) -> Array:
+    """Heights of the faces of triangles (t, 3, 3) that are level within `apart`, mm, one for those as near."""
+    z = corners[:, :, 2]
+    levels: Array = np.sort(z[np.ptp(z, axis=1) <= apart].mean(axis=1, dtype=np.float64))
+    return levels[np.diff(levels, prepend=-np.inf) > apart]
 
 
 def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:

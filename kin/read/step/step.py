@@ -57,7 +57,8 @@ class StepSolid(Nest, Slivered):
     volume              mm^3, from sections
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
-    leaning             faces neither horizontal nor upright (k, 3): least and greatest height, reach from the axis
+    leaning             faces neither horizontal nor upright (k, 4): least and greatest height, reach from the axis, mm,
+                        and nan: how steep they are is not looked at
     faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
                         into the solid
     misfit              farthest that an edge lies off its faces or its ends off itself
@@ -78,6 +79,7 @@ class StepSolid(Nest, Slivered):
     schema: str
     units_mm: float
     slivers: Array = field(default_factory=partial(no_rows, 4))  # none: its numbers are doubles
+    rounding: float = 0.0
 
     @property
     def thickness(self) -> float:
@@ -125,7 +127,7 @@ def _solid(body: _Body, sought: Sought) -> StepSolid:
         volume=body.volume,
         sections=tuple(sections) if len(heights) else (),
         faces=tuple(distinct(np.array([face.heights[0] for face in body.lids])).tolist()),
-        leaning=np.array([(*face.heights, face.reach) for face in body.faces if face.leans]).reshape(-1, 3),
+        leaning=np.array([(*face.heights, face.reach, np.nan) for face in body.faces if face.leans]).reshape(-1, 4),
         faults=tuple(body.faults),
         misfit=misfit,
         schema=body.space.file.schema,
