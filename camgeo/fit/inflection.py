@@ -18,7 +18,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve.curve import Curve, Frame
+    from camgeo.curve.curve import Curve, Frame, Run
     from camgeo.fit.nodes import Density
     from kin.numeric.arrays import Array
 
@@ -28,6 +28,9 @@ _MOST_ROOT_STEPS = 60
 _NEAR = 0.15  # of an edge's reach: how far a root may be off
 _CLEAR = 0.05  # of its reach: how near to the inflection an extreme is looked for
 _STEPS = 16
+_CUBIC = 3.0  # times the bend of a cubic: a first guess may be off by as much
+_PLACES = (0.25, 0.5, 0.75, 1.0)  # of a reach, where the bend is looked at
+_HALVINGS = 60
 _SETTLED = 1e-4  # of the tolerance
 _MOST_STEP = 0.3  # of an edge's reach, in one step
 
@@ -42,15 +45,16 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
         return np.zeros(0), 1.0
     if float(curve.cells.rows[3].max()) <= 0.0:
         return np.zeros(0), -1.0
-    inner = np.concatenate([density.t[1:-1] for density in densities])
-    positive = curve.sample(inner).turn >= 0.0
-    last = np.cumsum([density.t.size - 2 for density in densities])[:-1] - 1
-    breaks = np.array([density.t[0] for density in densities[1:]])
+    t = np.concatenate([density.t for density in densities])
+    ends = np.cumsum([density.t.size for density in densities]) - 1
+    side = np.ones(t.size, dtype=np.intp)
+    side[ends] = -1
+    positive = curve.sample(t, side).turn >= 0.0
     change = positive[1:] != positive[:-1]
-    at_break = breaks[change[last]]
-    change[last] = False
+    at_break = t[ends[:-1]][change[ends[:-1]]]
+    change[ends[:-1]] = False
     found = np.flatnonzero(change)
-    low, high, sense = inner[found], inner[found + 1], np.where(positive[found], 1.0, -1.0)
+    low, high, sense = t[found], t[found + 1], np.where(positive[found], 1.0, -1.0)
     root = 0.5 * (low + high)
     for step in range(_MOST_ROOT_STEPS if found.size else 0):
         at = curve.sample(root)
@@ -71,6 +75,27 @@ def reach(frame: Frame, tolerance: float) -> Array:
     with np.errstate(divide="ignore"):
         far: Array = np.cbrt(24.0 * tolerance / (np.abs(frame.turn_slope) * frame.speed))
     return far
+
+
+def reaches(curve: Curve, bends: Array, run: Run, tolerance: float) -> tuple[Array, Array]:
+    """How far edges across inflections `bends` (n,) reach before them and after them, in parameter: (n,) each.
+
+    Either side counts by itself, as the slope of the curvature may jump at a break and be 0 on one side. A reach is
+    halved until the curve bends over it no more than `_CUBIC` times as much as its cubic may.
+    """
+    both = []
+    for side in (-1, 1):
+        far = reach(curve.sample(bends, side), tolerance)
+        far = np.minimum(far, bends - run.low if side < 0 else run.high - bends)
+        for _ in range(_HALVINGS):
+            frame = curve.sample((bends[:, None] + side * far[:, None] * np.array(_PLACES)).ravel())
+            bent = np.abs(frame.turn * frame.speed).reshape(far.size, -1).max(axis=1)
+            over = bent * far**2 > 24.0 * _CUBIC * tolerance
+            if not over.any():
+                break
+            far = np.where(over, 0.5 * far, far)
+        both.append(far)
+    return both[0], both[1]
 
 
 @dataclass(frozen=True)

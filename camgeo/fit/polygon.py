@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.edges import Edges, Sagittas, frames, look, placed, proved
-from camgeo.fit.inflection import REACH, crossings, inflections, reach
+from camgeo.fit.inflection import REACH, crossings, inflections, reaches
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
 from kin.numeric.records import dataclass
@@ -136,9 +136,10 @@ def _parts(
     high = whole.at(root * (share + np.minimum(REACH, room[1:])))
     if bends.size:
         # the grid of the density may be far wider than an edge
-        far = reach(curve.sample(bends), tolerance)
-        low = np.where(far > GRID * (bends - low), np.maximum(bends - far, whole.at(root * (share - room[:-1]))), low)
-        high = np.where(far > GRID * (high - bends), np.minimum(bends + far, whole.at(root * (share + room[1:]))), high)
+        before, after = reaches(curve, bends, run, tolerance)
+        least, most = whole.at(root * (share - room[:-1])), whole.at(root * (share + room[1:]))
+        low = np.where(before > GRID * (bends - low), np.maximum(bends - before, least), low)
+        high = np.where(after > GRID * (high - bends), np.minimum(bends + after, most), high)
     edge = crossings(curve, bends, low, high, CROSSING * tolerance)
     # an edge that would reach beyond the run's own end keeps to the guess, which leaves room
     low = np.where(edge.low > run.low, edge.low, low)

@@ -116,11 +116,9 @@ def first_contact(obstacle: Arcs, guide: Guide, phi: Array, share: float = 1.0) 
 
 def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
     """Whether some point of each short piece may lie as far from the shaft as the roller's centre can."""
-    middle = pieces.points(0.5 * pieces.length)
-    r = np.hypot(middle[:, 0], middle[:, 1])
-    half = 0.5 * pieces.length + slack
+    nearest, farthest = _distances(pieces, slack)
     least, most = guide.reach()
-    within: NDArray[np.bool_] = (r + half >= least) & (r - half <= most)
+    within: NDArray[np.bool_] = (farthest >= least) & (nearest <= most)
     return within
 
 
@@ -129,7 +127,7 @@ def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
     half = 0.5 * pieces.length + slack
-    least, most = np.maximum(r - half, slack), r + half
+    least, most = _distances(pieces, slack)
     lead = guide.lead(r)
     with np.errstate(over="ignore"):
         reach = half * np.hypot(1.0 / least, guide.lead_slope(least, most))
@@ -138,6 +136,21 @@ def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
         reach = np.fmin(reach, half / least + np.abs(ends).max(axis=0))
     angle = np.arctan2(middle[:, 1], middle[:, 0]) - lead
     return angle, np.fmin(reach, np.pi)
+
+
+def _distances(pieces: Arcs, slack: float) -> tuple[Array, Array]:
+    """Bounds of the distance from the shaft over each short piece, mm: (n,) each, the first above 0.
+
+    No point is farther from the middle than half the length. Nor does the distance leave those of the ends by more than
+    length^2/8 of its second derivative, which is at most 1/r + |k|: pieces that run round the shaft keep theirs, as
+    long arms need, whose shaft angle changes fast with it.
+    """
+    middle, half = pieces.points(0.5 * pieces.length), 0.5 * pieces.length + slack
+    r = np.hypot(middle[:, 0], middle[:, 1])
+    least, most = np.maximum(r - half, slack), r + half
+    ends = np.stack([np.hypot(*pieces.start.T), np.hypot(*pieces.ends.T)])
+    sag = 0.5 * half**2 * (1.0 / least + np.abs(pieces.curvature)) + slack
+    return np.maximum(least, ends.min(axis=0) - sag), np.minimum(most, ends.max(axis=0) + sag)
 
 
 def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from camgeo.fit.edges import look
-from camgeo.fit.inflection import crossings
-from camgeo.fit.polygon import fit_polygon, least_vertices
-from camgeo.recipe.loading import load
+from camgeo.fit.inflection import crossings, inflections
+from camgeo.fit.nodes import Density
+from camgeo.fit.polygon import fit_polygon, least_vertices, polygon_density
+from camgeo.recipe.loading import load, load_text
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
@@ -62,3 +65,53 @@ def test_a_root_that_is_far_off_for_a_fine_edge_is_followed(monkeypatch: pytest.
             fit_polygon(curve, tolerance)
     assert len(reached) == 5
     assert all(reached)
+
+
+# a curve bends the other way close to where one motion ends and the next begins, and its curvature jumps there
+NEAR_A_BREAK = {
+    "rise, rise, return": (
+        "base_radius: 150, follower: {kind: roller, radius: 8.435, arm: {length: 316.6, pivot: 365, side: leading}}",
+        (
+            "{dwell: 92.59}, {to: 22.4, over: 22.84, law: cycloidal}, {to: 14.39, over: 17.7, law: freudenstein-13}, "
+            "{dwell: 164.69}, {to: 0, over: 36.9, law: cycloidal}, {dwell: 25.28}"
+        ),
+    ),
+    "trailing": (
+        "base_radius: 143.2, follower: {kind: roller, radius: 8.56, arm: {length: 302.7, pivot: 353.2}}",
+        (
+            "{dwell: 89.85}, {to: 22.27, over: 22.02, law: modified-sine}, "
+            "{to: 14.132, over: 17.26, law: freudenstein-13}, {dwell: 159.544}, "
+            "{to: 0, over: 35.941, law: harmonic}, {dwell: 35.385}"
+        ),
+    ),
+}
+
+
+def near_a_break(name: str) -> Curve:
+    follower, motion = NEAR_A_BREAK[name]
+    text = f"cam: {{kind: disc, {follower}, motion: [{motion}]}}"
+    return load_text(text, "r").cam.exact().surfaces[0].curve
+
+
+@pytest.mark.parametrize("name", NEAR_A_BREAK)
+@pytest.mark.parametrize("tolerance", [0.05, 0.001, pytest.param(1e-5, marks=pytest.mark.slow)])
+def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
+    curve = near_a_break(name)
+    polygon = fit_polygon(curve, tolerance)
+    assert 0.9 * tolerance < polygon.bound.worst <= tolerance
+    assert polygon.count <= 1.06 * least_vertices(curve, tolerance) + len(curve.runs[0].breaks) + 1
+
+
+@pytest.mark.parametrize("name", NEAR_A_BREAK)
+def test_inflections_are_where_the_turn_is_zero_or_jumps(name: str) -> None:
+    """Round a closed curve they are even in number, and on either side the curve bends as the sides say."""
+    curve = near_a_break(name)
+    run = curve.runs[0]
+    bends, sense = inflections(curve, Density.of(curve, run.stretches, polygon_density), 1e-14)
+    assert bends.size % 2 == 0
+    assert bends.size > 2
+    ends = np.concatenate([[run.low], bends, [run.high]])
+    for low, high in pairwise(ends):
+        looks = curve.sample(low + (high - low) * np.linspace(1e-3, 1.0 - 1e-3, 501)).turn
+        assert (looks * sense > 0.0).all()
+        sense = -sense

@@ -11,7 +11,7 @@ from support.heavy import shapely
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest, signed_distance
-from kin.follower.contact import dilated, first_contact
+from kin.follower.contact import angles_of, dilated, first_contact, shortened, within_reach
 from kin.follower.guide import Arm
 from kin.law.contacts import LEADING, TRAILING
 
@@ -183,3 +183,37 @@ def test_contact_of_a_cam_of_a_micrometre_and_of_a_kilometre(side, size):
     scaled = contact(size * points, size * 6.0, Arm(size * 60.0, size * 70.0, side), phi, bulges)
     assert np.isfinite(usual).all()
     np.testing.assert_allclose(scaled / size, usual, rtol=1e-11)
+
+
+@given(length=st.floats(20.0, 3e4), pivot=st.floats(30.0, 200.0), lift=st.floats(0.0, 0.9), count=st.integers(12, 60))
+@settings(max_examples=examples(60), deadline=None)
+def test_intervals_hold_the_angles_of_all_points(length: float, pivot: float, lift: float, count: int) -> None:
+    """Every point of a contour that rises and falls within an arm's reach is met within its piece's interval."""
+    arm = Arm(length, pivot)
+    least, most = arm.reach()
+    t = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    r = 0.5 * (least + most) + lift * 0.5 * (most - least) * np.sin(3.0 * t)
+    chain = Contour.from_vertices(np.column_stack([r * np.cos(t), r * np.sin(t)])).as_arcs()[0]
+    pieces, _ = shortened(dilated(chain, 1e-3 * (most - least)), arm)
+    slack = arm.slack(float(most))
+    middle, reach = angles_of(pieces, arm, slack)
+    within = within_reach(pieces, arm, slack)
+    for share in (0.0, 0.1, 0.37, 0.5, 0.8, 1.0):
+        points = pieces.points(share * pieces.length)
+        away = np.hypot(*points.T)
+        inside = (away > least) & (away < most)
+        assert within[inside].all()
+        off = np.angle(np.exp(1j * (np.arctan2(points[:, 1], points[:, 0]) - arm.lead(away) - middle)))
+        assert (np.abs(off) <= reach + 1e-9)[inside].all()
+
+
+@pytest.mark.parametrize("length", [60.0, 1e4, 3e4])
+def test_pairs_to_search_are_few_with_any_arm(length: float) -> None:
+    """Intervals of all pieces together cover the turn a few times over, however many and however long the arm."""
+    arm = Arm(length, 80.0)
+    t = np.linspace(0.0, 2.0 * np.pi, 4000, endpoint=False)
+    r = abs(length - 80.0) + 60.0 + 20.0 * np.cos(t)
+    chain = Contour.from_vertices(np.column_stack([r * np.cos(t), r * np.sin(t)])).as_arcs()[0]
+    pieces, _ = shortened(dilated(chain, 5.0), arm)
+    _, reach = angles_of(pieces, arm, arm.slack(float(r.max())))
+    assert 2.0 * reach.sum() < 20.0 * np.pi
