@@ -13,16 +13,34 @@ from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
     AT_SPEED,
+    DURATION,
+    FORCE_GREATEST,
+    FORCE_LEAST,
+    GUIDE_FORCE,
     HOLLOW_RADIUS,
+    INERTIA,
     LAW_ERROR,
+    LEAST_FORCE,
     LEAST_WALL,
+    LIFT_AREA,
+    MASS,
+    MEAN_FORCE,
     MOTION_ERROR,
     ON_RETURN,
     ON_RISE,
+    PEAK_FORCE,
     PEAKS,
+    PIVOT_CLEARANCE,
+    PRELOAD_GREATEST,
+    PRELOAD_LEAST,
+    PRESSURE,
     PRESSURE_ANGLE,
     RADIUS,
+    RAMP_VELOCITY,
+    ROLLER_SPEED,
+    SIZE,
     STEEP,
+    TORQUE,
 )
 
 if TYPE_CHECKING:
@@ -163,15 +181,17 @@ def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
 def _tighter(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
-    return _tolerance(recipe, check["value"], check["limit"], tolerance)
+    own = _tolerance(recipe, check["value"], check["limit"], tolerance)
+    return f"{own}, or " if own else ""
 
 
 def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
+    """Tell of the tolerance that would bring a motion error to a limit; nothing where none is known."""
     if limit <= 0.0:
         return ""
     if recipe.cam.advice.gain == 1.0:  # the follower is off by no more than the contour
-        return f"a tolerance of {limit:.6g}, or "
-    return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
+        return f"a tolerance of {limit:.6g}"
+    return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}"
 
 
 # --- limits of a recipe's own -----------------------------------------------------------------------------------------
@@ -191,47 +211,55 @@ class Missed(NamedTuple):
 
 
 def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
-    """Tell what would keep a limit: of the cam where that is known, and of the limit itself; in the recipe's unit."""
-    figure = limit.figure
+    """Tell what would keep a limit: something to do to the cam where that is known, else the limit that it keeps.
+
+    Lengths are in the recipe's unit.
+    """
     divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
     value, bound = missed.value / divisor, missed.bound / divisor
-    if value > bound:
-        own = _to_lower(recipe, figure, missed)
-        return f"{own}{limit.field('at_most')} of {_outward(value, up=True)}"
-    own = _to_raise(recipe, figure, value, bound, missed.surface)
-    return f"{own}{limit.field('at_least')} of {_outward(value, up=False)}"
+    lower = value > bound
+    geometry = _to_lower(recipe, limit.figure, missed) if lower else _to_raise(recipe, limit.figure, missed)
+    if remedy := geometry or _of_train(recipe, limit.figure, value, bound) or _of_lobe(recipe, limit, value, bound):
+        return remedy
+    return f"{limit.field('at_most' if lower else 'at_least')} of {_outward(value, up=lower)}"
 
 
 def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
     if figure == MOTION_ERROR:
         tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
         return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
+    if missed.bound <= 0.0 or recipe.linkage is not None:
+        return ""
     if figure == LAW_ERROR:
-        return f"{MORE_HARMONICS}, or " if missed.bound > 0.0 else ""
-    if figure not in STEEP or recipe.linkage is not None:
+        return MORE_HARMONICS
+    if figure == ROLLER_SPEED:
+        return "a larger roller"
+    if figure in {SIZE, MASS, INERTIA}:
+        return "a smaller cam" if figure == SIZE else "a thinner or a smaller part"
+    if figure not in STEEP:
         return ""
     if figure == PRESSURE_ANGLE:
         floor = recipe.cam.advice.least_pressure_angle
-        if 0.0 < missed.bound <= floor:
-            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
+        if missed.bound <= floor:
+            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg)"
     limits = "cam.sizing.pressure-angle"
     if limits in recipe.marks and figure in {PRESSURE_ANGLE, ON_RISE, ON_RETURN}:
         both = figure == PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
         key = "on_return" if figure == ON_RETURN else "at_most and on_return" if both else "at_most"
-        return f"{key} of {missed.bound:.6g} under sizing, or " if missed.bound > 0.0 else ""
+        return f"{key} of {missed.bound:.6g} under sizing"
     advice = recipe.cam.advice.on(missed.surface)
-    less = advice.less_steep
     if advice.larger and not (
         figure in {*PEAKS, *AT_SPEED} or recipe.cam.sizes
     ):  # no size changes them, or it is found
-        less = f"{advice.larger}, {less}"
-    return f"{less}, or " if less and missed.bound > 0.0 else ""
+        return f"{advice.larger}, {advice.less_steep}"
+    return advice.less_steep
 
 
-def _to_raise(recipe: Recipe, figure: str, value: float, bound: float, surface: str) -> str:
+def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     """Tell what would raise a figure of a surface to a bound, in the recipe's unit."""
-    unit, own, by = "in" if recipe.units == "inch" else "mm", "", bound - value
-    advice = recipe.cam.advice.on(surface)
+    unit, own = "in" if recipe.units == "inch" else "mm", ""
+    value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
+    by, advice = bound - value, recipe.cam.advice.on(missed.surface)
     if figure == RADIUS and recipe.cam.sizes:
         own = advice.rounder(value, bound, unit)
     elif figure in {RADIUS, HOLLOW_RADIUS} and advice.radius:
@@ -243,13 +271,50 @@ def _to_raise(recipe: Recipe, figure: str, value: float, bound: float, surface: 
             own += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:
         own = advice.rounder(0.0, by, unit)
+    elif figure == PIVOT_CLEARANCE:
+        own = "a pivot farther from the shaft"
     elif figure == LEAST_WALL and lone_ring(recipe):
         own = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
         own = (
             f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
         )
-    return f"{own}, or " if own else ""
+    return own
+
+
+def _of_train(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Tell what would change a force or pressure, SI, to a bound above 0; nothing of others."""
+    if bound <= 0.0:
+        return ""
+    if figure in {PRELOAD_LEAST, PRELOAD_GREATEST} and value > 0.0:  # in proportion to it
+        share = upward(bound / value) if value < bound else downward(bound / value)
+        return f"a cam.preload.interference {share} times as large"
+    held = ("dynamics.preload", "dynamics.least_force", "cam.preload.interference")
+    spring = next((path for path in held if path in recipe.marks), "")
+    if figure in {FORCE_LEAST, LEAST_FORCE}:
+        return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
+    if value < bound or figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
+        return ""
+    less = f"a smaller {spring}, or less mass or load" if spring else "less mass or load"
+    if figure == PRESSURE:  # with the root of force over width
+        wider = f"contacts {upward((value / bound) ** 2)} times as wide (part.thickness, less chamfer, a deeper groove)"
+        return f"{wider}, a larger radius, or {less}"
+    return f"a longer guide, or {less}" if figure == GUIDE_FORCE else less
+
+
+def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
+    """Tell by how much the half of a lobe would bring its duration or area to a bound, or of segments what would."""
+    half, more = "cam.motion.lobe.half", value < bound
+    if limit.figure not in {DURATION, LIFT_AREA, RAMP_VELOCITY} or bound <= 0.0 or value <= 0.0:
+        return ""
+    if half not in recipe.marks:
+        segments = any(path.startswith("cam.motion[") for path in recipe.marks)
+        longer = more if limit.figure != RAMP_VELOCITY else not more
+        return f"a rise and a return over {'more' if longer else 'less'} of the turn" if segments else ""
+    if limit.figure == RAMP_VELOCITY:
+        return "" if more else f"a larger {half}"
+    about = "about " if "cam.motion.lobe.ramp" in recipe.marks else ""  # which keeps its length
+    return f"a {half} {about}{upward(bound / value) if more else downward(bound / value)} times as large"
 
 
 def _outward(value: float, *, up: bool) -> str:

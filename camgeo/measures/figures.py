@@ -405,6 +405,8 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
     if name == BACKLASH and file.closures:
         return _greatest(_of_play(closure.play) for closure in file.closures)
+    if name == BACKLASH and not file.surfaces:
+        return Measured(None, "mm", detail=unread)
     if name == BACKLASH:
         held = [
             one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash

@@ -76,11 +76,12 @@ def _held(
         value, slack = measured.value, ROUNDING * abs(bound)
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
         detail = measured.detail if value is None or math.isinf(value) else ""
-        if limit.place and value is not None:
-            detail = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
         if value is not None and not ok:
             missed = Missed(value, bound, measured.unit, tolerance, measured.surface)
             detail = f"{of_limit(recipe, limit, missed)} would satisfy it"
+        if limit.figure in AT_LIFT and value is not None:
+            lift = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
+            detail = f"{lift}: {detail}" if detail else lift
         name, of = LIMIT + limit.figure, measured.surface
         found.append(Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, of))
     return found

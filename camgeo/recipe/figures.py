@@ -107,6 +107,9 @@ PRESSURE, GUIDE_FORCE, MEAN_FORCE = "contact-pressure", "guide-force", "mean-rol
 PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
 
 
+LEAST_FORCE, PEAK_FORCE = "least-force", "peak-force"
+
+
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
 
 
@@ -236,10 +239,10 @@ FIGURES: dict[str, Figure] = {
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
     "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
-    "least-force": Figure(
+    LEAST_FORCE: Figure(
         "least contact force, N; N m where it turns", Kind.THRUST, "most", "preload", of="dynamics", swept=False
     ),
-    "peak-force": Figure(
+    PEAK_FORCE: Figure(
         "greatest contact force, N; N m where it turns", Kind.THRUST, "least", "preload", of="dynamics", swept=False
     ),
     BACKLASH_LEFT: Figure(

@@ -255,9 +255,7 @@ def test_on_return_is_a_bound_of_its_own() -> None:
     rise, back = made[f"limit:{RISE}"], made[f"limit:{RETURN}"]
     assert (rise.ok, rise.limit, back.ok, back.limit) == (True, 15, False, 28)
     assert "limit:pressure-angle" not in made
-    said = re.search(r"limits\.pressure-angle\.on_return of (\S+) would satisfy it", back.detail)
-    assert said
-    assert all(one.ok for one in checks(text.replace("on_return: 28", f"on_return: {said[1]}")).values())
+    assert re.search(r"a larger base radius, .* would satisfy it", back.detail)
     alone = checks(text.replace("at_most: 15, ", ""))
     assert not alone[f"limit:{RETURN}"].ok
     assert f"limit:{RISE}" not in alone
