@@ -83,21 +83,25 @@ def verify(
     *files: str | PathLike[str],
     tolerance: float | None = None,
     units: Units | None = None,
+    gap: float | None = None,
     second_opinion: bool = False,
 ) -> Report:
     """Judge drawings, solids and milling programs of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
-    its export. `units` is that of files that state none. `second_opinion` has ezdxf, shapely, trimesh and manifold3d
-    look at the files too: more checks that can fail. Raises RecipeErrors where there is no such cam, CallError for what
-    is no file of a known kind, UnitsError where a file states another unit than `units`, SurroundingsError where one of
-    those libraries is missing. A file that cannot be read raises nothing: that is a check that fails.
+    its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
+    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. `second_opinion`
+    has ezdxf, shapely, trimesh and manifold3d look at the files too: more checks that can fail. Raises RecipeErrors
+    where there is no such cam, CallError for what is no file of a known kind and a gap that is too wide, UnitsError
+    where a file states another unit than `units`, SurroundingsError where one of those libraries is missing. A file
+    that cannot be read raises nothing: that is a check that fails.
     """
-    from kin.read.files import SUFFIXES
+    from kin.read.files import DRAWINGS, SUFFIXES
 
     recipe = order_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
+    wide = None if gap is None else number_of("gap", gap)
     if units is not None:
         is_a("units", units, str, "a str")
     is_a("second_opinion", second_opinion, bool, "a bool")
@@ -110,14 +114,19 @@ def verify(
     faults += [f"{escaped(str(path))}: none of {known}" for path in found if path.suffix.lower() not in SUFFIXES]
     if within is not None and not 0.0 < within <= MOST:
         faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {within!r}")
+    if wide is not None and not 0.0 < wide <= MOST:
+        faults.append(f"a gap is a length above 0 and at most the tolerance, not {wide!r}")
+    if wide is not None and not any(SUFFIXES.get(path.suffix.lower()) in DRAWINGS for path in paths):
+        faults.append("a gap is one between ends in a drawing: leave it out, as none of the files is one")
     if units is not None and units not in UNIT_MM:
         faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
     if faults:
         raise CallError(*faults)
     within = None if within is None else within * recipe.mm
+    wide = None if wide is None else wide * recipe.mm
     unit = None if units is None else UNIT_MM[units]
     if isinstance(recipe, Recipe):
-        report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
+        report = pipeline.judged(recipe, paths, tolerance=within, units=unit, gap=wide, second_opinion=second_opinion)
     else:
         from camgeo.api import camshaft
 

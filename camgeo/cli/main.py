@@ -123,6 +123,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("files", nargs="+", type=name_of, metavar="FILE")
     _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
+    text = "join ends of a drawing this near, at most the tolerance; added to the errors of contour and motion"
+    verify.add_argument("--gap", type=_length, metavar="G", help=text)
     text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
     verify.add_argument("--second-opinion", action="store_true", help=text)
     wing("sweep", "Many designs of one recipe, ranked; the best become recipes.", "camgeo.capabilities.sweep.command")
@@ -165,7 +167,7 @@ def _length(text: str) -> str:
     except Complaint:
         value = 0.0
     if not 0.0 < value <= MOST:
-        raise argparse.ArgumentTypeError(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {text}")
+        raise argparse.ArgumentTypeError(f"a length above 0 and up to {MOST:.10g} is expected, not {text}")
     return text
 
 
@@ -330,8 +332,9 @@ def _verify(arguments: argparse.Namespace) -> int:
         recipe = _at(load_order(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
+        gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
         second = arguments.second_opinion
-        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, second_opinion=second))
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, second_opinion=second))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:

@@ -98,17 +98,21 @@ def judged(
     *,
     tolerance: float | None = None,
     units: float | None = None,
+    gap: float | None = None,
     second_opinion: bool = False,
 ) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
 
     They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
-    `units`, mm, is that of files that state none; raises UnitsError where one states another. `second_opinion` asks
-    other libraries about them too; SurroundingsError without those.
+    `units`, mm, is that of files that state none; raises UnitsError where one states another. Ends in drawings within
+    `gap`, mm, are joined; CallError for one above the tolerance of a drawing. `second_opinion` asks other libraries
+    about them too; SurroundingsError without those.
     """
+    from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
     from kin.judge.together import DiscFile, verify_set
+    from kin.read.files import DRAWINGS
 
     clock = Clock()
     if second_opinion:
@@ -120,13 +124,18 @@ def judged(
     skipped: list[Skipped] = []
     for given in sets_of(recipe, paths, tolerance):
         kind, asked, within = given.held.kind, given.held.asked, given.held.tolerance
+        if gap is not None and gap > within and kind in DRAWINGS:
+            message = (
+                f"a gap of {gap / recipe.mm:.9g} {recipe.units} is more than the tolerance, {within / recipe.mm:.9g}"
+            )
+            raise CallError(f"{message}, of {given.files[0][1].name}: give at most that")
         with clock.stage("judge"):
             request = FileRequest(kind) if asked is None else asked
             told = recipe if asked is None else recipe.told_for(asked)
             meant = shaft_of_file(told, design, kind, request.compensation, recipe.field_of(asked))
             unstated = [recipe.unstated(path) if units is None else units for _, path, _ in given.files]
             discs = [DiscFile(path, disc, mm) for (_, path, disc), mm in zip(given.files, unstated, strict=True)]
-            verdicts = verify_set(discs, meant, recipe.verify.angles, permitted(recipe, within))
+            verdicts = verify_set(discs, meant, recipe.verify.angles, permitted(recipe, within, gap))
         for (place, path, disc), verdict in zip(given.files, verdicts, strict=True):
             made = FileRequest(verdict.kind, compensation=request.compensation)
             rank = disc if len(meant.parts) > 1 else None

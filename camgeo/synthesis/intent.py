@@ -74,8 +74,11 @@ def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
     return (ClosureIntent(pushes, stops, design.follower.closure),)
 
 
-def permitted(recipe: Recipe, tolerance: float) -> Limits:
-    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
+def permitted(recipe: Recipe, tolerance: float, gap: float | None = None) -> Limits:
+    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing).
+
+    Ends in drawings within `gap`, mm, are joined; None for the readers' own.
+    """
     from kin.judge.intent import Limits
 
     motion, output = recipe.verify.motion_error, recipe.verify.output_error
@@ -83,4 +86,4 @@ def permitted(recipe: Recipe, tolerance: float) -> Limits:
         output = math.degrees(output)
     if motion is not None and recipe.cam.arrangement.unit == "deg":
         motion = math.degrees(motion)
-    return Limits(tolerance, motion, output=output)
+    return Limits(tolerance, motion, output=output, gap=gap)

@@ -159,10 +159,12 @@ class Limits:
 
     Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
     as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers
-    and `kin.follower.frame.implied_limit`.
+    and `kin.follower.frame.implied_limit`. Ends in drawings within `gap`, mm, are joined by lines, which is counted
+    into contour and motion; None for the readers' own.
     """
 
     tolerance: float
     motion: float | None = None
     play: float | None = None
     output: float | None = None
+    gap: float | None = None

@@ -43,6 +43,7 @@ SIZE_SHARE = (
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
 MOST_NAMED = 5  # faults named in a message
+WIDE = 1.5  # of a gap within which ends are joined, which is measured along x and along y: how long a line may be
 OTHERS = (
     ("inches", 25.4, "inch"),
     ("centimetres", 10.0, "cm"),
@@ -116,7 +117,8 @@ def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], ang
 class _Read(NamedTuple):
     """The checks on what a file holds, its surfaces and all chains in mm as if not mirrored, mm in its unit.
 
-    `uneven`: by how much a solid's other sections differ from these, mm, where only rounding is behind it.
+    `uneven`: by how much a solid's other sections differ from these, mm, where only rounding is behind it; of a drawing
+    the widest gap that was joined.
     `stated_error`: greatest distance from the exact contour, mm, as the file itself states it.
     """
 
@@ -138,15 +140,20 @@ def _demand_same(stated: float | None, units: float | None, path: Path) -> None:
 def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
     """Read a DXF or SVG: the checks on what is drawn, and its surfaces."""
     engraved = any(hole.depth is not None for hole in part.holes)
-    drawing = read_drawing(path, engraved=engraved, deepest=deepest(part))
+    unstated, within = part.mm if units is None else units, limits.tolerance
+    drawing = read_drawing(
+        path, limits.gap, engraved=engraved, deepest=deepest(part), bridged=within, unstated=unstated
+    )
     _demand_same(drawing.units_mm, units, path)
-    scale = (part.mm if units is None else units) if drawing.units_mm is None else 1.0
+    scale = unstated if drawing.units_mm is None else 1.0
     chains = scaled(drawing.chains, scale, mirrored=part.mirrored)
     found = parted(chains[0], chains[1:], part, limits.tolerance, path)
-    checks = [_units_check(drawing.units_mm, units, part, found), _closed_check(drawing, found)]
+    joined = max(chain.gap for chain in found.surfaces) if drawing.openings else 0.0
+    uneven = joined if limits.gap is None else max(joined, limits.gap)
+    checks = [_units_check(drawing.units_mm, units, part, found), _closed_check(drawing, found, limits, uneven)]
     marks = scaled([Chain(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
     checks += [*found.checks, *_opening_checks(found.holes, [mark.contour for mark in marks], part, limits)]
-    return _Read(checks, found.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm)
+    return _Read(checks, found.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
 
 
 def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
@@ -221,21 +228,44 @@ def _size(part: PartIntent, parts: Parted) -> float:
     return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
 
-def _closed_check(drawing: Drawing, parts: Parted) -> Check:
-    """Check that no surface crosses itself, and that nothing is drawn twice or without length."""
-    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
-    faults += _crossing_places(parts)
-    return _count_check("closed", faults)
+def _closed_check(drawing: Drawing, parts: Parted, limits: Limits, joined: float) -> Check:
+    """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length."""
+    faults = list(drawing.openings)
+    faults += [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
+    faults += _crossing_places(parts, joined)
+    check = _count_check("closed", faults)
+    if drawing.openings:
+        remedy = f"--gap {float(f'{WIDE * joined:.1e}'):g}mm joins what lies so near"
+        told = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
+        return replace(check, detail=f"{check.detail}; {told}")
+    if limits.gap is not None:
+        short = [f"{one.entity} at {place_text(one.x, one.y)}" for one in drawing.short]
+        told = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
+        named = f"{told}: {_listed(short)}" if short else told
+        return replace(check, detail=f"{check.detail}; {named}".removeprefix("; "))
+    return check
 
 
-def _crossing_places(parts: Parted) -> list[str]:
-    places = [place for chain in parts.surfaces for place in crossings(chain.contour).point]
-    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in places]
+def _crossing_places(parts: Parted, joined: float = 0.0) -> list[str]:
+    """Where surfaces cross themselves, but for where a line that joins two ends turns back on what it joins."""
+    places = []
+    for chain in parts.surfaces:
+        points, contour = crossings(chain.contour).point, chain.contour
+        if joined and len(points):
+            lines = np.flatnonzero(np.hypot(*(contour.end - contour.start).T) <= WIDE * joined)
+            apart = np.hypot(*np.moveaxis(points[:, None] - contour.start[None, lines], 2, 0))
+            points = points[~(apart <= 2.0 * WIDE * joined).any(axis=1)]
+        places += [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in points.tolist()]
+    return places
 
 
 def _count_check(name: str, faults: list[str]) -> Check:
-    more = f"; and {len(faults) - MOST_NAMED} more" if len(faults) > MOST_NAMED else ""
-    return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
+    return at_most(name, len(faults), 0, "faults", detail=_listed(faults))
+
+
+def _listed(texts: Sequence[str]) -> str:
+    more = f"; and {len(texts) - MOST_NAMED} more" if len(texts) > MOST_NAMED else ""
+    return "; ".join(texts[:MOST_NAMED]) + more
 
 
 def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:

@@ -36,15 +36,23 @@ def kind_of(path: Path | str) -> Kind:
     return found
 
 
-def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool = False, deepest: int = 1) -> Drawing:
+def read_drawing(
+    path: Path | str,
+    gap: float | None = None,
+    *,
+    engraved: bool = False,
+    deepest: int = 1,
+    bridged: float = 0.0,
+    unstated: float = 1.0,
+) -> Drawing:
     """Read a DXF or SVG; raises as `read_dxf` does."""
     if kind_of(path) == "svg":
         from kin.read.drawing.svg import read_svg
 
-        return read_svg(path, gap, engraved=engraved, deepest=deepest)
+        return read_svg(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
     from kin.read.drawing.dxf import read_dxf
 
-    return read_dxf(path, gap, engraved=engraved, deepest=deepest)
+    return read_dxf(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
 
 
 def read_solid(

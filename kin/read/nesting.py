@@ -37,6 +37,7 @@ class Chain(NamedTuple):
     inside  which of them directly, by its rank in the `Nest`; None for the outer contour
     layer   of a drawing on which it stands
     pieces  of it, as the file counts them: edges, arcs, spans of a spline, moves
+    gap     widest between two of these that a line joins, mm
     """
 
     contour: Contour
@@ -44,6 +45,7 @@ class Chain(NamedTuple):
     inside: int | None = None
     layer: str = ""
     pieces: int = 0
+    gap: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,8 @@ def scaled(chains: Sequence[Chain], factor: float, *, mirrored: bool = False) ->
     found = []
     for chain in chains:
         contour = chain.contour.scaled(factor) if factor != 1.0 else chain.contour
-        found.append(chain._replace(contour=contour.mirrored() if mirrored else contour))
+        contour = contour.mirrored() if mirrored else contour
+        found.append(chain._replace(contour=contour, gap=factor * chain.gap))
     return tuple(found)
 
 

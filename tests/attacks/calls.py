@@ -46,7 +46,7 @@ LENGTHS = [
 OPTIONS: dict[str, list[list[str]]] = {
     "export": [["-v"], ["--json"], ["--only"], ["--out"], ["--tolerance"], ["--jobs"], ["--nothing"]],
     "check": [["-v"], ["--json"], ["--out"], ["--tolerance"], ["--jobs"]],
-    "verify": [["-v"], ["--json"], ["--units"], ["--tolerance"], ["--second-opinion"]],
+    "verify": [["-v"], ["--json"], ["--units"], ["--tolerance"], ["--gap"], ["--second-opinion"]],
     "report": [["--out"], ["--picture"], ["--at"], ["--check"]],
     "laws": [["--picture"], ["--json"], ["--only"]],
     "new": [],
@@ -58,6 +58,7 @@ GIVEN = {
     "--only": [*KINDS, "dwg", ""],
     "--out": ["out", "folder", "cam.yaml", "", "/dev/null/out", "a/b/c", "."],
     "--tolerance": LENGTHS,
+    "--gap": LENGTHS,
     "--jobs": ["1", "0", "-1", "x", "1.5", "\u0661", ""],
     "--units": ["mm", "inch", "cm", "furlong", ""],
     "--picture": ["svg", "png", "gif", "", "laws.svg", "folder"],

@@ -90,7 +90,7 @@ def test_a_tolerance_that_is_none_is_refused(
     with pytest.raises(SystemExit) as left:
         exported(tmp_path, "cam: {kind: support, p: '25'}\n", f"--tolerance={tolerance}")
     assert left.value.code == WRONG
-    assert f"a tolerance is a length above 0 and up to 2000000, not {tolerance}" in capsys.readouterr().err
+    assert f"a length above 0 and up to 2000000 is expected, not {tolerance}" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("jobs", ["0", "-3", "two", "1.5"])

@@ -281,6 +281,46 @@ def test_gaps_are_bridged_up_to_what_is_permitted_and_reported(tmp_path: Path) -
     assert "0.003 apart, permitted is 0.0029; 2 such places" in str(error)
 
 
+def test_gaps_that_are_reported_are_joined_by_lines(tmp_path: Path) -> None:
+    document = new()
+    stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4, shift=0.003)
+    drawing = read_dxf(saved(document, tmp_path), bridged=0.01)
+    (told,) = drawing.openings
+    assert "0.003 apart, permitted is 1e-06; 2 such places" in told
+    assert len(drawing.contour) == 6
+    assert np.array_equal(drawing.contour.end, np.roll(drawing.contour.start, -1, axis=0))
+    assert drawing.chains[0].gap == pytest.approx(0.003)
+    with pytest.raises(ReadError, match=r"0\.003 apart, permitted is 1e-06"):
+        read_dxf(saved(document, tmp_path), bridged=0.0029)
+
+
+@pytest.mark.parametrize("outermost", [False, True])
+def test_an_open_chain_within_the_contour_is_left_out(tmp_path: Path, outermost: bool) -> None:
+    document = new()
+    document.modelspace().add_circle((0, 0), 5.0 if outermost else 25.0)
+    document.modelspace().add_arc((0, 0), 25.0 if outermost else 5.0, 0.0, 350.0)
+    path = saved(document, tmp_path)
+    if outermost:
+        with pytest.raises(ReadError, match="the contour is open"):
+            read_dxf(path, bridged=0.01)
+        return
+    drawing = read_dxf(path, bridged=0.01)
+    assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
+    assert not drawing.holes
+    assert len(drawing.openings) == 1
+
+
+def test_pieces_no_longer_than_a_gap_are_named(tmp_path: Path) -> None:
+    document = new()
+    corners = [(0.0, 0.0), (30.0, 0.0), (30.002, 0.0), (30.0, 30.0), (0.0, 30.0)]
+    for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
+        document.modelspace().add_line(a, b)
+    path = saved(document, tmp_path)
+    assert not read_dxf(path).short
+    (short,) = read_dxf(path, gap=0.004).short
+    assert (short.kind, short.x, short.y) == ("short", 30.0, 0.0)
+
+
 @pytest.mark.parametrize("side", [1e-3, 1.0, 50.0, 1e6])
 def test_gaps_permitted_by_default_go_with_a_small_drawing(tmp_path: Path, side: float) -> None:
     def square(gap: float) -> Path:

@@ -71,11 +71,12 @@ def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tu
     return np.concatenate(first), np.concatenate(second)
 
 
-def loops(start: Array, end: Array, gap: float, same: float, path: Path) -> list[Loop]:
+def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some: bool = False) -> list[Loop]:
     """Join runs into closed loops: runs with these starts and ends (n, 2), where ends lie within `gap` of each other.
 
     Ends within `same` are one point. A gap smaller than the rounding of the ends themselves counts as that. Raises
-    ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner.
+    ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner; with `some` such a
+    chain is left out.
     """
     count = len(start)
     ends = np.concatenate([start, end])  # end k of run k % count
@@ -87,10 +88,15 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path) -> list
         free = np.flatnonzero(partner < 0)
         join(free, ends, tolerance, partner, path)
     free = np.flatnonzero(partner < 0)
-    if free.size:
+    if free.size and not some:
         raise opening(free, ends, gap, path)
     follow = partner.tolist()
     seen = bytearray(count)
+    for opened in free.tolist():
+        at = opened
+        while at >= 0:
+            seen[at % count] = 1
+            at = follow[at + count if at < count else at - count]
     found = []
     for first in range(count):
         if seen[first]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.read.drawing.chaining import Loop
     from kin.read.drawing.shapes import Shape
 
 __all__ = [
@@ -43,6 +44,8 @@ CUT, BORE = "CUT", "BORE"
 BESIDE = frozenset({BORE, "HOLES", "MARK", "GROOVE_INNER", "GROOVE_OUTER"})
 # What is engraved stands here, read if it is asked for.
 ENGRAVED = "ENGRAVE"
+# A gap is bridged that is as wide as its ends say.
+WIDER = 1.0 + 1e-9
 # Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
 REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
 
@@ -80,6 +83,8 @@ class Drawing(Nest):
     layers          layers that the contour and the holes were taken from
     aside           what was not read: reference geometry, text, other layers
     faults          zero-length and duplicate entities
+    short           pieces no longer than a gap that was asked for
+    openings        what was said of ends that do not meet, though most could be read
     version         of DXF, such as "AC1024", or "SVG"
     measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
     extents         $EXTMIN and $EXTMAX, mm; None if not stated
@@ -96,6 +101,8 @@ class Drawing(Nest):
     measurement: int | None
     extents: Box | None
     engraved: tuple[Contour, ...] = ()
+    short: tuple[Fault, ...] = ()
+    openings: tuple[str, ...] = ()
 
 
 class CutEntities(NamedTuple):
@@ -118,28 +125,36 @@ def drawing_of(
     measurement: int | None = None,
     extents: Box | None = None,
     deepest: int = 1,
+    bridged: float = 0.0,
+    unstated: float = 1.0,
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
     `gap` in mm, by default GAP, or less in a small drawing; the rest is reported as it is. Heights may differ by as
-    much as such a gap; chains may lie inside `deepest` others. Raises ReadError as the readers do.
+    much as such a gap; chains may lie inside `deepest` others. Gaps up to `bridged`, mm, are reported among `openings`,
+    as is an open chain within the others; without it they raise. Where a drawing states no unit `gap` and `bridged`
+    are lengths in one of `unstated` mm. Raises ReadError as the readers do.
     """
     scale = 1.0 if unit is None else unit
+    if unit is None:
+        gap, bridged = None if gap is None else gap / unstated, bridged / unstated
     pieces, run = gathered(curves.shapes)
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     same, usual = closeness(pieces)
-    gap = usual if gap is None else gap
+    asked, gap = gap, usual if gap is None else gap
     scratched: tuple[Contour, ...] = ()
     if marks is not None and marks.shapes:
         lines, owner = gathered(marks.shapes)
         lines = lines.enlarged(scale) if scale != 1.0 else lines
-        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
+        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, (gap, usual, same), path))
     demand_one_plane(np.concatenate([s.heights for s in curves.shapes]) * scale, usual, path)
     keep, faults = without_faults(pieces, run, curves, same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
-    chained = chain(pieces.take(keep), run[keep], gap, same, path)
+    short = np.flatnonzero(keep & (reach(pieces) <= gap)) if asked is not None else ()
+    shorter = tuple(fault("short", pieces, int(k), run, curves) for k in short)
+    chained, openings = chain_most(pieces.take(keep), run[keep], (gap, usual, same), path, bridged)
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
         raise met(meeting, path)
@@ -148,7 +163,12 @@ def drawing_of(
     return Drawing(
         chains=tuple(
             Chain(
-                counter_clockwise(one.contour), depth, inside, curves.layers[one.entities[0]], one.spans(curves.shapes)
+                counter_clockwise(one.contour),
+                depth,
+                inside,
+                curves.layers[one.entities[0]],
+                one.spans(curves.shapes),
+                one.gap if one.gap > usual else 0.0,
             )
             for one, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
         ),
@@ -162,6 +182,8 @@ def drawing_of(
         measurement=measurement,
         extents=extents,
         engraved=scratched,
+        short=shorter,
+        openings=openings,
     )
 
 
@@ -267,21 +289,78 @@ class Chained(NamedTuple):
         return sum(shapes[k].spans for k in self.entities)
 
 
-def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> list[Chained]:
-    """Contours out of pieces whose runs (n,), rising, are joined end to end, as `loops` does."""
+Closeness: TypeAlias = tuple[float, float, float]
+"""Gap within which ends are joined, that beyond which a line joins them, distance of points that are one, mm."""
+
+
+def chain_most(
+    pieces: Pieces, run: Indices, near: Closeness, path: Path, bridged: float
+) -> tuple[list[Chained], tuple[str, ...]]:
+    """Chain as `chain` does, gaps up to `bridged`, mm, too, without open chains within the rest; say what is open."""
+    gap, usual, same = near
+    width, opened = 0.0, None
+    while True:
+        some = width > bridged
+        close = (gap if opened is None else max(gap, WIDER * min(width, bridged)), usual, same)
+        try:
+            chained = chain(pieces, run, close, path, some=some)
+        except ReadError as error:
+            opened = error if opened is None else opened
+            if some or not bridged or error.width is None or not error.width > width:
+                raise opened from None
+            width = error.width
+        else:
+            return chained, () if opened is None else (opened.message,)
+
+
+def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bool = False) -> list[Chained]:
+    """Contours out of pieces whose runs (n,), rising, are joined end to end, as `loops` does.
+
+    With `some` open chains are left out, where a contour goes round them; else that is "open".
+    """
+    gap, usual, same = near
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path)
+    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path, some=some)
     demand_few(len(found), path)
+    if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, runs_of(found))):
+        raise ReadError("open", "the outermost contour is open", path)
     for loop in found:
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)
         step = np.where(back[owner], many[owner] - 1 - step, step)
         ordered = pieces.take(first[loop.runs][owner] + step).turned_round(back[owner])
-        made.append(Chained(Contour.from_pieces(closed_up(ordered, same)), run[first[loop.runs]], loop.gap))
+        contour = Contour.from_pieces(with_lines(closed_up(ordered, same), usual))
+        made.append(Chained(contour, run[first[loop.runs]], loop.gap))
     return made
+
+
+def runs_of(found: list[Loop]) -> Indices:
+    """Runs that belong to loops."""
+    return np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in found)])
+
+
+def outermost_closed(pieces: Pieces, closed: Mask) -> bool:
+    """Whether the pieces of closed loops (n,) reach farther than all others on every side."""
+    if not closed.any() or closed.all():
+        return bool(closed.any())
+    every = np.arange(len(pieces))
+    points = np.stack([pieces.start, pieces.end, pieces.points(every, np.full(every.size, 0.5))])
+    inner, outer = points[:, ~closed].reshape(-1, 2), points[:, closed].reshape(-1, 2)
+    return bool((outer.min(axis=0) < inner.min(axis=0)).all() and (outer.max(axis=0) > inner.max(axis=0)).all())
+
+
+def with_lines(pieces: Pieces, usual: float) -> Pieces:
+    """Return the pieces of a loop with a line wherever an end lies farther than `usual` from the next start."""
+    following = np.roll(pieces.start, -1, axis=0)
+    apart = np.flatnonzero(np.hypot(*(following - pieces.end).T) > usual)
+    if not apart.size:
+        return pieces
+    lines = Pieces.from_chords(pieces.end[apart], following[apart], np.zeros(apart.size))
+    order = np.argsort(np.concatenate([np.arange(len(pieces)), apart + 0.5]), kind="stable")
+    return Pieces.joined([pieces, lines]).take(order)
 
 
 def closed_up(pieces: Pieces, same: float) -> Pieces:

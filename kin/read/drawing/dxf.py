@@ -67,6 +67,8 @@ def read_dxf(
     *,
     engraved: bool = False,
     deepest: int = 1,
+    bridged: float = 0.0,
+    unstated: float = 1.0,
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
@@ -76,6 +78,8 @@ def read_dxf(
             contour, those inside it are holes.
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
+    bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
+    unstated  mm in the unit in which `gap` and `bridged` are meant for a drawing that states none
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs and splines in one plane, with the place and the size of the gap.
@@ -103,6 +107,8 @@ def read_dxf(
         measurement=measurement,
         extents=extents,
         deepest=deepest,
+        bridged=bridged,
+        unstated=unstated,
     )
 
 

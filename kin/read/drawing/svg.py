@@ -58,12 +58,20 @@ class _Drawn(NamedTuple):
     to: Affine
 
 
-def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = False, deepest: int = 1) -> Drawing:
+def read_svg(
+    path: Path | str,
+    gap: float | None = None,
+    *,
+    engraved: bool = False,
+    deepest: int = 1,
+    bridged: float = 0.0,
+    unstated: float = 1.0,
+) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
     Groups named as the layers of a DXF (by id, or by Inkscape's label) are those; what stands in none of them is cut
     too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden is left out. `gap`, mm,
-    `engraved` and `deepest` as in `read_dxf`.
+    and all others as in `read_dxf`.
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
@@ -80,7 +88,7 @@ def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = Fal
         others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(found.aside.items()))
         raise ReadError("empty", f"nothing to cut; the file holds {others or 'nothing at all'}", path)
     marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if engraved else None
-    return drawing_of(found, marks, unit, gap, path, version="SVG", deepest=deepest)
+    return drawing_of(found, marks, unit, gap, path, version="SVG", deepest=deepest, bridged=bridged, unstated=unstated)
 
 
 def _parsed(raw: bytes, path: Path) -> Element:
