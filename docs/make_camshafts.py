@@ -1,4 +1,4 @@
-"""Draw docs/figures/camshaft-*.svg, when the lobes of shipped camshafts lift: `python docs/make_camshafts.py`."""
+"""Draw docs/figures/camshaft-*.svg, the diagrams of shipped camshafts: `python docs/make_camshafts.py`."""
 
 from __future__ import annotations
 
@@ -7,23 +7,24 @@ from pathlib import Path
 
 from drawing import keep
 
+from camgeo.camshaft.diagrams import diagram
 from camgeo.camshaft.lobes import placed
-from camgeo.camshaft.timing import timing
 from camgeo.common.clock import Clock
 from camgeo.recipe.camshaft import CamshaftRecipe
 from camgeo.recipe.loading import load_order
 
 ROOT = Path(__file__).parents[1]
-NAMES = ("four-cylinder", "packaging")
+FORMS = {"four-cylinder": {"": "cam-wheel", "-crank": "crank-wheel", "-shaft": "shaft"}, "packaging": {"": "bars"}}
 
 
 def figures() -> dict[str, str]:
     """Each picture by its name."""
     drawn = {}
-    for name in NAMES:
+    for name, forms in FORMS.items():
         recipe = load_order(ROOT / "recipes" / "camshafts" / f"{name}.yaml")
         if isinstance(recipe, CamshaftRecipe):
-            drawn[f"camshaft-{name}"] = timing(recipe, placed(recipe, Clock()))
+            lobes = placed(recipe, Clock())
+            drawn |= {f"camshaft-{name}{end}": diagram(recipe, lobes, form) for end, form in forms.items()}
     return drawn
 
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam
 
 WAVE = 1e-3  # of the stroke: a rise or a return by less counts as a dwell
+# crank degrees after a cylinder's firing dead centre of those that its valves' openings and closings are told by
+DEAD_CENTRES = {"intake": ((360.0, "TDC"), (540.0, "BDC")), "exhaust": ((180.0, "BDC"), (360.0, "TDC"))}
 CRANK = 720.0  # degrees of one turn of the camshaft
 Phase: TypeAlias = Literal["rise", "dwell", "return"]
 
@@ -89,28 +91,40 @@ def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
     return tuple(Stretch(phase, begin, begin + length) for phase, begin, length in rows)
 
 
+def event_words(valve: str, opens: float, lasts: float) -> tuple[str, str]:
+    """Name a valve's opening and closing by its dead centres, crank degrees: `IVO 9.8° ATDC`, `IVC 30.2° ABDC`.
+
+    `opens` is counted from the cylinder's firing dead centre, `lasts` is how long the valve is open.
+    """
+    words = []
+    for name, degrees, (dead, letters) in zip(("O", "C"), (opens, opens + lasts), DEAD_CENTRES[valve], strict=True):
+        after = signed(degrees - dead)
+        words.append(f"{valve[0].upper()}V{name} {abs(after):.1f}° {'A' if after > 0.0 else 'B'}{letters}")
+    return words[0], words[1]
+
+
 def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:
     """Events of a cylinder that fires at a crank angle, degrees, by those of its two lobes."""
     # crank degrees after the cylinder's own firing dead centre; 360 is the dead centre of the overlap
-    opens, closes = _crank(intake.opens, fires), _crank(intake.closes, fires)
-    opened, closed = _crank(exhaust.opens, fires), _crank(exhaust.closes, fires)
-    after = _crank(intake.centre, fires) - 360.0
-    before = 360.0 - _crank(exhaust.centre, fires)
+    opens, closes = crank_after(intake.opens, fires), crank_after(intake.closes, fires)
+    opened, closed = crank_after(exhaust.opens, fires), crank_after(exhaust.closes, fires)
+    after = crank_after(intake.centre, fires) - 360.0
+    before = 360.0 - crank_after(exhaust.centre, fires)
     return Valves(
-        _signed(360.0 - opens),
-        _signed(closes - 540.0),
-        _signed(180.0 - opened),
-        _signed(closed - 360.0),
-        _signed(closed - opens),
+        signed(360.0 - opens),
+        signed(closes - 540.0),
+        signed(180.0 - opened),
+        signed(closed - 360.0),
+        signed(closed - opens),
         0.5 * (after + before),
     )
 
 
-def _crank(cam: float, fires: float) -> float:
+def crank_after(cam: float, fires: float) -> float:
     """Crank degrees in [0, 720) after a firing dead centre at which the camshaft stands at an angle, degrees."""
     return (2.0 * cam - fires) % CRANK
 
 
-def _signed(crank: float) -> float:
+def signed(crank: float) -> float:
     """The same angle from -360 to below 360."""
     return (crank + 360.0) % CRANK - 360.0

@@ -6,7 +6,9 @@ import re
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from camgeo.camshaft.timing import bars, timing
+from camgeo.camshaft.diagram import SHEET
+from camgeo.camshaft.diagrams import shown
+from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import head
 
@@ -19,17 +21,17 @@ if TYPE_CHECKING:
 LOBES = {
     "name": "lobe",
     "recipe": "recipe",
-    "at_deg": "turned by, deg",
-    "zero_deg": "begins at, deg",
+    "at_deg": "turned by",
+    "zero_deg": "begins at",
     "from": "from z",
     "to": "to z",
     "lift": "lift of events",
-    "opens_deg": "opens, deg",
-    "closes_deg": "closes, deg",
-    "centre_deg": "centre, deg",
-    "duration_deg": "duration, deg",
-    "opens_crank_deg": "opens, crank deg",
-    "closes_crank_deg": "closes, crank deg",
+    "opens_deg": "opens",
+    "closes_deg": "closes",
+    "centre_deg": "centre",
+    "duration_deg": "duration",
+    "opens_crank_deg": "opens, crank",
+    "closes_crank_deg": "closes, crank",
 }
 CYLINDERS = {
     "cylinder": "cylinder",
@@ -40,11 +42,6 @@ CYLINDERS = {
     "overlap": "overlap",
     "separation": "LSA, cam deg",
 }
-# a drawing wider than its screen is moved aside, not made too small to be read
-FITTING = """\
-figure { margin: 0; overflow-x: auto; }
-figure svg { display: block; min-width: 600px; max-width: 100%; height: auto; margin: auto; }
-"""
 # the place of a check is a button where a page can turn the shaft there
 TURNING = re.compile(r"<button[^>]*>(.*?)</button>", re.DOTALL)
 
@@ -52,10 +49,9 @@ TURNING = re.compile(r"<button[^>]*>(.*?)</button>", re.DOTALL)
 def page(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], report: dict[str, Any]) -> str:
     """Return the page of a camshaft from its lobes and what the report says."""
     section = report["camshaft"]
-    drawings = [timing(recipe, lobes)] + ([bars(recipe, lobes)] if recipe.engine is not None else [])
-    parts = [f"{head(recipe, report, FITTING)}</header>\n<main>"]
-    parts += [f'<section class="tables"><figure>{drawing}</figure></section>' for drawing in drawings]
-    parts.append(_section("Lobes", _table(section["lobes"], LOBES)))
+    figures = [f"<section><figure>{diagram}</figure></section>" for diagram in shown(recipe, lobes)]
+    parts = [f'{head(recipe, report, SHEET)}</header>\n<main>\n<div class="diagrams">', *figures, "</div>"]
+    parts.append(_section(f"Lobes: {UNIT_NAMES[recipe.units]} and degrees of the cam", _table(section["lobes"], LOBES)))
     if section.get("cylinders"):
         parts.append(_section("Valve events, crank degrees", _table(section["cylinders"], CYLINDERS)))
     parts += [_section("Checks", TURNING.sub(r"\1", tables.checks(report))), _section("Files", tables.written(report))]

@@ -155,10 +155,10 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
                 (write_events if request.as_ == "events" else write_motion)(path, recipe, job.lobes)
             return FileResult(path, request, units=recipe.mm), ()
         case "svg":
-            from camgeo.camshaft.timing import timing
+            from camgeo.camshaft.diagrams import diagram
 
             with job.clock.stage("timing"):
-                path.write_text(timing(recipe, job.lobes), encoding="utf-8", newline="\n")
+                path.write_text(diagram(recipe, job.lobes, request.as_), encoding="utf-8", newline="\n")
             return FileResult(path, request), ()
         case _:
             return _solid(job, request, path)

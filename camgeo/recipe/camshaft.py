@@ -209,14 +209,16 @@ def _plain(kind: str) -> Table:
     return Table(tuple(item for item in FILES[kind].fields if item.name in {"units", "tolerance"}))
 
 
+DIAGRAMS = ("timing", "bars", "cam-wheel", "crank-wheel", "shaft")
 SHAFT_FILES = {
     **{kind: _plain(kind) for kind in ("stl", "3mf", "step", "glb")},
     "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "events")),)),
-    "svg": Table((Field("as", Kind.CHOICE, "what is drawn", default="timing", choices=("timing",)),)),
+    "svg": Table((Field("as", Kind.CHOICE, "what is drawn", default="timing", choices=DIAGRAMS),)),
     "html": Table(()),
     "dxf": Table(()),  # to say what to do instead
     "gcode": Table(()),
 }
+OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
 OF_A_LOBE = frozenset({"dxf", "gcode"})
 SHAFT = Table(
     (
@@ -266,6 +268,9 @@ def _check(values: Values, reader: Reader) -> None:
     for file in values.get("export", {}).get("files", []):
         if file["kind"] in OF_A_LOBE:
             reader.fault_at(file["path"], f"a camshaft has no {file['kind']}", None, "export the lobe's own recipe")
+        elif file.get("as") in OF_AN_ENGINE and "engine" not in camshaft:
+            remedy = "give camshaft.engine, or {svg: {as: bars}}"
+            reader.fault_at(f"{file['path']}.svg.as", "needs the engine's data", f"'{file['as']}'", remedy)
     engine = camshaft.get("engine")
     if engine is not None:
         order, firing, path = engine["order"], engine.get("firing"), "camshaft.engine"

@@ -42,6 +42,10 @@ As: TypeAlias = Literal[
     "trace",
     "events",
     "timing",
+    "bars",
+    "cam-wheel",
+    "crank-wheel",
+    "shaft",
     "grinding",
     "lift",
 ]
