@@ -52,11 +52,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
         circle = gp_Circ(gp_Ax2(point((x, y), z), up, gp_Dir(1.0, 0.0, 0.0)), radius)
         return [(circle, (x + radius, y))]
     length, radii, flat = measures(outline)
-    if float(length.min()) < SHORTEST:
-        raise RegionError(
-            f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
-            f"{CONFUSION:g} mm as one: give a larger tolerance"
-        )
+    _demand_long(length)
     found = []
     for k, (start, end, bulge) in enumerate(outline.pieces()):
         place = (float(start[0]), float(start[1]))
@@ -77,37 +73,36 @@ def _line(start: Array, end: Array, z: float) -> Shape:
 
 
 def _splines(outline: BSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
-    """Curves of a spline, cut where a knot is repeated as often as its degree: there it may have a corner."""
+    """Curves of a spline, one for each polynomial: a quadrature of few points a face is good for no more than that."""
     from OCP.Geom import Geom_BSplineCurve
-    from OCP.gp import gp_Pnt
     from OCP.TColgp import TColgp_Array1OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
-    degree, control = outline.degree, outline.control
     if not outline.clamped:
         raise ValueError("a spline must begin and end at its first control point")
-    knots, number = np.unique(outline.knots, return_counts=True)
-    found = []
-    begun = 0
-    for k in range(1, len(knots)):
-        if k < len(knots) - 1 and number[k] < degree:
-            continue
-        here, often = knots[begun : k + 1], number[begun : k + 1].copy()
-        often[0] = often[-1] = degree + 1
-        count = int(often.sum()) - degree - 1
-        start = int(number[1 : begun + 1].sum())
-        poles = TColgp_Array1OfPnt(1, count)
-        for i in range(count):
-            x, y = control[start + i].tolist()
-            poles.SetValue(i + 1, gp_Pnt(x, y, z))
-        places, times = TColStd_Array1OfReal(1, len(here)), TColStd_Array1OfInteger(1, len(here))
-        for i in range(len(here)):
-            places.SetValue(i + 1, float(here[i]))
-            times.SetValue(i + 1, int(often[i]))
-        begun = k
-        x, y = control[start].tolist()
-        found.append((Geom_BSplineCurve(poles, places, times, degree), (x, y)))
-    return found
+    degree, beziers = outline.degree, outline.beziers()
+    _demand_long(np.hypot(*(beziers[:, -1] - beziers[:, 0]).T))
+    ends, whole = TColStd_Array1OfReal(1, 2), TColStd_Array1OfInteger(1, 2)
+    for i in (1, 2):
+        ends.SetValue(i, i - 1.0)
+        whole.SetValue(i, degree + 1)
+    curves = []
+    for control in beziers.tolist():
+        poles = TColgp_Array1OfPnt(1, degree + 1)
+        for i, place in enumerate(control, 1):
+            poles.SetValue(i, point(place, z))
+        x, y = control[0]
+        curves.append((Geom_BSplineCurve(poles, ends, whole, degree), (x, y)))
+    return curves
+
+
+def _demand_long(length: Array) -> None:
+    """Raise RegionError where a piece is too short for the kernel; `length` (n,) from end to end, mm."""
+    if float(length.min()) < SHORTEST:
+        raise RegionError(
+            f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
+            f"{CONFUSION:g} mm as one: give a larger tolerance"
+        )
 
 
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:

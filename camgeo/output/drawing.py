@@ -86,16 +86,16 @@ def _reference(job: Job, tolerance: float) -> list[Reference]:
     from camgeo.formats.dxf import Circle, Line, Point, Trace
     from camgeo.synthesis.part.walls import Looks, distance_inside
 
-    recipe, cam = job.recipe, job.recipe.cam
-    pitches = {id(surface.base): surface for surface in job.design.exact.surfaces}.values()
+    recipe, exact = job.recipe, job.design.exact
+    pitches = {id(surface.base): surface for surface, _ in job.design.contours}.values()
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     if recipe.part.hub is not None:
         found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
-    for name, radius in cam.circles():
-        if radius is not None:
-            found.append(Circle(name, (0.0, 0.0), radius))
-            continue
-        for surface in pitches:
+    for surface in pitches:
+        for name, radius in exact.circles(surface.name):
+            if radius is not None:
+                found.append(Circle(name, (0.0, 0.0), radius))
+                continue
             least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
             if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
                 found.append(Circle(name, (0.0, 0.0), least))

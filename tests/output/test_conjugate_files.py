@@ -99,6 +99,21 @@ def test_other_programs_find_two_discs_in_place(made):
     assert view.extents[1] == pytest.approx(0.026)  # upward in glTF, in metres
 
 
+def test_each_drawing_has_the_reference_circles_of_its_disc(made):
+    """Of disc 2 the circle about the shaft that its roller's centre touches, by a look at many places of the motion."""
+    recipe, report = made
+    motion = designed(read(recipe.read_bytes(), recipe)).exact.motion
+    lift = motion.rows(np.linspace(0.0, 2.0 * math.pi, 3601), 0)[0]
+    start = math.sqrt((36.0 + 9.0) ** 2 - 6.0**2)  # of the stem, above the shaft
+    second = np.hypot(120.0 - start - lift, 6.0).min()
+    radii = []
+    for file in report.files[:2]:
+        drawing = ezdxf.readfile(recipe.parent / "pair" / file.name)
+        reference = [entity for entity in drawing.modelspace() if entity.dxf.layer == "REFERENCE"]
+        radii.append([entity.dxf.radius for entity in reference if entity.dxftype() == "CIRCLE"])
+    assert radii == [[36.0, 45.0], [pytest.approx(second, rel=1e-6)]]
+
+
 def dense(path):
     """Points (n,) of a drawing's contour, complex, each arc cut by its bulge into parts of some 6 microns at most."""
     (contour,) = ezdxf.readfile(path).modelspace().query("LWPOLYLINE[layer=='CUT']")
