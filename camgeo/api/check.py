@@ -107,3 +107,10 @@ class Figures(Mapping[str, Figure]):
 
     def __len__(self) -> int:
         return len(self._by_name)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(self)})"
+
+    def __str__(self) -> str:
+        """Write a figure a line."""
+        return "\n".join(f"{name}: {figure}" for name, figure in self.items())

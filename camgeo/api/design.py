@@ -187,6 +187,9 @@ class Design:
 
     # --- to look at ---------------------------------------------------------------------------------------------------
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.recipe.name!r}, {self.exact.follower.name})"
+
     def __str__(self) -> str:
         """Write the verdict on one line, and each check that fails on one more."""
         failed = [f"\n  {check}" for check in self.checks if not check.ok]

@@ -170,6 +170,10 @@ class Report(Mapping[str, JSON]):
 
     # --- to look at ---------------------------------------------------------------------------------------------------
 
+    def __repr__(self) -> str:
+        folder = "" if self.path is None else f", {str(self.path)!r}"
+        return f"{type(self).__name__}({self.recipe.name!r}, {'ok' if self.ok else 'FAILED'}{folder})"
+
     def __str__(self) -> str:
         """Write the verdict's line, and each check that fails on one more."""
         from camgeo.report.document import summary

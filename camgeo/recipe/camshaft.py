@@ -100,6 +100,8 @@ class CamshaftRecipe(Order):
     bore: float | None = None
     engine: Engine | None = None
 
+    __repr__ = Order.__repr__
+
 
 # --- keys -------------------------------------------------------------------------------------------------------------
 

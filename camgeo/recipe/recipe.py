@@ -71,6 +71,9 @@ class Order(Document):
     export: Export
     verify: Verify
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}, {str(self.path)!r})"
+
     def field_of(self, request: FileRequest | None) -> str:
         """Give the path of a request; that of the list for one that does not stand there."""
         files = self.export.files
@@ -102,6 +105,8 @@ class Recipe(Order):
     wheel: float | None = None
     mechanism: MechanismAsked | None = None
     limits: tuple[Limit, ...] = ()
+
+    __repr__ = Order.__repr__
 
     @overload
     def replace(self, path: str, value: Value, /) -> Recipe: ...

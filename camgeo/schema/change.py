@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import sys
 from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
@@ -25,10 +26,13 @@ from camgeo.schema.yaml_source import (
 )
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from camgeo.schema.yaml_source import Node
 
-Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | None"
-"""What may stand in a recipe: a text, a number, a truth value, nothing, and lists and mappings of those."""
+Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | NDArray[np.generic] | None"
+"""What may stand in a recipe: a text, a number, a truth value, nothing, lists, arrays and mappings of those."""
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people read as they stand
 _WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
@@ -160,8 +164,10 @@ def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> 
         name = _scalar(key, at, file)
         if isinstance(value, AnyMapping) and value:
             lines += [f"{indent}{name}:", *_block(value, at, file, _deeper(depth, at, file))]
-        elif _is_list(value) and any(isinstance(item, AnyMapping) or _is_list(item) for item in value):
-            items = (_flow(item, join(at, i), file, depth + 1) for i, item in enumerate(value))
+            continue
+        held = _without_arrays(value)
+        if _is_list(held) and any(isinstance(item, AnyMapping) or _is_list(_without_arrays(item)) for item in held):
+            items = (_flow(item, join(at, i), file, depth + 1) for i, item in enumerate(held))
             lines += [f"{indent}{name}:", *(f"{indent}  - {item}" for item in items)]
         else:
             lines.append(f"{indent}{name}: {_flow(value, at, file, depth)}")
@@ -171,6 +177,7 @@ def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> 
 def _flow(value: object, path: str, file: str, depth: int) -> str:
     """Write any value on one line."""
     depth = _deeper(depth, path, file)
+    value = _without_arrays(value)
     if isinstance(value, AnyMapping):
         pairs = (
             f"{_scalar(_key(k, path, file), path, file)}: {_flow(v, join(path, k), file, depth)}"
@@ -180,6 +187,12 @@ def _flow(value: object, path: str, file: str, depth: int) -> str:
     if _is_list(value):
         return f"[{', '.join(_flow(item, join(path, i), file, depth) for i, item in enumerate(value))}]"
     return _scalar(value, path, file)
+
+
+def _without_arrays(value: object) -> object:
+    """Give numpy's arrays as lists and its numbers as Python's; all else as it is."""
+    numpy = sys.modules.get("numpy")  # who has an array has imported it
+    return value.tolist() if numpy is not None and isinstance(value, numpy.ndarray | numpy.generic) else value
 
 
 def _is_list(value: object) -> TypeGuard[AnySequence[Value]]:
@@ -199,8 +212,6 @@ def _key(key: object, path: str, file: str) -> str:
 
 
 def _scalar(value: object, path: str, file: str) -> str:
-    item = getattr(value, "item", None)  # of numpy's numbers
-    value = item() if callable(item) and getattr(value, "ndim", None) == 0 else value
     if value is None:
         return "null"
     if isinstance(value, bool):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from dataclasses import dataclass
 
-__all__ = ["KW_ONLY", "dataclass", "field", "fields", "replace"]
+__all__ = ["KW_ONLY", "dataclass", "field", "fields", "full_text", "replace"]
 
 T = TypeVar("T")
 _SHAPES: dict[type, _Shape] = {}
@@ -154,7 +154,8 @@ def _keep(_self: object, name: str) -> NoReturn:
 
 
 @recursive_repr()
-def _text(self: object) -> str:
+def full_text(self: object) -> str:
+    """Text of a record with all fields that are shown, also of one whose own `repr` is shorter."""
     shown = [name for name, entry in _shape(self).fields.items() if entry.repr]
     return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 
@@ -175,7 +176,7 @@ if not TYPE_CHECKING:
 
         def made(kind: type[T]) -> type[T]:
             shape = _SHAPES[kind] = _Shape(kind, kw_only=kw_only)
-            methods: dict[str, object] = {"__repr__": _text}
+            methods: dict[str, object] = {"__repr__": full_text}
             if frozen:
                 methods |= {"__setattr__": _refuse, "__delattr__": _keep}
             if eq:

@@ -31,8 +31,14 @@ cam: {kind: support, p: 25 + 2*cos(3*t)}
 export: {tolerance: 0.05, files: [dxf]}
 verify: {angles: 24}
 """
+SEARCHED = """\
+name: searched
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [1, 2]}
+sweep: {vary: {"cam.shaft[0]": {from: 1, to: 2, steps: 2}}, limits: {size: {at_most: 1}}, rank: size}
+"""  # of which no design is kept, so that nothing is drawn
 OWN = frozenset(
     {"Check.of", "Edges.of", "Figure.of", "Edges.count", "Edges.index", "Report.get", "Report.items", "Report.keys"}
+    | {f"{name}.{method}" for name in ("Figures", "Search") for method in ("get", "items", "keys", "values")}
     | {"Report.values"}
 )  # made by the library itself, or Python's own
 
@@ -76,6 +82,9 @@ def surface() -> Functions:
         "export": (camgeo.export, {"recipe": recipe, "out": "out", "only": "dxf", "progress": None}),
         "check": (camgeo.check, {"recipe": recipe, "progress": None}),
         "verify": (camgeo.verify, {"recipe": recipe, "file": "a.dxf", "tolerance": 0.1, "units": "mm"}),
+        "laws": (camgeo.laws, {}),
+        "search": (camgeo.search, {"recipe": camgeo.load(SEARCHED), "out": "out", "jobs": 1, "progress": None}),
+        "Law": (camgeo.laws()["cycloidal"].__call__, {"u": 0.5, "derivative": 1}),
         "Recipe.replace": (recipe.replace, {"path": "name", "value": "other"}),
         "Recipe.save": (recipe.save, {"path": "saved.yaml"}),
         "Recipe.locate": (recipe.locate, {"path": "cam.kind"}),

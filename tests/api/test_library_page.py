@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from support.places import RECIPES
 
 import camgeo
 
@@ -47,6 +48,7 @@ def test_the_page_names_all_that_is_public() -> None:
 
 
 FLAWED = "cam: {kind: support, p: 25 + 5*cos(3*t)}\npart: {bore: 10}\n"
+SHIPPED = RECIPES / "shu-wu.yaml"
 SOUND = FLAWED.replace("5*cos", "2*cos")
 ERRORS: dict[str, list[Callable[[], object]]] = {
     "RecipeErrors": [lambda: camgeo.load("nothing.yaml"), lambda: camgeo.load(SOUND.replace("support", "suport"))],
@@ -57,7 +59,11 @@ ERRORS: dict[str, list[Callable[[], object]]] = {
         lambda: camgeo.design(camgeo.load(FLAWED)).contour(10),
     ],
     "TypeError": [lambda: camgeo.design(camgeo.load(SOUND)).contour(1.5)],
-    "others below `CamgeoError`": [lambda: camgeo.design(camgeo.load(SOUND)).edges(1e-18)],
+    "UnitsError": [
+        lambda: camgeo.verify(SHIPPED, camgeo.export(SHIPPED, "out", only="dxf").files[0].path, units="inch")
+    ],
+    "ToleranceError": [lambda: camgeo.design(camgeo.load(SOUND)).edges(1e-18)],
+    "others below `CamgeoError`": [lambda: camgeo.load(SOUND).save("none/cam.yaml")],
 }
 
 
@@ -75,4 +81,4 @@ def test_each_error_is_raised_where_the_page_says(tmp_path: Path, monkeypatch: p
                 assert isinstance(raised.value, camgeo.CamgeoError)
             else:
                 assert type(raised.value).__name__ == name, raised.value
-                assert isinstance(raised.value, ValueError) == (name == "CallError")
+                assert isinstance(raised.value, ValueError) == rows[f"`{name}`"].endswith("also a `ValueError`")

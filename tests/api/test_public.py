@@ -5,12 +5,15 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import math
 import pickle
+import re
 import subprocess
 import sys
 import typing
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import camgeo
@@ -37,15 +40,69 @@ def test_reading_a_recipe_loads_no_library_of_drawings_or_solids() -> None:
 
 
 def test_every_name_is_there_and_listed() -> None:
+    homes: dict[str, str] = vars(camgeo)["_HOMES"]
     for name in camgeo.__all__:
         assert getattr(camgeo, name) is not None
         assert name in dir(camgeo)
-    assert set(camgeo.__all__) == {"__version__", *camgeo._HOMES}
+    assert set(camgeo.__all__) == {"__version__", *homes}
     tree = ast.parse(Path(camgeo.__file__ or "").read_text(encoding="utf-8"))
-    typed = {a.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}
-    assert typed - {"import_module", "__version__"} == set(camgeo._HOMES)
+    typed = {a.name: node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}
+    assert {name: module for name, module in typed.items() if name not in {"import_module", "__version__"}} == homes
     with pytest.raises(AttributeError, match="module 'camgeo' has no attribute 'lode'"):
-        camgeo.lode  # noqa: B018
+        getattr(camgeo, "lode")  # noqa: B009 - mypy would see it, as a user's does
+
+
+@pytest.mark.slow
+def test_a_type_checker_knows_the_names_and_no_others(tmp_path: Path) -> None:
+    """A slip of the pen in an import is found before anything runs; what is there has its own type."""
+    pytest.importorskip("mypy")
+    (tmp_path / "right.py").write_text(
+        "import camgeo\nfrom camgeo import Figures, File, Remark, UnitsError, laws, search\n"
+        "velocity: float = laws()['cycloidal'].velocity\nfigures: Figures = camgeo.design('cam.yaml').figures\n"
+    )
+    (tmp_path / "slip.py").write_text("from camgeo import Desing\nimport camgeo\ncamgeo.lode('cam.yaml')\n")
+    command = [sys.executable, "-m", "mypy", *(str(tmp_path / name) for name in ("right.py", "slip.py"))]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)  # in the project's strict way
+    told = [line.rpartition("/")[2] for line in done.stdout.splitlines() if ": error: " in line]
+    assert [line.partition(": error: ")[0] for line in told] == ["slip.py:1", "slip.py:3"], done.stdout
+    assert 'has no attribute "Desing"' in told[0]
+
+
+ERRORS_OF_PYTHON = {"TypeError", "ValueError", "KeyError", "IndexError"}
+
+
+def test_an_error_that_a_public_function_names_is_public() -> None:
+    for name, one in public_functions().items():
+        named = set(re.findall(r"\b[A-Z]\w+Errors?\b", inspect.getdoc(one) or ""))
+        assert named <= {*camgeo.__all__} | ERRORS_OF_PYTHON, name
+
+
+def test_what_is_shown_of_an_object_is_short(tmp_path: Path) -> None:
+    """In a debugger or a notebook: what it is, and of which cam."""
+    path = tmp_path / "small.yaml"
+    path.write_text("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {tolerance: 0.05, files: [dxf]}\n")
+    recipe = camgeo.load(path)
+    assert repr(recipe) == f"Recipe('small', {str(path)!r})"
+    design = camgeo.design(recipe)
+    assert repr(design).startswith("Design('small', ")
+    assert len(repr(design)) < 100
+    assert repr(design.figures) == f"Figures({', '.join(design.figures)})"
+    assert f"size: {design.figures['size']}" in str(design.figures).splitlines()
+    report = camgeo.export(recipe, tmp_path / "out")
+    assert repr(report) == f"Report('small', ok, {str(tmp_path / 'out' / 'small')!r})"
+    assert repr(camgeo.check(recipe)) == "Report('small', ok)"
+
+
+def test_laws_are_functions_with_their_peaks() -> None:
+    """Cycloidal: s = u - sin 2 pi u/(2 pi), greatest velocity 2, acceleration 2 pi, jerk 4 pi^2."""
+    law = camgeo.laws()["cycloidal"]
+    assert (law.velocity, law.acceleration, law.jerk) == pytest.approx((2, 2 * math.pi, 4 * math.pi**2))
+    assert law(0.25) == pytest.approx(0.25 - 1 / (2 * math.pi))
+    assert law([[0, 0.5], [0.25, 1]], derivative=1) == pytest.approx(np.array([[0, 2], [1, 0]]), abs=1e-12)
+    assert camgeo.laws()["parabolic"]([0, 0.5, 1], derivative=2).tolist() == [4, -4, -4]
+    for u, order in ((1.1, 0), (math.nan, 0), (0.5, 4), (0.5, -1)):
+        with pytest.raises(camgeo.CallError):
+            law(u, derivative=order)
 
 
 def public_functions() -> dict[str, object]:

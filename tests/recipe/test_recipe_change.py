@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import camgeo
 from camgeo.recipe.loading import load, load_text
-from camgeo.schema.change import changed, written
+from camgeo.schema.change import Value, changed, written
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import read_source, scalars
 
@@ -132,3 +133,23 @@ def test_a_mapping_that_holds_itself_is_refused() -> None:
         written(loop, "recipe")
     with pytest.raises(RecipeErrors, match="a key is a text"):
         written({1: 2}, "recipe")  # type: ignore[dict-item]
+
+
+def test_arrays_of_numpy_are_lists() -> None:
+    """Of one dimension and of two, in a mapping that is loaded and in a value that is put in place; numbers too."""
+    points = [[0.0, 0.0], [90.0, 5.0], [180.0, 10.0], [270.0, 5.0]]
+    follower: dict[str, Value] = {"kind": "roller", "radius": np.array(8)}
+    cam: dict[str, Value] = {"kind": "disc", "base_radius": np.float64(30), "follower": follower}
+    rows = {form: camgeo.load({"cam": {**cam, "motion": {"points": form(points)}}}).text for form in (list, np.array)}
+    assert rows[list].replace(".0", "") == rows[np.array]
+    shafted = camgeo.load("cam: {kind: support, p: 30 + cos(3*t), shaft: [1, 2]}\n")
+    assert shafted.replace("cam.shaft", np.array([3, 4.5])).text == shafted.replace("cam.shaft", [3, 4.5]).text
+    for wrong in (
+        np.zeros((2, 2, 2)),
+        np.array([np.nan, 1]),
+        np.array(["a", "b"]),
+        np.array([1j, 2]),
+        np.array([[1, 2]]),
+    ):
+        with pytest.raises(camgeo.RecipeErrors, match=r"cam\.shaft"):
+            shafted.replace("cam.shaft", wrong)

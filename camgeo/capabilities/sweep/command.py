@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.search.search import Means, Outcome
     from camgeo.checks.remedies import Entry
 
-_EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
+EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _SAID = 5  # best designs that -v lists
 Number = TypeVar("Number", int, float)
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         say_json(encoded(report))
     else:
-        say(_summary(report, outcome.folder))
+        say(summary(report, outcome.folder))
         if arguments.verbose:
             say(_table(report))
     return status
@@ -85,11 +85,11 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     how = How(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:
-        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, listener=_teller(progress))
+        outcome = search(ask, Path(arguments.out), how, means(), fresh=arguments.fresh, listener=_teller(progress))
     except KeyboardInterrupt:
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
-        extra = _EXTRAS.get(error.name or "", "sweep")
+        extra = EXTRAS.get(error.name or "", "sweep")
         return None, f"the package {error.name} is missing: {install(extra)}", SURROUNDINGS
     except (EngineError, VersionsError) as error:
         return None, f"{error}; {resume}", SURROUNDINGS
@@ -103,7 +103,8 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     return outcome, "", OK if outcome.report["ok"] else FAILED
 
 
-def _means() -> Means:
+def means() -> Means:
+    """What computes, measures and polishes designs of a recipe."""
     from camgeo.capabilities.sweep.search.ask import Ask
     from camgeo.capabilities.sweep.search.figures import REASONS, figures
     from camgeo.capabilities.sweep.search.refine import polish
@@ -135,7 +136,7 @@ def duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
-def _summary(report: Entry, folder: Path) -> str:
+def summary(report: Entry, folder: Path) -> str:
     """What was found, or why nothing was, in a line; `failing` overlap, as a design may break several limits."""
     counts, rank, run = report["counts"], report["sweep"]["rank"], report["run"]
     speed = f", {run['designs_per_second']:,.0f} a second" if run["designs_per_second"] else ""

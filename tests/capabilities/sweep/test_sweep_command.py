@@ -32,14 +32,14 @@ from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
 from camgeo.capabilities.sweep import command as sweep
 if __name__ == "__main__":
-    sweep._means = lambda: MEANS
+    sweep.means = lambda: MEANS
     sys.exit(main(sys.argv[1:]))
 """
 
 
 @pytest.fixture(autouse=True)
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep, "_means", lambda: MEANS)
+    monkeypatch.setattr(sweep, "means", lambda: MEANS)
 
 
 def written(folder: Path, *, comment="", margin=1.0, rank="dwell", refine="false", old="", new="") -> Path:

@@ -219,10 +219,10 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
-    from camgeo.capabilities.sweep.command import _means
+    from camgeo.capabilities.sweep.command import means
 
     asked = Ask.of(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
-    outcome = search(asked, tmp_path, How(1), _means())
+    outcome = search(asked, tmp_path, How(1), means())
     best = outcome.report["best"][0]["values"]
     assert best == {"cam.base_radius": 45.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"}
     assert outcome.report["sweep"]["vary"]["cam.motion[0].law"] == {"words": ["cycloidal", "harmonic"], "values": 2}
@@ -317,11 +317,11 @@ def swept(tmp_path):
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(Ask, "exactly", lost)
-            from camgeo.capabilities.sweep.command import _means
+            from camgeo.capabilities.sweep.command import means
 
             asked = Ask.of(recipe(*CAMS["roller"], sweep=text))
-            means: Means = _means()
-            outcome = search(asked, tmp_path, How(1), means)
+            computing: Means = means()
+            outcome = search(asked, tmp_path, How(1), computing)
         return outcome.report, outcome.folder
 
     return sweep

@@ -14,13 +14,14 @@ from support.sweepers import GRID, ask, calls, fail, hills, job
 from camgeo.capabilities.sweep.search import job as jobs
 from camgeo.capabilities.sweep.search import store
 from camgeo.capabilities.sweep.search.ask import Ask
+from camgeo.capabilities.sweep.search.figures import Scene
 from camgeo.capabilities.sweep.search.gather import Ranking
 from camgeo.capabilities.sweep.search.job import Job, VersionsError, result
 from camgeo.capabilities.sweep.search.plan import Axis, Plan
 from camgeo.capabilities.sweep.search.run import How, chunks_of, compute, gathered
 from camgeo.capabilities.sweep.search.store import ChunkError, Chunks, decode, encode
 from camgeo.common.errors import SurroundingsError
-from camgeo.recipe.loading import read
+from camgeo.recipe.loading import load_text, read
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -179,6 +180,14 @@ def test_what_killed_runs_left_is_cleared_away_and_what_others_write_is_not(fill
 
 
 # --- the key ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_key_is_of_all_that_a_recipe_says() -> None:
+    """Not of its name alone, which is all that its `repr` shows."""
+    text = "cam: {kind: support, p: SIZE + cos(3*t), shaft: [1, 2]}\n"
+    scenes = [Scene(load_text(text.replace("SIZE", size), "cam.yaml"), ("size",)) for size in ("25", "26", "25")]
+    assert repr(scenes[0].recipe) == repr(scenes[1].recipe) == "Recipe('cam', 'cam.yaml')"
+    assert repr(scenes[0]) == repr(scenes[2]) != repr(scenes[1])
 
 
 def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,7 +26,7 @@ from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.errors import RecipeErrors
 from kin.linkage.loop import side_of
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass, full_text, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,6 +67,11 @@ class Scene:
     figures: tuple[str, ...]
     screened: bool = False
     others: tuple[Cam, ...] = ()
+
+    def __repr__(self) -> str:
+        """Write all of it, as the key is made of this; a recipe's own `repr` is its name."""
+        told = f"figures={self.figures!r}, screened={self.screened!r}, others={self.others!r}"
+        return f"Scene(recipe={full_text(self.recipe)}, {told})"
 
     @property
     def paths(self) -> tuple[str, ...]:

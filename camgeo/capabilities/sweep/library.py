@@ -1,0 +1,146 @@
+"""A search among designs from a program, as `camgeo sweep` runs it from a terminal."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from camgeo.api.check import Figure, Figures
+from camgeo.api.loading import recipe_of
+from camgeo.api.log import heard
+from camgeo.common.arguments import called, is_a, path_of, spelled, whole_of
+from camgeo.common.errors import CallError, SurroundingsError
+from kin.numeric.records import dataclass, field
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from os import PathLike
+    from pathlib import Path
+
+    from camgeo.api.loading import RecipeSource
+    from camgeo.api.report import JSON
+    from camgeo.recipe.recipe import Recipe
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One of the best designs of a search: its recipe, what the search varied in it, and its figures.
+
+    `values` are by the paths of the recipe's fields and in its units, `figures` by name. `polished` tells whether the
+    values were improved beyond the grid of the search. `path` is the file of the recipe.
+    """
+
+    recipe: Recipe
+    values: Mapping[str, float | str]
+    figures: Figures
+    polished: bool
+    path: Path
+
+
+@dataclass(frozen=True, eq=False)
+class Search(Mapping[str, "JSON"]):
+    """What came of a search; as a mapping it is what sweep.json holds: `dict(search)`, `search["counts"]`.
+
+    `path` is the folder of its files, `<name>.rejected` where no design keeps the limits.
+    """
+
+    recipe: Recipe
+    path: Path
+    _document: dict[str, Any] = field(repr=False)
+
+    @property
+    def ok(self) -> bool:
+        """Whether a design keeps all limits."""
+        return bool(self._document["ok"])
+
+    @cached_property
+    def best(self) -> tuple[Candidate, ...]:
+        """The best designs, the first the best of all; none where no design keeps the limits."""
+        from camgeo.recipe.loading import load
+
+        units = {name: figure["unit"] for name, figure in self._document["figures"].items()}
+        return tuple(
+            Candidate(
+                load(self.path / entry["file"]),
+                dict(entry["values"]),
+                Figures({name: Figure(value, units[name]) for name, value in entry["figures"].items()}),
+                entry["polished"],
+                self.path / entry["file"],
+            )
+            for entry in self._document["best"]
+        )
+
+    def __getitem__(self, key: str) -> JSON:
+        value: JSON = copy.deepcopy(self._document[key])
+        return value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document)
+
+    def __len__(self) -> int:
+        return len(self._document)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.recipe.name!r}, {'ok' if self.ok else 'FAILED'}, {str(self.path)!r})"
+
+    def __str__(self) -> str:
+        """Write on one line what the search came to."""
+        from camgeo.capabilities.sweep.command import summary
+
+        return summary(self._document, self.path)
+
+
+def search(
+    recipe: RecipeSource,
+    out: str | PathLike[str],
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> Search:
+    """Search the designs that a recipe's `sweep` spans; the best become recipes in the folder `out`/<name>.
+
+    `jobs` is the number of processes at once, as many as pay by default; `scheduler` the address of a Dask scheduler in
+    their place. What earlier runs have computed is kept unless `fresh` is true. `progress` hears of what is counted.
+    A search in which no design keeps the limits raises nothing: see `Search.ok`. Raises RecipeErrors where the recipe
+    has no sweep, or one that cannot be run, SurroundingsError where the disk, a package or a scheduler is not what it
+    should be, CallError for a number of processes below 1.
+    """
+    from camgeo.capabilities.sweep.command import EXTRAS, means
+    from camgeo.capabilities.sweep.search.ask import Ask
+    from camgeo.capabilities.sweep.search.engines import EngineError
+    from camgeo.capabilities.sweep.search.job import VersionsError
+    from camgeo.capabilities.sweep.search.run import How
+    from camgeo.capabilities.sweep.search.search import search as searched
+    from camgeo.files.errors import install
+
+    recipe, folder = recipe_of(recipe), path_of("out", out)
+    called("progress", progress)
+    is_a("fresh", fresh, bool, "a bool")
+    if scheduler is not None:
+        is_a("scheduler", scheduler, str, "a str")
+    if jobs is not None and (jobs := whole_of("jobs", jobs)) < 1:
+        raise CallError(f"jobs is a number of processes from 1, not {spelled(jobs)}")
+
+    def listener(what: str, count: int, total: int, _seconds: float) -> None:
+        if progress is not None:
+            progress(f"{count:,} of {total:,} {what}")
+
+    try:
+        ask = Ask.of(recipe)
+        outcome = searched(ask, folder, How(jobs, scheduler), means(), fresh=fresh, listener=listener)
+    except ModuleNotFoundError as error:
+        raise SurroundingsError(
+            f"the package {error.name} is missing: {install(EXTRAS.get(error.name or '', 'sweep'))}", folder
+        ) from error
+    except (EngineError, VersionsError) as error:
+        raise SurroundingsError(str(error), folder) from error
+    except OSError as error:
+        raise SurroundingsError(f"cannot be written: {error.strerror or error}", folder) from error
+    result = Search(recipe, outcome.folder, outcome.report)
+    if log := heard():
+        log.info("%s", result)
+    return result
