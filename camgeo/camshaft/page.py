@@ -10,7 +10,7 @@ from camgeo.camshaft.diagram import SHEET
 from camgeo.camshaft.diagrams import shown
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
-from camgeo.report.page.page import head
+from camgeo.report.page.page import RELOAD, head
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,7 +57,7 @@ def page(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], report: dict[str, 
     parts += [_section("Checks", TURNING.sub(r"\1", tables.checks(report))), _section("Files", tables.written(report))]
     source = f"<details><summary>Recipe</summary><pre>{escape(recipe.text)}</pre></details>"
     parts.append(f'<section class="tables">{source}</section>')
-    return "\n".join([*parts, "</main>\n</body>\n</html>\n"])
+    return "\n".join([*parts, f"</main>\n{RELOAD}\n</body>\n</html>\n"])
 
 
 def _section(title: str, body: str) -> str:

@@ -201,7 +201,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
     from camgeo.cli.watch import watch
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.loading import load
+    from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
@@ -212,13 +212,15 @@ def _watch(arguments: argparse.Namespace) -> int:
         return WRONG
     path, out = Path(arguments.recipes[0]), Path(arguments.out)
     only = (*arguments.only, "html") if arguments.only else ()
+    files = [path]
 
     def exported() -> tuple[str | None, str]:
         try:
-            recipe = load(path)
+            recipe = load_order(path)
         except RecipeErrors as errors:
             complain(str(errors))
             return None, str(errors)
+        files[:] = [path, *recipe.parts]
         asked = [request for request in recipe.export.files if request.kind != "html"]
         page = FileRequest("html")
         recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
@@ -231,7 +233,9 @@ def _watch(arguments: argparse.Namespace) -> int:
         assert found.report.path is not None
         return (found.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
-    watch(path, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True))
+    watch(
+        files, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True)
+    )
     return OK
 
 

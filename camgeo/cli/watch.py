@@ -1,5 +1,6 @@
 """Watching a recipe: it is exported anew whenever it is saved, and a page on 127.0.0.1 reloads itself.
 
+A camshaft is exported anew when the recipe of one of its lobes is saved, too.
 The server knows three addresses: the page, a stream of events, and nothing else. A recipe that is saved half-done shows
 its errors on the terminal and over the page, and the watch goes on.
 """
@@ -17,7 +18,7 @@ from camgeo.report.page.page import LOCAL, RELOAD
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
 HOST = "127.0.0.1"
@@ -106,9 +107,15 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def watch(
-    path: Path, exported: Callable[[], tuple[str | None, str]], report: Callable[[str], None], *, port: int = 0
+    files: Sequence[Path],
+    exported: Callable[[], tuple[str | None, str]],
+    report: Callable[[str], None],
+    *,
+    port: int = 0,
 ) -> None:
-    """Export once and then at every saving of `path`, and serve the page, until interrupted; port 0 is any free one.
+    """Export once and then whenever one of the files is saved, and serve the page, until interrupted.
+
+    Port 0 is any free one. Which files are looked at may change with each export.
 
     `exported` gives the page, None where there is none, and what is wrong, empty where nothing is; `report` hears of
     the address. Raises KeyboardInterrupt in the end, OSError where the port is taken.
@@ -120,12 +127,12 @@ def watch(
     thread.start()
     try:
         report(f"http://{HOST}:{server.server_address[1]}/")
-        last: tuple[int, int, int] | None = (0, 0, 0)
+        last: list[tuple[int, int, int] | None] = []
         while True:
-            now = _stamp(path)
+            now = [_stamp(path) for path in files]
             if now != last:
-                last = now
                 shown.show(*exported())
+                last = now if len(now) == len(files) else [_stamp(path) for path in files]
             threading.Event().wait(LOOK)
     finally:
         shown.end()

@@ -102,6 +102,11 @@ class CamshaftRecipe(Order):
 
     __repr__ = Order.__repr__
 
+    @property
+    def parts(self) -> tuple[Path, ...]:
+        """The recipes of its lobes, each once."""
+        return tuple(dict.fromkeys(lobe.recipe.path for lobe in self.lobes))
+
 
 # --- keys -------------------------------------------------------------------------------------------------------------
 

@@ -74,6 +74,11 @@ class Order(Document):
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}, {str(self.path)!r})"
 
+    @property
+    def parts(self) -> tuple[Path, ...]:
+        """The files of other recipes that this one is made of, each once; none of a cam."""
+        return ()
+
     def field_of(self, request: FileRequest | None) -> str:
         """Give the path of a request; that of the list for one that does not stand there."""
         files = self.export.files

@@ -724,7 +724,7 @@ def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path)
 
     def run() -> None:
         with pytest.raises(KeyboardInterrupt):
-            watch(path, exported, address.append)
+            watch([path], exported, address.append)
 
     thread = threading.Thread(target=run)
     thread.start()
@@ -776,6 +776,37 @@ def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) ->
         wait(lambda: "26 + cos" in fetched(address))
         process.send_signal(signal.SIGINT)
         assert process.wait(30) == 130
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.slow
+def test_a_camshaft_is_watched_with_its_lobes(tmp_path: Path) -> None:
+    lobe, path = tmp_path / "lobe.yaml", tmp_path / "shaft.yaml"
+    text = (
+        "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8}, motion: {formula: 5*(1 - cos(t))}}\n"
+    )
+    lobe.write_text(text, encoding="utf-8")
+    lobes = "[{recipe: lobe.yaml, at: 0, z: 10, length: 10}]"
+    path.write_text(f"camshaft: {{shaft: {{diameter: 20, to: 30}}, lobes: {lobes}}}\n", encoding="utf-8")
+    command = [sys.executable, "-m", "camgeo", "export", str(path), "--watch", "--only", "svg", "--tolerance", "0.01"]
+    path.write_text(path.read_text(encoding="utf-8") + "export: {files: [svg, html]}\n", encoding="utf-8")
+    process = subprocess.Popen(
+        [*command, "--out", str(tmp_path / "out")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        address = process.stdout.readline().split()[2]
+        assert "shaft: ok" in process.stdout.readline()
+        wait(lambda: "<h1>shaft</h1>" in fetched(address))
+        assert "EventSource" in fetched(address)
+        lobe.write_text(text.replace("30", "-30"), encoding="utf-8")
+        assert "shaft.yaml:1:" in (fault := process.stderr.readline())
+        assert "lobe.yaml:1:32: cam.base_radius: not above 0, given -30" in fault
+        lobe.write_text(text.replace("30", "31"), encoding="utf-8")
+        assert "shaft: ok" in process.stdout.readline()
     finally:
         process.kill()
         process.communicate()

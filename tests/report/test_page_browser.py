@@ -289,7 +289,7 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
 
     def run() -> None:
         with pytest.raises(KeyboardInterrupt):
-            watch(path, exported, address.append)
+            watch([path], exported, address.append)
 
     thread = threading.Thread(target=run)
     thread.start()
