@@ -20,20 +20,22 @@ if TYPE_CHECKING:
 
 NAME = "recipe"  # of what has no file
 
+OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `str`
+
 
 def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
-    A `str` with a line break in it is a text, any other the path of a file. A recipe that is no file and gives no
-    `name` is called recipe. Raises RecipeErrors, which has every fault with line, column and remedy, and TypeError for
-    what is none of the three.
+    A `str` with a line break, or with `: ` as YAML has it, is a text, any other the path of a file. A recipe that is no
+    file and gives no `name` is called recipe. Raises RecipeErrors, which has every fault with line, column and remedy,
+    and TypeError for what is none of the three.
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
         from camgeo.schema.change import written
 
         return load_text(written(source, NAME), NAME, NAME)
-    if isinstance(source, str) and ("\n" in source or "\r" in source):
+    if isinstance(source, str) and any(mark in source for mark in OF_TEXT):
         return load_text(source, NAME)
     return load_file(path_of("source", source))
 

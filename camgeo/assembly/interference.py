@@ -55,7 +55,9 @@ def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
     running = [fit for fit in assembly.fits if not fit.pressed]
     least = min(fit.clearance for fit in running)
     told = [f"{fit.name} {'-' if fit.pressed else ''}{fit.clearance:.6g}" for fit in assembly.fits]
-    held = [f"too wide by {fit.held:.4g} mm to turn there: {fit.name}" for fit in assembly.fits if fit.held is not None]
+    held = [
+        f"{fit.name} drives: {fit.held:.4g} mm too wide to slip round" for fit in assembly.fits if fit.held is not None
+    ]
     wall, where = thinnest(assembly)
     thin = f"thinnest wall {wall:.3g} mm: {where}"
     room = "takes up " + " by ".join(f"{length:.0f}" for length in swept_room(bodies)) + " mm as it turns"

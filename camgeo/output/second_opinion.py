@@ -7,6 +7,7 @@ one from the design as a polygon with a proved bound; meshes are read by trimesh
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -126,7 +127,9 @@ def second_opinion_on(
                 rows = [row for row in due if row.partition(":")[0] in libraries]
                 why = NOTHING
                 try:
-                    checks = ask(job, file) if rows else []
+                    with warnings.catch_warnings():  # of a volume of 0 and the like, which the rows tell
+                        warnings.simplefilter("ignore")
+                        checks = ask(job, file) if rows else []
                 except _Skip as left:
                     checks, why = [], str(left)
                 left_out = [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in checks}]

@@ -183,3 +183,14 @@ def test_errors_of_the_surroundings_are_named_and_can_be_pickled(tmp_path: Path)
     assert isinstance(caught.value, camgeo.SurroundingsError)
     again = pickle.loads(pickle.dumps(caught.value))
     assert (type(again), str(again), again.path) == (camgeo.BusyError, str(caught.value), tmp_path / "recipe")
+
+
+def test_a_text_of_a_single_line(tmp_path: Path) -> None:
+    """It is a text by its `: `, which a path that is given as a `str` does not have."""
+    assert camgeo.load("cam: {kind: support, p: 25 + cos(3*t)}").cam.kind == "support"
+    with pytest.raises(camgeo.RecipeErrors, match="did you mean support"):
+        camgeo.load("cam: {kind: suport, p: 9}")
+    with pytest.raises(camgeo.RecipeErrors, match="the file does not exist"):
+        camgeo.load("no.yaml")
+    (tmp_path / "a: b.yaml").write_text("cam: {kind: support, p: 9}\n", encoding="utf-8")
+    assert camgeo.load(tmp_path / "a: b.yaml").name

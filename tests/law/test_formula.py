@@ -363,6 +363,9 @@ def test_every_switch_is_found(level: float, factor: int, shift: float) -> None:
         assert abs(x - root) <= 2e-14 / sharpness
 
 
+ENDING = "cannot be bounded, as acos, asin or a root has no slope where it ends,"
+
+
 def test_two_switches_close_together_are_both_found() -> None:
     found = Formula("abs((t - 1)*(t - 1.0000001))").breaks(0, 3)
     np.testing.assert_allclose(found, [1, 1.0000001], atol=1e-9)
@@ -379,6 +382,11 @@ def test_two_switches_close_together_are_both_found() -> None:
             4,
         ),
         ("abs(tan(t))", "abs cannot be settled: the argument has no value near t = 1.57079632679", 0),
+        (
+            "max(0, 0.8632 - acos(cos(t)))",
+            f"max cannot be settled: the difference of the arguments {ENDING} near t = 0",
+            0,
+        ),
         (
             "t + max(1/t, 3)",
             "max cannot be settled: the difference of the arguments has no value near t = 0",

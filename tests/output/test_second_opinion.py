@@ -196,6 +196,14 @@ def test_faults_of_meshes(tmp_path: Path, recipe: Any, spoil: Any, caught: set[s
     assert not report.ok
 
 
+def test_libraries_warn_of_nothing_beside_their_rows(tmp_path: Path, recipe: Any, recwarn: Any) -> None:
+    """A body and the same inside out have no volume, by which trimesh divides."""
+    mesh = triangles()
+    report = asked(recipe, write_stl(tmp_path / "cam.stl", np.concatenate([mesh, mesh[:, ::-1]])))
+    assert failed(report) >= {"trimesh:winding"}
+    assert not list(recwarn)
+
+
 def test_what_trimesh_cannot_open_fails(tmp_path: Path, recipe: Any) -> None:
     report = asked(recipe, in_3mf(tmp_path / "cam.3mf", triangles()))  # a sound file, its model by another name
     assert failed(report) == {"trimesh:watertight"}

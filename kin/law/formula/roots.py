@@ -98,7 +98,10 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
     left, right, found = edges[:-1], edges[1:], []
     while len(left):
         if len(left) > _MOST_CELLS:
-            raise UnsettledError("is zero, or close to it, too often", float(left[0]))
+            reason = "is zero, or close to it, too often"
+            if not np.isfinite(g.ball(left[:1], right[:1], 0).rad[0, 0]):
+                reason = "cannot be bounded, as acos, asin or a root has no slope where it ends,"
+            raise UnsettledError(reason, float(left[0]))
         reach = _OVERLAP * (right - left)
         low, high = np.maximum(left - reach, lower), np.minimum(right + reach, upper)
         ball = g.ball(low, high, 1).rows
