@@ -192,5 +192,5 @@ def test_a_text_of_a_single_line(tmp_path: Path) -> None:
         camgeo.load("cam: {kind: suport, p: 9}")
     with pytest.raises(camgeo.RecipeErrors, match="the file does not exist"):
         camgeo.load("no.yaml")
-    (tmp_path / "a: b.yaml").write_text("cam: {kind: support, p: 9}\n", encoding="utf-8")
-    assert camgeo.load(tmp_path / "a: b.yaml").name
+    (tmp_path / "a: b.yaml").write_text("name: b\ncam: {kind: support, p: 9}\n", encoding="utf-8")
+    assert camgeo.load(tmp_path / "a: b.yaml").name == "b"
