@@ -19,6 +19,7 @@ from kin.numeric.errors import UnsettledError
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.base import Closure, Follower
+    from kin.follower.envelope import Envelope
     from kin.judge.intent import Limits, LinkageIntent, SurfaceIntent
     from kin.numeric.arrays import Array
     from kin.read.nesting import Chain
@@ -67,7 +68,7 @@ def judge_contour(
             strayed = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
         except UnsettledError as error:
             unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
-            return found, [unsettled, *checks]
+            return found, [_placed(unsettled, contour, envelope, limits.tolerance), *checks]
     if uneven:
         away = (strayed.outside + uneven, strayed.inside + uneven, strayed.bare + uneven)
         strayed = replace(strayed, outside=away[0], inside=away[1], bare=away[2])
@@ -77,7 +78,18 @@ def judge_contour(
 
         driven, more = judge_linkage(contour, linkage, phi, limits, trimmed=surface.trimmed, slack=slack, uneven=uneven)
         found, checks = replace(found, linkage=driven), [*checks, *more]
-    return found, [_contour_check(strayed, surface, limits.tolerance, slack, standing), *checks]
+    checked = _contour_check(strayed, surface, limits.tolerance, slack, standing)
+    return found, [_placed(checked, contour, envelope, limits.tolerance), *checks]
+
+
+def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float) -> Check:
+    """A check on a contour that fails, with the place at which the exact one would fit it."""
+    if check.ok or not envelope.regular:
+        return check
+    from kin.judge.misplaced import placement  # what is right does without
+
+    elsewhere = placement(contour, envelope, tolerance)
+    return replace(check, detail=f"{check.detail}; {elsewhere}") if elsewhere else check
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:

@@ -1,0 +1,145 @@
+"""Whether a contour that is wrong is the exact one elsewhere: turned, moved, mirrored, scaled, or larger all round.
+
+The exact contour is taken as points p with outward normals n. About the middles of both areas the distances at equal
+directions are compared for every turn at once, by their correlation; from the turns that fit best Newton's method goes
+on by least squares over the turn, the shift and, where these do not do, an offset all round: the distance of a placed
+point from the file's contour changes by n per shift, by the moment of n per turn. What is found is words alone: the
+contour stays wrong.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import cross
+from kin.contour.nearest import signed_distance
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from kin.contour.contour import Contour
+    from kin.follower.envelope import Envelope
+    from kin.numeric.arrays import Array
+
+POINTS = 720  # of the exact contour, and directions
+LOOKS = 8  # on each piece of the file's
+MOST_PIECES = 20_000  # beyond, nothing is looked for
+STARTS = 6  # turns from which the fit goes on
+STEPS = 12  # of Newton's method
+NEAR = 2.0  # tolerances within which a placed contour fits
+FACTORS = (1.0, 25.4, 1.0 / 25.4, 10.0, 0.1, 1000.0, 1e-3)
+SAME_SIZE = 0.1  # share by which an area may differ from that of one of these
+
+
+def placement(contour: Contour, envelope: Envelope, tolerance: float) -> str:
+    """How the exact contour has to be placed to fit a file's contour within some tolerances, mm, in words.
+
+    Empty where no turn, shift, mirror image, change of unit or offset makes it fit, or none is needed.
+    """
+    if len(contour) > MOST_PIECES or not contour.area > 0.0:
+        return ""
+    exact = envelope.points(np.arange(POINTS) * TURN / POINTS)
+    if float(cross(exact, np.roll(exact, -1, axis=0)).sum()) < 0.0:
+        exact = exact[::-1]
+    large = np.sqrt(contour.area / _area(exact))
+    factor = min(FACTORS, key=lambda one: abs(np.log(large / one)))
+    if not abs(large / factor - 1.0) <= SAME_SIZE:
+        return ""
+    same_size = contour.scaled(1.0 / factor)
+    for mirrored in (False, True):
+        placed = _fitted(same_size.mirrored() if mirrored else same_size, exact, tolerance)
+        if placed is not None:
+            return _words(placed, factor, exact, tolerance, mirrored=mirrored)
+    return ""
+
+
+def _words(placed: Array, factor: float, exact: Array, tolerance: float, *, mirrored: bool) -> str:
+    turn, x, y, offset = placed.tolist()
+    fine = tolerance / float(np.abs(exact).max())
+    turn = _rounded(float(np.degrees(np.pi - np.mod(np.pi - turn, TURN))), float(np.degrees(fine)))
+    turn = abs(turn) if turn == -180.0 else turn
+    x, y, offset = (_rounded(length, tolerance) for length in (x, y, offset))
+    words = (
+        [] if factor == 1.0 else [f"{max(factor, 1.0 / factor):.6g} times as {'large' if factor > 1.0 else 'small'}"]
+    )
+    words += ["mirrored in the x axis"] if mirrored else []
+    words += [f"turned by {turn:.9g} degrees"] if turn else []
+    words += [f"moved by ({x:.9g}, {y:.9g}) mm"] if x or y else []
+    words += [f"{abs(offset):.9g} mm {'larger' if offset > 0.0 else 'smaller'} all round"] if offset else []
+    return f"it is the exact one {', '.join(words)}" if words else ""
+
+
+def _rounded(value: float, accuracy: float) -> float:
+    """The value to as many decimals as an accuracy has; 0 for less."""
+    return round(value, max(0, int(np.ceil(-np.log10(accuracy))))) if abs(value) > accuracy else 0.0
+
+
+def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
+    """Turn, rad, shift and offset, mm, of the exact contour that fits, the least turned one; None where none does."""
+    chain, _ = contour.as_arcs()
+    normal = _normals(exact)
+    found = []
+    for start in _starts(contour.sample(LOOKS), exact):
+        for columns in (3, 4):  # without an offset, with one
+            placed, off = start.copy(), np.inf
+            for _ in range(STEPS):
+                points, outward = _turned(exact, placed[0]), _turned(normal, placed[0])
+                apart = signed_distance(chain, points + placed[1:3]) + placed[3]
+                off = float(np.abs(apart).max())
+                moment = cross(points, outward)
+                slope = np.column_stack([moment, outward, np.ones(len(points))])[:, :columns]
+                step = np.linalg.lstsq(slope, -apart, rcond=1e-9)[0]
+                placed[:columns] += step
+                if float(np.abs(step).max()) < 1e-9:
+                    break
+            if off <= NEAR * tolerance:
+                found.append(placed)
+                break
+    return min(found, key=lambda one: abs(np.angle(np.exp(1j * one[0])))) if found else None
+
+
+def _starts(points: Array, exact: Array) -> list[Array]:
+    """Placements to begin with, of the turns at which the distances about the middles of both areas agree best."""
+    middles = [_middle(points), _middle(exact)]
+    there, here = (_radii(one - middle) for one, middle in zip((points, exact), middles, strict=True))
+    fit = np.fft.irfft(np.fft.rfft(there - there.mean()) * np.conj(np.fft.rfft(here - here.mean())), POINTS)
+    peaks = np.flatnonzero((fit >= np.roll(fit, 1)) & (fit >= np.roll(fit, -1)))
+    best = peaks[np.argsort(-fit[peaks], kind="stable")][:STARTS]
+    turns = [*(best * TURN / POINTS).tolist(), 0.0]
+    return [np.array([turn, *(middles[0] - _turned(middles[1][None], turn)[0]), 0.0]) for turn in turns]
+
+
+def _radii(points: Array) -> Array:
+    """Distances from the origin at equal directions (POINTS,), of points (n, 2) round it."""
+    angle = np.mod(np.arctan2(points[:, 1], points[:, 0]), TURN)
+    order = np.argsort(angle, kind="stable")
+    at = np.arange(POINTS) * TURN / POINTS
+    found: Array = np.interp(at, angle[order], np.hypot(*points[order].T), period=TURN)
+    return found
+
+
+def _area(points: Array) -> float:
+    return 0.5 * float(cross(points, np.roll(points, -1, axis=0)).sum())
+
+
+def _middle(points: Array) -> Array:
+    """Middle of the area of a polygon (n, 2)."""
+    after = np.roll(points, -1, axis=0)
+    share = cross(points, after)
+    middle: Array = ((points + after) * share[:, None]).sum(axis=0) / (3.0 * share.sum())
+    return middle
+
+
+def _normals(points: Array) -> Array:
+    """Outward normals of a counter-clockwise polygon (n, 2) at its corners."""
+    along = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+    length = np.maximum(np.hypot(*along.T), np.finfo(float).tiny)
+    outward: Array = np.column_stack([along[:, 1], -along[:, 0]]) / length[:, None]
+    return outward
+
+
+def _turned(points: Array, turn: float) -> Array:
+    c, s = np.cos(turn), np.sin(turn)
+    turned: Array = points @ np.array([[c, s], [-s, c]])
+    return turned
