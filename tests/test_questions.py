@@ -398,6 +398,7 @@ WHERE_ONE_IS_ALL = {
     "camgeo/capabilities/study/margins.py": 1,
     "camgeo/capabilities/sweep/search/cams.py": 1,  # support functions
     "camgeo/camshaft/lobes.py": 1,  # a lobe is a cam of one surface; others are refused
+    "camgeo/camshaft/drawing.py": 1,
     "camgeo/camshaft/pipeline.py": 1,
 }
 """How often a file takes one surface for all; it goes down as forms of files are taught more."""
