@@ -661,11 +661,9 @@ def test_limits_of_forces_and_peaks_are_lines_too() -> None:
     assert lines["Load"] == []
     assert shown["Load"][0] == "N"
     assert shown["Load"][1] == pytest.approx(30.0)
-    # of a roller of 9 mm: the curvature of the pitch curve at which either radius is at its limit
+    # of a roller of 9 mm: the curvature of the pitch curve at which either radius is at its limit; its own is far off
     radii = {name: 1.0 / line for line, name in lines["Curvature of the pitch curve"]}
-    assert radii == pytest.approx(
-        {"undercut by the roller": 9.0, "limit of pitch-radius": 20.0, "limit of radius-of-curvature": 24.0}
-    )
+    assert radii == pytest.approx({"limit of pitch-radius": 20.0, "limit of radius-of-curvature": 24.0})
 
 
 def test_the_edges_of_a_face_and_the_tolerance_of_a_file_are_lines() -> None:
@@ -693,6 +691,9 @@ def test_what_is_the_same_is_plotted_once() -> None:
     titles = [plot.title for plot in curves.once(plots)]
     assert titles == ["Error of a.dxf and a.svg", "Error of a.stl", "Error of b.dxf"]
     assert curves.joined(["Radius, inner", "Radius, outer", "Radius, third"]) == "Radius, inner, outer and third"
+    twice = curves.Plot("Preload", "N", tuple(curves.Series(name, np.full(9, 450.0)) for name in ("face A", "face B")))
+    assert [row.name for row in curves.once([twice])[0].series] == ["face A and face B"]
+    assert curves.short(130534.2) == "130500"
     assert curves.joined(["Output", "Output of the first loop"]) == "Output and Output of the first loop"
 
 

@@ -43,6 +43,7 @@ DERIVATIVES = ("", "velocity", "acceleration", "jerk")
 POWERS = ("/rad", "/rad²", "/rad³")
 TIMES = ("/s", "/s²", "/s³")
 DEGREES = 180.0 / math.pi
+FAR = 3.0  # ranges of a curve: a line that is farther off is not drawn
 SAME = 1e-4  # of a curve's range: what is nearer is drawn once
 COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
 
@@ -80,7 +81,22 @@ def once(plots: Sequence[Plot]) -> list[Plot]:
     for plot in plots:
         same = next((rank for rank, (first, *_) in kept.items() if _alike(first, plot)), len(kept))
         kept.setdefault(same, []).append(plot)
-    return [replace(alike[0], title=joined([plot.title for plot in alike])) for alike in kept.values()]
+    return [
+        replace(alike[0], title=joined([plot.title for plot in alike]), series=_distinct(alike[0].series))
+        for alike in kept.values()
+    ]
+
+
+def _distinct(series: Sequence[Series]) -> tuple[Series, ...]:
+    """Return the series of a plot, of those that are the same the first under the names of all."""
+    kept: list[list[Series]] = []
+    for row in series:
+        same = next((rows for rows in kept if equal(rows[0].values, row.values)), None)
+        if same is None:
+            kept.append([row])
+        else:
+            same.append(row)
+    return tuple(replace(rows[0], name=" and ".join(row.name for row in rows)) for rows in kept)
 
 
 def _alike(plot: Plot, other: Plot) -> bool:
@@ -180,6 +196,11 @@ def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plo
     return Plot("Pressure angle", "°", series, limits=lines, dwells=True, note=note)
 
 
+def short(value: float) -> str:
+    """Return a figure to four digits, without an exponent for great ones."""
+    return f"{float(f'{value:.4g}'):.12g}"
+
+
 def limits(
     recipe: Recipe, sides: Mapping[str, Sequence[float]], series: Sequence[Series], scale: float = 1.0
 ) -> tuple[tuple[float, str], ...]:
@@ -194,7 +215,7 @@ def limits(
         for side in sides.get(limit.figure, ()) if limit.rpm in {None, rpm} else ():
             bounds = ((limit.at_least, "at least"), (limit.at_most, "limit"))
             lines += [
-                (side * scale * bound, f"{word} {scale * bound:.4g}")
+                (side * scale * bound, f"{word} {short(scale * bound)}")
                 for bound, word in bounds
                 if bound is not None and np.nanmax(side * values) > 0.0
             ]
@@ -246,7 +267,7 @@ def forces(recipe: Recipe, design: Design) -> list[Plot]:
     if state.pressure is not None:
         pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
         most, (factor, _) = running.most_pressure, shown_in(recipe, "N/mm^2")
-        borne = () if most is None else ((factor * most, f"material {factor * most:.4g}"),)
+        borne = () if most is None else ((factor * most, f"material {short(factor * most)}"),)
         plots += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
     return plots
 
@@ -304,6 +325,9 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
         series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
+        # what is far from the curve is said by the margin alone
+        near = not margin or limit < values.max() + FAR * float(np.ptp(values))
+        undercut = [(limit, f"undercut by the {touch}")] if near else []
         grown = {PITCH_RADIUS: 0.0, RADIUS: radius}  # mm by which the pitch curve's radius is greater than the figure's
         lines = [
             (recipe.mm / (bound.at_least + grown[bound.figure]), f"limit of {bound.figure}")
@@ -315,7 +339,7 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
             f"1/{unit}",
             series,
             over,
-            ((limit, f"undercut by the {touch}"), *lines),
+            (*undercut, *lines),
             note=margin,
             axis="curvature",
         )
@@ -333,7 +357,7 @@ def off(recipe: Recipe, name: str, error: tuple[Array, Array], tolerance: float)
     rows, (unit, scale) = zip(("least", "greatest"), error, strict=True), small_unit(recipe)
     series = tuple(Series(word, scale * closed(row)) for word, row in rows)
     note, most = "distance outside the exact contour, negative inside", scale * tolerance
-    lines = ((most, f"tolerance {most:.4g}"), (-most, ""))
+    lines = ((most, f"tolerance {short(most)}"), (-most, ""))
     return Plot(f"Error of {name}", unit, series, limits=lines, note=note, axis="error", holds=(most, -most))
 
 

@@ -37,12 +37,13 @@
     };
   }
 
-  // a value with its unit; what is nothing beside `span`, the range of its plot, is 0 without digits
+  // a value with its unit, to some ten-thousandth of `span`, the range of its plot, or of itself; 0 without digits
   function tidy(value, unit, span = 0) {
     if (!Number.isFinite(value)) return "–";
-    const size = Math.abs(value);
-    const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 0.1 ? 3 : 4;
-    const text = size <= 1e-5 * span ? "0" : size < 0.001 ? value.toExponential(2) : value.toFixed(digits);
+    const size = span || Math.abs(value) || 1;
+    const digits = Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 12);
+    const fixed = value.toFixed(digits);
+    const text = Number(fixed) === 0 ? "0" : fixed;
     return text.replace("-", "−") + (unit === "°" ? "°" : unit ? " " + unit : "");
   }
 
@@ -479,7 +480,7 @@
       const most = worst ? `up to ${tidy(worst * micro[1], micro[0])} off` : "but for rounding on";
       const within = `tolerance of ${Number((tolerance * micro[1]).toPrecision(4))} ${micro[0]} (dashed)`;
       find("error-note").textContent =
-        `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${tidy(by)} times as large.`;
+        `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${Number(by.toPrecision(3))} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
     };
     chosen.addEventListener("change", redraw);
