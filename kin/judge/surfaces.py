@@ -65,7 +65,7 @@ def parted(
     for surface in outermost_first(surfaces):
         there = [chain for chain in others if chain.layer == surface.layer] if by_layer else [*islice(round_shaft, 1)]
         if not there:
-            raise ReadError("empty", missing(surface), path)
+            raise ReadError("empty", missing(surface, part), path)
         if len(there) > 1:
             raise ReadError("several", f"{len(there)} closed contours on the layer {surface.layer}", path)
         (chosen[surface.name],) = there
@@ -88,10 +88,11 @@ def deepest(part: PartIntent) -> int:
     return ring + len(part.surfaces) - (1 if outermost_first(part.surfaces)[-1].side < 0 else 0)
 
 
-def missing(surface: SurfaceIntent) -> str:
-    """Say that a surface is not there."""
+def missing(surface: SurfaceIntent, part: PartIntent) -> str:
+    """Say that a surface is not there: several of one part are the flanks of a groove."""
     if surface.name:
-        return f"the {surface.name} is missing, on which its follower runs"
+        flank = " flank" if len(part.surfaces) > 1 else ""
+        return f"the {surface.name}{flank} is missing, on which its follower runs"
     return "the ring has no opening about the shaft, in which its follower runs"
 
 

@@ -281,8 +281,14 @@ def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[Par
     solids = read_bodies(path, [_sought(part) for part in shaft.parts], shaft.levels)
     found = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
-        file = _solid_read(solid, part, limits, path, None)
+        way = f"{abs(solid.z_min):.6g} mm {'lower' if solid.z_min < 0.0 else 'higher'}"
+        moved = f"{part.name} lies {way} than it should" if abs(solid.z_min) > limits.tolerance else ""
+        try:
+            file = _solid_read(solid, part, limits, path, None)
+        except ReadError as error:
+            raise ReadError(error.reason, "; ".join(filter(None, [error.message, moved])), path) from None
         above = f"heights are counted from z = {level:.9g} mm, where {part.name} belongs" if level else ""
+        above = "; ".join(filter(None, [above, moved]))
         checks = [replace(check, surface=part.name, detail=_joined(check.detail, above)) for check in file.checks]
         found.append((part, file._replace(checks=checks)))
     return found

@@ -53,7 +53,7 @@ def words(points: np.ndarray) -> str:
         (lambda exact: exact / 25.4, "25.4 times as small"),
         (lambda exact: larger(exact, 0.1), "0.1 mm larger all round"),
         (lambda exact: larger(exact, -0.15), "0.15 mm smaller all round"),
-        (lambda exact: turned(exact, 40.0) + [3.0, 4.0], "turned by 40 degrees, moved by (3, 4) mm"),
+        (lambda exact: turned(exact, 40.0) + np.array([3.0, 4.0]), "turned by 40 degrees, moved by (3, 4) mm"),
         (lambda exact: 1.3 * exact, ""),
         (lambda exact: exact * [1.02, 1.0], ""),
         (lambda exact: np.where(np.arange(len(exact))[:, None] == 7, 1.05, 1.0) * exact, ""),

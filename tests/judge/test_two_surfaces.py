@@ -213,7 +213,7 @@ def test_a_flank_that_is_missing(tmp_path, layers, missing):
     (check,) = verdict.checks
     assert not check.ok
     named = ("inner", "outer")[missing] if layers[0] != "CUT" else "inner"
-    assert check.detail == f"the {named} is missing, on which its follower runs"
+    assert check.detail == f"the {named} flank is missing, on which its follower runs"
     assert not verdict.surfaces
     assert not verdict.closures
 

@@ -277,6 +277,20 @@ def test_a_body_of_a_3mf_out_of_its_place_is_caught(fine, tmp_path, turned, leve
     assert (told in check.detail) == (level != 14.0)
 
 
+@pytest.mark.parametrize(("level", "words"), [(0.0, "14 mm lower"), (9.0, "5 mm lower"), (16.5, "2.5 mm higher")])
+def test_a_body_that_another_program_dropped_to_the_plate(made, tmp_path, level, words):
+    """Also where its layers are no longer at the heights of any section."""
+    recipe, report = made
+    there = tmp_path / "pair.3mf"
+    with ZipFile(report.path / "pair.3mf") as source, ZipFile(there, "w") as target:
+        for name in source.namelist():
+            text = source.read(name).decode()
+            target.writestr(name, re.sub(r'"[^"]* 14"(?=/>)', f'"1 0 0 0 1 0 0 0 1 0 0 {level}"', text))
+    report = camgeo.verify(recipe, there)
+    assert not report.ok
+    assert any(f"disc 2 lies {words} than it should" in check.detail for check in report.checks if not check.ok)
+
+
 def saved_as_assembly(shape, path, raised):
     """The solids as the kernel saves an assembly: each a part in its place, those above the first farther up."""
     from OCP.BRep import BRep_Builder

@@ -93,7 +93,7 @@ def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
     """Read as many objects as are sought, the lowest first, as they stand to the lowest; raises as `read_3mf` does.
 
     Where the lowest lies on the plate and which way it is turned there does not count, unless its place scales, shears
-    or mirrors it.
+    or mirrors it. Where one does not reach a height it has no such section.
     """
     path = Path(path)
     built = read_placed(path)
@@ -110,7 +110,9 @@ def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
         turn, shift = one.place[:3] @ back, (one.place[3] - base[3]) @ back
         if bool((np.abs(turn - np.eye(3)) <= RIGID).all()):
             turn = np.eye(3)  # what stands upright does so to the last bit
-        solid = solid_of(_moved(one.corners, np.vstack([turn, shift])), "3mf", heights, path, deepest)
+        corners = _moved(one.corners, np.vstack([turn, shift]))
+        low, high = _ends(corners)
+        solid = solid_of(corners, "3mf", [z for z in heights if low < z < high], path, deepest)
         solids.append(replace(solid, units_mm=one.mm))
     return solids
 

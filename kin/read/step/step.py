@@ -105,10 +105,19 @@ def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1)
 
 
 def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSolid]:
-    """Read as many solids as are sought, the lowest first; raises as `read_step` does."""
+    """Read as many solids as are sought, the lowest first; raises as `read_step` does.
+
+    Where one of several does not reach a height it has no such section.
+    """
     path = Path(path)
     bodies = _Body.every(exchange(contents(path, "step"), path), len(sought))
     rising = sorted(bodies, key=lambda body: body.levels[0] + body.levels[-1])
+    if len(sought) > 1:
+        ends = [(body.levels[0], body.levels[-1]) for body in rising]
+        sought = [
+            one._replace(heights=[z for z in one.heights if low < z < high])
+            for one, (low, high) in zip(sought, ends, strict=True)
+        ]
     return [_solid(replace(body, deepest=one.deepest), one) for body, one in zip(rising, sought, strict=True)]
 
 
