@@ -136,13 +136,7 @@ def samples(
 
 def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
     intent = intended(recipe, designed(recipe))
-    drawing = read_drawing(
-        next(
-            path.parent / f"{recipe.name}{end}"
-            for end in ("-arcs.dxf", ".dxf")
-            if (path.parent / f"{recipe.name}{end}").exists()
-        )
-    )
+    drawing = read_drawing(path.parent / f"{recipe.name}.dxf")
     contour, holes = drawing.contour, sorted(hole.area for hole in drawing.holes)
     area, perimeter, _ = exact_area([contour], intent)
     touched = area

@@ -117,24 +117,27 @@ class FileRequest:
         return self.units or ("mm" if self.kind in SOLIDS else units)
 
     def filename(self, name: str, requests: collections.abc.Sequence[FileRequest]) -> str:
-        """Name the file among all `requests` of recipe `name`.
+        """Name the file among all `requests` of recipe `name`: no later one renames it.
 
-        `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
-        alike `<name>-<as>-<version>.<kind>`, with `-kerf` and the like behind for a part that is not nominal, and
-        `-inch` or `-mm` for a unit of its own. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
-        `<name>-parts.3mf` or `<name>-assembly.glb`.
+        The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one that is alike in that it is
+        `<name>-<as>-<version>.<kind>`, with `-kerf` and the like behind for a part that is not nominal, and `-inch` or
+        `-mm` for a unit of its own. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
+        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind one that is not is `<name>-nominal.<kind>`.
         """
-        kin = [request for request in requests if request.kind == self.kind]
+        before = requests[: requests.index(self)] if self in requests else requests
+        kin = [request for request in before if request.kind == self.kind]
         parts = [name] if self.parts == "cam" else [name, ALL_PARTS[self.kind]]
         alike = [request for request in kin if request.as_ == self.as_]
-        if len(kin) > 1 and self.as_:
+        if kin and self.as_:
             parts.append(self.as_)
-            if len(alike) > 1 and self.version:
+            if alike and self.version:
                 parts.append(self.version)
-        if len(alike) > 1 and self.compensation:
+        if alike and self.compensation:
             parts.append(self.compensation.tags)
-        if len(alike) > 1 and self.units and self.parts == "cam":
+        if alike and self.units and self.parts == "cam":
             parts.append(self.units)
+        if len(parts) == 1 and any(request.compensation or request.units for request in alike):
+            parts.append("nominal")
         return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
 
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:

@@ -74,20 +74,20 @@ def test_every_format_holds_its_corners(text, tmp_path):
     assert report.ok
     folder = tmp_path / "cam"
     corner = points_of(text)
-    for name in ("cam-arcs.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.stl", "cam.svg"):
+    for name in ("cam.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.stl", "cam.svg"):
         path = folder / name
         assert path.exists(), sorted(each.name for each in folder.iterdir())
-    arcs = read_drawing(folder / "cam-arcs.dxf").contour
+    arcs = read_drawing(folder / "cam.dxf").contour
     assert len(arcs) == len(corner)
-    for name in ("cam-arcs.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.svg"):
+    for name in ("cam.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.svg"):
         ends = read_drawing(folder / name).contour.end
         away = np.hypot(*(ends[:, None] - corner).transpose(2, 0, 1)).min(axis=0)
         assert away.max() < 1e-12, name
-    polyline = next(iter(ezdxf.readfile(folder / "cam-arcs.dxf").query("LWPOLYLINE[layer=='CUT']")))
+    polyline = next(iter(ezdxf.readfile(folder / "cam.dxf").query("LWPOLYLINE[layer=='CUT']")))
     assert len(polyline) == len(corner)
     for table in ("cam-contacts.csv", "cam-inspection.csv"):
         assert "nan" not in (folder / table).read_text()
-    checks = verify(folder / "cam-arcs.dxf", intended(recipe, designed(recipe)), 360, permitted(recipe, 1e-9)).checks
+    checks = verify(folder / "cam.dxf", intended(recipe, designed(recipe)), 360, permitted(recipe, 1e-9)).checks
     assert all(check.ok for check in checks), [str(check) for check in checks if not check.ok]
 
 

@@ -106,7 +106,7 @@ def test_events_of_an_engine(engine: camgeo.Report) -> None:
 def test_tables_of_an_engine(engine: camgeo.Report) -> None:
     """The same in CSV; lifts at crank 200 are those of case f20."""
     assert engine.path is not None
-    events = list(csv.DictReader((engine.path / "shaft-events.csv").read_text().splitlines()))
+    events = list(csv.DictReader((engine.path / "shaft.csv").read_text().splitlines()))
     assert float(events[0]["opens_crank_deg"]) == pytest.approx(369.750709, abs=1e-6)
     assert float(events[0]["duration_crank_deg"]) == pytest.approx(200.498582789, abs=1e-8)
     rows = list(csv.DictReader((engine.path / "shaft-motion.csv").read_text().splitlines()))

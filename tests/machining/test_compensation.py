@@ -71,7 +71,7 @@ def region(path, per_piece=30):
 def test_a_kerf_is_drawn_round_all_metal(tmp_path, cam, part, top):
     files = "dxf, {dxf: {kerf: 0.4}}, {svg: {kerf: 0.4}}, {dxf: {clearance: 0.3, version: R2013}}"
     _, report, folder = made(tmp_path, files, cam=cam, part=part, top=top)
-    names = ["c-arcs-R2010.dxf", "c-arcs-R2010-kerf.dxf", "c.svg", "c-arcs-R2013-clearance.dxf"]
+    names = ["c.dxf", "c-arcs-R2010-kerf.dxf", "c.svg", "c-arcs-R2013-clearance.dxf"]
     assert [file["path"] for file in report["files"]] == names
     nominal, kerf, drawn, clear = (region(folder / name) for name in names)
     assert len(nominal.interiors) == len(kerf.interiors)
@@ -214,7 +214,7 @@ def test_what_a_linkage_is_not_judged_by():
     outcome = pipeline.check(recipe_of("dxf, {dxf: {kerf: 0.2}}", cam=FRAME))
     assert outcome.ok
     driven = [check["file"] for check in outcome.report["checks"] if check["name"] == "linkage-error"]
-    assert driven == ["c-arcs-R2010.dxf"]
+    assert driven == ["c.dxf"]
     assert {"what": "linkage-error", "why": "c-arcs-R2010-kerf.dxf: the part is not the nominal one"} in (
         outcome.report["skipped"]
     )

@@ -129,13 +129,13 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     outcome = pipeline.export(read(body.encode(), Path("c.yaml")), tmp_path)
     assert outcome.ok
     assert [c["file"] for c in outcome.report["checks"] if c["name"] == "cutter-reach"] == [
-        "c-arcs.dxf",
+        "c.dxf",
         "c-spline.dxf",
     ]
-    space = ezdxf.readfile(outcome.folder / "c-arcs.dxf").modelspace()
+    space = ezdxf.readfile(outcome.folder / "c.dxf").modelspace()
     (path,) = space.query("LWPOLYLINE[layer=='TOOLPATH']")
     rows = np.array(path.get_points("xyb"))
-    drawing = read_drawing(outcome.folder / "c-arcs.dxf")
+    drawing = read_drawing(outcome.folder / "c.dxf")
     apart = drawing.contour.distance(Contour.from_bulges(rows[:, :2], rows[:, 2]).sample(5))
     assert apart == pytest.approx(4.0, abs=2e-3)
     assert ("TOOLPATH", "LWPOLYLINE", 1) in drawing.aside

@@ -134,8 +134,8 @@ def test_what_is_trimmed_away_has_empty_cells(tmp_path):
     )
     outcome = pipeline.export(read(body.encode(), "c.yaml"), tmp_path)
     assert outcome.ok
-    assert [file["path"] for file in outcome.report["files"]] == ["c-inspection.csv", "c-motion.csv"]
-    with (outcome.folder / "c-inspection.csv").open(newline="") as stream:
+    assert [file["path"] for file in outcome.report["files"]] == ["c.csv", "c-motion.csv"]
+    with (outcome.folder / "c.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == 361
     assert all(row["lift_mm"] for row in rows)

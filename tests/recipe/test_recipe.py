@@ -312,10 +312,15 @@ def test_file_names_tell_apart_what_differs() -> None:
     spline, stl, table = request("dxf", "spline", "R2010"), request("stl"), request("csv")
     every = (arcs, r12, spline, stl, table)
     assert arcs.filename("x", (arcs, stl, table)) == "x.dxf"
+    names = [r.filename("x", every) for r in every]
+    for count in range(1, len(every) + 1):  # what is added behind renames nothing
+        assert [r.filename("x", every[:count]) for r in every[:count]] == names[:count]
+    solids = FileRequest("stl", units="inch"), request("stl")
+    assert [r.filename("x", solids) for r in solids] == ["x.stl", "x-nominal.stl"]
     three = (arcs, spline, stl)
-    assert [r.filename("x", three) for r in three] == ["x-arcs.dxf", "x-spline.dxf", "x.stl"]
+    assert [r.filename("x", three) for r in three] == ["x.dxf", "x-spline.dxf", "x.stl"]
     assert [r.filename("x", every) for r in every] == [
-        "x-arcs-R2010.dxf",
+        "x.dxf",
         "x-arcs-R12.dxf",
         "x-spline.dxf",
         "x.stl",
@@ -706,7 +711,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
     assert recipe.manufacture.lead == recipe.manufacture.radius == 3.175
     files = recipe.export.files
     names = [file.filename("c", files) for file in files]
-    assert names == ["c-arcs-R2010.dxf", "c-arcs-R2010-kerf.dxf", "c.stl", "c.csv", "c.ngc"]
+    assert names == ["c.dxf", "c-arcs-R2010-kerf.dxf", "c.stl", "c.csv", "c.ngc"]
     assert [file.compensation for file in files] == [
         None,
         Compensation(kerf=0.254),

@@ -782,8 +782,8 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             ["23: export.files[1]: the same file twice; leave one out"],
         ),
         (
-            "[dxf, {dxf: {tolerance: 1}}]",
-            [f"23: export.files[1]: a second file of one name, given <name>-arcs-R2010.dxf; {TWINS}"],
+            "[dxf, {dxf: {tolerance: 1}}, {dxf: {tolerance: 2}}]",
+            [f"46: export.files[2]: a second file of one name, given <name>-arcs-R2010.dxf; {TWINS}"],
         ),
         (
             "[{dxf: {as: spline, version: R12}}]",

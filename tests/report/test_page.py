@@ -704,7 +704,7 @@ def test_files_that_draw_the_same_are_one_error(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     made = Made(path)
-    assert [error.name for error in made.content.errors] == ["a-arcs.dxf, a.svg", "a-polyline.dxf"]
+    assert [error.name for error in made.content.errors] == ["a.dxf, a.svg", "a-polyline.dxf"]
     assert [error["tolerance"] for error in made.data["errors"]] == [0.01, 0.01]
 
 
