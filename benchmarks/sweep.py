@@ -6,7 +6,7 @@ Speed is processor time, the least of several repeats, as a ratio too: to bare k
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
 OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `screen` holds
 estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what it measured
-stands in `camgeo.capabilities.sweep.screen.errors`. `accuracy` does so for four-bars.
+stands in `camgeo.capabilities.sweep.estimate_errors`. `accuracy` does so for four-bars.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.screen.certify import error_of
-from camgeo.capabilities.sweep.search.figures import Evaluator
-from camgeo.capabilities.sweep.search.rebuilt import recipe_with
+from camgeo.capabilities.sweep.certify import error_of
+from camgeo.capabilities.sweep.figures import Evaluator
+from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.capabilities.sweep.rebuilt import recipe_with
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.linkage import mechanism_of
@@ -93,9 +94,8 @@ def bare(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def speed() -> None:
     print(f"\n{DESIGNS} four-bars at {ANGLES} relative angles, designs a second of processor time; target 20,000")
     places, both = drawn(PLACES), drawn({**PLACES, **HARMONICS})
-    limited = replace(
-        CAM_2A, sweep=replace(CAM_2A.sweep, limits=(Limit("transmission-angle", 39.0), Limit("size", None, 40.0)))
-    )
+    limits = (Limit("transmission-angle", 39.0), Limit("size", None, 40.0))
+    limited = CAM_2A.with_value(replace(CAM_2A.of(Sweep), limits=limits))
     cases = [
         ("dwell alone", CAM_2A, PLACES, places, ("dwell",)),
         ("dwell, with margin, shaft rate, transmission, swing", CAM_2A, PLACES, places, SOME),
@@ -124,7 +124,7 @@ sweep:
 RUN = """
 import sys, time
 from camgeo.cli.main import main
-from camgeo.capabilities.sweep.search import search
+from camgeo.capabilities.sweep import search
 spent = []
 def timed(*arguments, compute=search.compute, **named):
     begun = time.process_time()

@@ -79,11 +79,11 @@ class Design:
     def figures(self) -> Figures:
         """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
         from camgeo.measures.figures import of_design
-        from camgeo.recipe.figures import FIGURES, there
+        from camgeo.recipe.figures import FIGURES
 
         given = set(self.recipe.marks)
         offers = self.recipe.cam.arrangement.offers
-        names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, offers, given)]
+        names = [name for name, one in FIGURES.items() if one.of == "design" and one.needs.there(offers, given)]
         found = of_design(self.recipe, self.exact, self.exact.checks, names)
         return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
 

@@ -8,6 +8,7 @@ declared here by the same names.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
@@ -19,6 +20,7 @@ from camgeo.recipe.figures import (
     FIGURES,
     LAW_ERROR,
     LEAST_WALL,
+    OF_LINKAGE,
     PITCH_RADIUS,
     PRESSURE_ANGLE,
     RADIUS,
@@ -26,6 +28,7 @@ from camgeo.recipe.figures import (
 )
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_WIDTH as WIDTH
+from camgeo.registry.gathered import Gathered
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -90,7 +93,8 @@ class Declared:
     `remedy` says what would let it hold, empty where nothing would or where the check itself says it. `backlash` is
     whether it concerns what is left between contour and follower, `between` whether of a pair of discs it is made
     once, of the last of their files; `in_frame` whether under a linkage it concerns the cam in its frame alone, its
-    place being the relative angle then.
+    place being the relative angle then. A figure on its limit does not hold a `strict` check, nor one whose limit is
+    among `strict_at`. `after` is the core's check behind which it is foreseen.
     """
 
     name: str
@@ -104,6 +108,9 @@ class Declared:
     backlash: bool = False
     between: bool = False
     in_frame: bool = False
+    strict: bool = False
+    strict_at: tuple[float, ...] = ()
+    after: str = ""
 
     def place(self, recipe: Recipe, file: str | None) -> str:
         """Give the recipe's field on which it hangs most."""
@@ -257,7 +264,7 @@ def _loose(scene: Scene) -> bool:
     return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is not None
 
 
-def _run_with(scene: Scene, file: FileRequest) -> bool:
+def run_with(scene: Scene, file: FileRequest) -> bool:
     """Whether dynamics are found with a file: of a linkage the intended output alone drives."""
     return not scene.linked and file.kind not in NO_PART and file.compensation is None
 
@@ -308,8 +315,8 @@ def _motion_lost(scene: Scene) -> str:
 
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
 
-CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder)
-PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder)
+CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder, strict=True)
+PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, strict=True)
 BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
 UNDERCUT_GLOBAL = Declared(
@@ -322,9 +329,17 @@ RATIO = Declared(
     _named(VELOCITY_RATIO),
     why_not=_no_swing,
     remedy=remedies.smaller_swing,
+    strict_at=(1.0,),
 )
 LAW = Declared(LAW_ERROR, ("deg",), _named(LAW_ERROR), field="cam.delta.harmonics", remedy=remedies.more_harmonics)
-PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
+PRESSURE = Declared(
+    PRESSURE_ANGLE,
+    ("deg",),
+    _named(PRESSURE_ANGLE),
+    why_not=_no_roller,
+    remedy=remedies.smaller_swing,
+    strict_at=(90.0,),
+)
 BREADTH = Declared(
     "constant-breadth",
     ("mm",),
@@ -337,10 +352,10 @@ BREADTH = Declared(
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate)
 FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
-JAM = Declared("guide-jam", ("deg", "mm"), _guided, field="dynamics.guide")
+JAM = Declared("guide-jam", ("deg", "mm"), _guided, field="dynamics.guide", strict=True)
 WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
-MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
-REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
+MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
+REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
 DWELL = Declared(
     LONGEST_DWELL,
     ("deg",),
@@ -350,11 +365,19 @@ DWELL = Declared(
     field="dwell.at_least",
     remedy=remedies.shorter_dwell,
 )
-WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", own_field="part.outer", remedy=remedies.smaller_bore)
+WALL = Declared(
+    LEAST_WALL,
+    ("mm",),
+    _walled,
+    field="part.bore",
+    own_field="part.outer",
+    remedy=remedies.smaller_bore,
+    strict_at=(0.0,),
+)
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
 )
-CLEARANCE = Declared("clearance", ("mm",), _parts)
+CLEARANCE = Declared("clearance", ("mm",), _parts, strict_at=(0.0,))
 COLLISION = Declared("collision", ("mm",), _parts)
 
 # --- of files ---------------------------------------------------------------------------------------------------------
@@ -386,6 +409,7 @@ CHAMFER = Declared(
     _with("chamfer"),
     field="part.chamfer",
     remedy=remedies.smaller_chamfer,
+    strict=True,
 )
 SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="part.set_screw")
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
@@ -426,7 +450,7 @@ FLOAT = Declared(
     "float",
     ("N", "N m"),
     _sprung,
-    lambda scene, file: _elastic(scene) and _run_with(scene, file),
+    lambda scene, file: _elastic(scene) and run_with(scene, file),
     field="dynamics.preload",
     remedy=remedies.stronger_spring,
 )
@@ -434,7 +458,8 @@ LEAST_BACKLASH = Declared(
     BACKLASH_LEFT,
     ("mm", "deg", "N"),
     _loose,
-    lambda scene, file: _loose(scene) and _run_with(scene, file),
+    lambda scene, file: _loose(scene) and run_with(scene, file),
+    strict_at=(0.0,),
 )
 
 # --- a second opinion on files ----------------------------------------------------------------------------------------
@@ -454,13 +479,15 @@ MESH_VOLUME = Declared("trimesh:volume", ("mm^3",), of_file=_MESHES, field="part
 MESH_STATUS = Declared("manifold3d:status", ("faults",), of_file=_MESHES, remedy=_ANEW)
 
 SECOND_OPINIONS = tuple(one for one in tuple(globals().values()) if isinstance(one, Declared) and ":" in one.name)
-CHECKS: dict[str, Declared] = {one.name: one for one in globals().values() if isinstance(one, Declared)}
+_CORE = {one.name: one for one in tuple(globals().values()) if isinstance(one, Declared)}
+CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one for one in capability.checks()})
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
 
 
 # --- limits -----------------------------------------------------------------------------------------------------------
 
 
+@cache
 def _of_figure(name: str, figure: Figure) -> Declared:
     """Declare the limit of a figure: it applies where the recipe gives it."""
 
@@ -470,10 +497,10 @@ def _of_figure(name: str, figure: Figure) -> Declared:
     def of_file(scene: Scene, file: FileRequest) -> bool:
         if not any(limit.figure == name for limit in scene.recipe.limits):
             return False
-        if figure.of == "dynamics":
-            return _run_with(scene, file)
+        if figure.of == "run":
+            return run_with(scene, file)
         if figure.of == "file":
-            return _driven(scene, file) if figure.needs == "linkage" else _contour(scene, file)
+            return _driven(scene, file) if figure.needs is OF_LINKAGE else _contour(scene, file)
         return False
 
     # the check itself says what would do
@@ -481,5 +508,18 @@ def _of_figure(name: str, figure: Figure) -> Declared:
     return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", between=between)
 
 
-LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}
-EVERY: dict[str, Declared] = {**CHECKS, **LIMITS}
+def declaration(name: str) -> Declared | None:
+    """Give the declaration of a check by its name, that of a limit among them; None where there is none."""
+    if not name.startswith(LIMIT):
+        return CHECKS.get(name)
+    figure = FIGURES.get(name.removeprefix(LIMIT))
+    return None if figure is None else _of_figure(name.removeprefix(LIMIT), figure)
+
+
+def declarations(recipe: Recipe | None = None) -> list[Declared]:
+    """Give what a recipe may be checked by, or all there is: the checks, and behind them the limits."""
+    if recipe is None:
+        return [*CHECKS.values(), *(_of_figure(name, figure) for name, figure in FIGURES.items())]
+    bounded = {limit.figure for limit in recipe.limits}
+    limits = [_of_figure(name, figure) for name, figure in FIGURES.items() if name in bounded] if bounded else []
+    return [*CHECKS.among(recipe.uses).values(), *limits]

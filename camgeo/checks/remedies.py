@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
-    AT_SPEED,
     DURATION,
+    FIGURES,
     FORCE_GREATEST,
     FORCE_LEAST,
     GUIDE_FORCE,
@@ -29,7 +29,6 @@ from camgeo.recipe.figures import (
     ON_RETURN,
     ON_RISE,
     PEAK_FORCE,
-    PEAKS,
     PIVOT_CLEARANCE,
     PRELOAD_GREATEST,
     PRELOAD_LEAST,
@@ -39,7 +38,6 @@ from camgeo.recipe.figures import (
     RAMP_VELOCITY,
     ROLLER_SPEED,
     SIZE,
-    STEEP,
     TORQUE,
 )
 
@@ -236,7 +234,8 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         return "a larger roller"
     if figure in {SIZE, MASS, INERTIA}:
         return "a smaller cam" if figure == SIZE else "a thinner or a smaller part"
-    if figure not in STEEP:
+    eased_by = FIGURES[figure].eased_by
+    if not eased_by:
         return ""
     if figure == PRESSURE_ANGLE:
         floor = recipe.cam.advice.least_pressure_angle
@@ -248,9 +247,7 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         key = "on_return" if figure == ON_RETURN else "at_most and on_return" if both else "at_most"
         return f"{key} of {missed.bound:.6g} under sizing"
     advice = recipe.cam.advice.on(missed.surface)
-    if advice.larger and not (
-        figure in {*PEAKS, *AT_SPEED} or recipe.cam.sizes
-    ):  # no size changes them, or it is found
+    if advice.larger and eased_by == "size" and not recipe.cam.sizes:  # a size that is found is no larger one
         return f"{advice.larger}, {advice.less_steep}"
     return advice.less_steep
 

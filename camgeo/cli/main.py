@@ -17,6 +17,7 @@ from camgeo.common.terminal import complain, escaped, open_streams, say, say_jso
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
 from camgeo.recipe.export import KINDS
+from camgeo.registry import registry
 from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
@@ -127,17 +128,16 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--gap", type=_length, metavar="G", help=text)
     text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
     verify.add_argument("--second-opinion", action="store_true", help=text)
-    wing("sweep", "Many designs of one recipe, ranked; the best become recipes.", "camgeo.capabilities.sweep.command")
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
-    wing(
-        "study", "Error against run time of each output form; a recipe's margins.", "camgeo.capabilities.study.command"
-    )
     wing("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
     wing("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
     schema.add_argument("order", nargs="?", choices=("cam", "camshaft"), default="cam", help="of which recipe")
+    for folder, label in registry.labels().items():
+        for name, text in label.commands.items():
+            wing(name, text, f"{registry.PACKAGE}.{folder}.command")
     return parser
 
 
@@ -363,12 +363,12 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 def _new(arguments: argparse.Namespace) -> int:
     """Print a starter recipe, or write it where no file is yet; print the kinds without one, or for a kind of cam."""
-    from camgeo.recipe.starter import TITLES, starter, starters_for
+    from camgeo.recipe.starter import STARTERS, starter, starters_for
 
     kind: str | None = arguments.kind
-    if kind is None or (arguments.file is None and kind not in TITLES and starters_for(kind)):
-        names = tuple(TITLES) if kind is None else starters_for(kind)
-        say("\n".join(f"{name:<{max(map(len, names))}}  {TITLES[name]}" for name in names))
+    if kind is None or (arguments.file is None and kind not in STARTERS and starters_for(kind)):
+        names = tuple(STARTERS) if kind is None else starters_for(kind)
+        say("\n".join(f"{name:<{max(map(len, names))}}  {STARTERS[name].title}" for name in names))
         return OK
     try:
         text = starter(kind)
@@ -393,11 +393,11 @@ def _new(arguments: argparse.Namespace) -> int:
 def _schema(arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
     from camgeo.recipe.camshaft import SHAFT
-    from camgeo.recipe.keys import RECIPE
+    from camgeo.recipe.keys import recipe_table
     from camgeo.report.document import encoded
     from camgeo.schema.json_schema import json_schema
 
-    say_json(encoded(json_schema({"cam": RECIPE, "camshaft": SHAFT}[arguments.order])))
+    say_json(encoded(json_schema({"cam": recipe_table(), "camshaft": SHAFT}[arguments.order])))
     return OK
 
 

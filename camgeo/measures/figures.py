@@ -33,6 +33,13 @@ from camgeo.recipe.figures import (
     INERTIA,
     JAM_MARGIN,
     MASS,
+    NOTHING,
+    OF_BEARING,
+    OF_DWELL,
+    OF_FORCES,
+    OF_LINKAGE,
+    OF_MATERIAL,
+    OF_REACTION,
     OFFSET,
     ON_RETURN,
     ON_RISE,
@@ -47,6 +54,7 @@ from camgeo.recipe.figures import (
     SIZE,
     UNBALANCE,
 )
+from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width
 from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
@@ -68,7 +76,6 @@ if TYPE_CHECKING:
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
 
-_OF_FORCES = {"forces", "material", "reaction", "bearing"}
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
@@ -102,12 +109,18 @@ def of_design(
     """
     wanted = [name for name in names if FIGURES[name].of == "design"]
     found: dict[str, Measured] = {}
+    owned: dict[str, list[str]] = {}
+    for name in wanted:
+        if owner := FIGURES.owner(name):
+            owned.setdefault(owner, []).append(name)
+    for owner, own in owned.items():
+        found |= registry.capability(owner).measure(recipe, design, own, speeds or {})
     motion = [_IN_TIME.get(name, name) for name in wanted if _IN_TIME.get(name, name) in _ORDERS]
     if design.driven is not None:
         found |= _of_linkage(design.driven, wanted)
     elif motion:
         found |= _of_motion(design, max(_ORDERS[name] for name in motion))
-    if any(FIGURES[name].needs in _OF_FORCES for name in wanted):
+    if any(FIGURES[name].needs in (OF_FORCES, OF_MATERIAL, OF_REACTION, OF_BEARING) for name in wanted):
         from camgeo.measures.force_figures import figures_of
 
         found |= figures_of(recipe, design)
@@ -367,7 +380,7 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
         "shaft-rate": Measured(None if math.isnan(mobility.least_rate) else mobility.least_rate, "", detail=STANDS),
     }
     if driven.figures is None:
-        of = ("", "dwell", "linkage")
+        of = (NOTHING, OF_DWELL, OF_LINKAGE)
         lost = (name for name in names if FIGURES[name].needs in of and name not in {*found, *_OF_CURVE})
         return found | {name: Measured(None, "", detail=STANDS) for name in lost}
 

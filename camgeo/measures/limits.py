@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import EVERY, LIMIT, Scene
+from camgeo.checks.declared import LIMIT, Scene, declaration
 from camgeo.checks.remedies import Missed, of_limit
 from camgeo.measures.figures import of_design, of_dynamics, of_file
 from camgeo.recipe.figures import AT_LIFT, FIGURES
+from camgeo.registry.capability import EMPTY
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
@@ -31,10 +32,13 @@ def limit_checks(
     checks: Sequence[Check],
     files: Sequence[FileResult],
     dynamics: Mapping[str, Any] | None,
+    *,
+    runs: Mapping[str, Mapping[str | None, Measured]] = EMPTY,
 ) -> list[Check]:
     """Hold every figure that the recipe limits against its bounds.
 
-    `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and says why.
+    `checks` are all that were made, `dynamics` the report's section, `runs` figures of runs (`Results`).
+    A figure that cannot be had fails, and says why.
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
@@ -49,11 +53,16 @@ def limit_checks(
             found += _held(recipe, limit, lobe_figure(name, design.exact, limit.lift))
         elif name in measured:
             found += _held(recipe, limit, measured[name])
-        elif of == "dynamics" and dynamics is not None:
+        elif name in runs:
+            for run, value in runs[name].items():
+                found += _held(recipe, limit, value, run)
+        elif of == "run" and dynamics is not None:
             for run, value in of_dynamics(name, dynamics, checks).items():
                 found += _held(recipe, limit, value, run)
         elif of == "file":
-            declared = EVERY[LIMIT + name]
+            declared = declaration(LIMIT + name)
+            if declared is None:
+                raise KeyError(name)
             closed = declared.between and len(design.discs) > 1
             for file in files:
                 if closed and not file.closures:

@@ -16,6 +16,7 @@ from camgeo.measures.figures import of_design
 from camgeo.measures.units import of_displacements
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
+from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import Joint
 from kin.numeric.angles import degrees
@@ -69,13 +70,14 @@ RemarkName = Literal[
     "wanted-law",
     "wide-dwell-band",
 ]
+"""Names of the core's remarks."""
 
 
 @dataclass(frozen=True)
 class Remark:
     """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
 
-    name: RemarkName
+    name: str
     value: float | None
     rule: float | None
     unit: str
@@ -87,25 +89,28 @@ def remarks_of(
     recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
 ) -> tuple[Remark, ...]:
     """Make every remark that there is to make on a recipe, its design, and the checks of its files."""
-    found = [
-        _size_found(recipe, design),
-        _pressure(recipe, design),
-        _roller(recipe, design),
-        _corner(recipe, design),
-        _cutter(recipe, design),
-        _pivot(recipe, design),
-        _lost(recipe, design),
-        *_motion(recipe, design),
-        _law_error(recipe, design),
-        _implied(recipe, design, checks, files),
-        _stuck(recipe, design, files),
-        _acceleration(recipe, design.exact.joints),
-        *_output(recipe, design),
-        _shaft(recipe, design),
-        _keyway(recipe),
-        _thickness(recipe, design),
-    ]
-    return tuple(remark for remark in found if remark is not None)
+    made: dict[str, Sequence[Remark | None]] = {
+        "sizing": [_size_found(recipe, design)],
+        "pressure-angle": [_pressure(recipe, design)],
+        "large-roller": [_roller(recipe, design)],
+        "sharp-corner": [_corner(recipe, design)],
+        "large-cutter": [_cutter(recipe, design)],
+        "pivot-clearance": [_pivot(recipe, design)],
+        "lost-contact": [_lost(recipe, design)],
+        "motion": _motion(recipe, design),
+        "wanted-law": [_law_error(recipe, design)],
+        "loose-motion-error": [_implied(recipe, design, checks, files)],
+        "no-play": [_stuck(recipe, design, files)],
+        "acceleration-jump": [_acceleration(recipe, design.exact.joints)],
+        "output": _output(recipe, design),
+        "shaft-outside": [_shaft(recipe, design)],
+        "metric-keyway": [_keyway(recipe)],
+        "thickness": [_thickness(recipe, design)],
+    }
+    for capability in registry.in_order(recipe.uses):
+        for after, more in capability.remarks.items():
+            made[after] = [*made[after], *more(recipe, design)]
+    return tuple(remark for group in made.values() for remark in group if remark is not None)
 
 
 def _size_found(recipe: Recipe, design: Design) -> Remark | None:

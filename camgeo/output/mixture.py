@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
 from camgeo.output.output_folder import REJECTED
+from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-REPORTS = ("report.json", "page.json", "study.json", "sweep.json")
+REPORTS = ("report.json", "page.json")
 
 
 def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
@@ -28,7 +29,7 @@ def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
     nothing.
     """
     found = []
-    for name in REPORTS:
+    for name in (*REPORTS, *(name for label in registry.labels().values() for name in label.reports)):
         sums = _sums(folder / name)
         if names and not any(given in sums for given in names):
             continue

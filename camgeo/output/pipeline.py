@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.common.clock import Clock
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import shaft_of_file
+from camgeo.registry import registry
 from camgeo.report.document import Findings, document, encoded
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
@@ -246,6 +247,11 @@ def _findings(
             forces = found_forces(recipe, design)
         if forces is not None and train is None:
             checks = [*checks, *forces.checks]
+    results = []
+    for capability in registry.in_order(recipe.uses):
+        result = capability.examine(recipe, design, [file for file in files if file.shows_cam], clock)
+        results.append(result)
+        checks = [*checks, *result.checks]
     preload = None
     if design.exact.preload is not None:
         from camgeo.measures.forces import preload_section
@@ -257,7 +263,8 @@ def _findings(
 
         with clock.stage("limits"):
             section = None if train is None else train.section
-            checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
+            runs = {name: values for result in results for name, values in result.runs.items()}
+            checks = [*checks, *limit_checks(recipe, design, checks, files, section, runs=runs)]
     balances: tuple[Balance, ...] = ()
     if recipe.part.density is not None:
         from camgeo.measures.balance import balances_of
@@ -280,6 +287,7 @@ def _findings(
         dynamics=None if train is None else train.section,
         preload=preload,
         forces=None if forces is None else forces.section,
+        sections={name: section for result in results for name, section in result.sections.items()},
         remarks=remarks,
         joints=design.exact.joints,
         displacements=of_displacements(recipe),

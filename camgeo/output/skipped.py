@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, Scene
 from camgeo.recipe.export import KINDS
+from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
@@ -20,11 +21,14 @@ def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     found = _files(recipe, requests, design)
     if recipe.dynamics is None:
         found.append(("dynamics", "dynamics is not given"))
+    absent = ((name, label.absent) for name, label in registry.labels().items() if name not in recipe.uses)
+    found += [(name, why) for name, why in absent if why]
     if not any(request.parts == "all" for request in requests):
         found.append(("mechanism", "no file is requested with parts: all"))
     found += _of_linkage(recipe, design)
     scene = scene_of(recipe, design)
-    found += [(one.name, why) for one in CHECKS.values() if one.why_not is not None and (why := one.why_not(scene))]
+    checks = CHECKS.among(recipe.uses).values()
+    found += [(one.name, why) for one in checks if one.why_not is not None and (why := one.why_not(scene))]
     if recipe.linkage is not None:
         files = recipe.export.files
         names = [request.filename(recipe.name, files) for request in requests if request.compensation is not None]

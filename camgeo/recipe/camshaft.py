@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from camgeo.motions.lift_table import read_path
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import FILES, build_export, export_of
-from camgeo.recipe.keys import RECIPE, UNITS
+from camgeo.recipe.keys import CORE, UNITS, recipe_table
 from camgeo.recipe.part import LEAST_SIZE
 from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
 from camgeo.schema.errors import RecipeErrors, suggestion
@@ -229,10 +229,10 @@ OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
 OF_A_LOBE = frozenset({"dxf", "gcode"})
 SHAFT = Table(
     (
-        *(RECIPE.field(name) for name in ("name", "about", "units", "rotation")),
+        *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
         CAMSHAFT,
         export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]"),
-        RECIPE.field("verify"),
+        CORE.field("verify"),
     )
 )
 
@@ -399,7 +399,8 @@ def _cam(document: Document, name: str, field: str) -> Recipe:
         top = entries(source.root) if isinstance(source.root, Mapping) else {}
         if "camshaft" in top:
             raise document.error(field, "a camshaft is no lobe", f"'{name}'", remedy)
-        if not any(key in RECIPE.keys or suggestion(key, RECIPE.keys) for key in top):
+        known = recipe_table().keys
+        if not any(key in known or suggestion(key, known) for key in top):
             raise document.error(field, "no recipe", f"'{name}'", remedy)
         recipe = of_source(source, path)
     except RecipeErrors as errors:

@@ -2,67 +2,98 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
-from camgeo.schema.fields import Kind
-from kin.numeric.records import dataclass
+from camgeo.registry.gathered import Gathered
+from camgeo.schema.fields import MOST, Field, Kind
+from kin.numeric.records import KW_ONLY, dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
+
 
 Value = TypeVar("Value")
 
 
-Own: TypeAlias = Literal[
-    "guided",
-    "rolling",
-    "arm",
-    "stem",
-    "stem-face",
-    "guide",
-    "speed",
-    "density",
-    "wanted",
-    "stiff",
-    "forces",
-    "material",
-    "bearing",
-    "reaction",
-]
-Needs: TypeAlias = (
-    Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
+@dataclass(frozen=True, eq=False)
+class Need:
+    """What a figure is taken from, besides the cam and its files.
+
+    `words` name it. `there` says whether a recipe has it, by what its cam offers and the paths of the fields given,
+    `ALL` among them where a file shows every body. `part` is whether the part counts as well, its material or its
+    thickness.
+    """
+
+    words: str
+    there: Callable[[AbstractSet[str], AbstractSet[str]], bool]
+    part: bool = False
+
+
+ALL = "parts: all"
+
+
+def _offered(*names: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
+    """Whether a cam offers one of these."""
+    return lambda offers, _: not offers.isdisjoint(names)
+
+
+def _given(*paths: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
+    """Whether one of these fields is given."""
+    return lambda _, given: not given.isdisjoint(paths)
+
+
+NOTHING = Need("", lambda _offers, _paths: True)
+OF_LINKAGE = Need("a linkage", _given("linkage"))
+OF_DWELL = Need("dwell.band", _given("dwell"))
+OF_FOLLOWER = Need("a follower without a linkage", lambda _, paths: "linkage" not in paths)
+OF_ROLLER = Need("a cam for rollers", _offered("roller"))
+OF_SWING = Need("a cam of kind double-roller or flat-pair", _offered("swings"))
+OF_FACE = Need("a cam for a flat face that is pushed along its normal", _offered("face"))
+OF_WALL = Need(
+    "a part with openings or a hub",
+    _given(*(f"part.{name}" for name in ("bore", "hub", "bolts", "dowel", "lightening", "mark"))),
 )
+OF_BODIES = Need("a file with `parts: all`", _given(ALL))
+OF_GUIDED = Need("a cam of kind disc or constant-diameter", _offered("guided"))
+OF_ROLLING = Need("a roller that a cam of kind disc or constant-diameter turns", _offered("rolling"))
+OF_ARM = Need("an arm that a cam of kind disc works", _offered("arm"))
+OF_STEM = Need("a stem that a cam of kind disc works", _offered("stem", "stem-face"))
+OF_STEM_FACE = Need("a flat face on a stem", _offered("stem-face"))
+OF_WANTED_LAW = Need("cam.delta.law", _given("cam.delta.law"))
+OF_STIFFNESS = Need("cam.preload.stiffness", _given("cam.preload.stiffness"))
+OF_DENSITY = Need("part.density, and in a sweep no linkage", _given("part.density"), part=True)
+
+# of the follower train
+OF_SPRING = Need("dynamics.preload and its stiffness", lambda _, paths: {"dynamics.preload", _STIFF} <= paths)
+OF_BACKLASH = Need("dynamics.backlash", lambda _, paths: {"dynamics.backlash", _STIFF} <= paths)
+OF_GUIDE = Need(
+    "dynamics.guide of a round follower", lambda offers, paths: "dynamics.guide" in paths and "stem" in offers
+)
+OF_SPEED = Need(
+    "a follower without a linkage, and dynamics.rpm",
+    lambda _, paths: "linkage" not in paths and "dynamics.rpm" in paths,
+)
+OF_FORCES = Need("dynamics without stiffness", lambda _, paths: _is_rigid(paths))
+OF_MATERIAL = Need(
+    "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
+    lambda _, paths: (
+        not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
+        and "dynamics.material" in paths
+        and _is_rigid(paths)
+    ),
+    part=True,
+)
+OF_REACTION = Need("dynamics.guide, and no stiffness", lambda _, paths: "dynamics.guide" in paths and _is_rigid(paths))
+OF_BEARING = Need(
+    "a roller that a cam turns, and dynamics without stiffness",
+    lambda offers, paths: "rolling" in offers and _is_rigid(paths),
+)
+_STIFF = "dynamics.stiffness"
 
 
-NEEDS: dict[Needs, str] = {
-    "linkage": "a linkage",
-    "dwell": "dwell.band",
-    "follower": "a follower without a linkage",
-    "roller": "a cam for rollers",
-    "swings": "a cam of kind double-roller or flat-pair",
-    "face": "a cam for a flat face that is pushed along its normal",
-    "wall": "a part with openings or a hub",
-    "all": "a file with `parts: all`",
-    "preload": "dynamics.preload and its stiffness",
-    "backlash": "dynamics.backlash",
-    "guided": "a cam of kind disc or constant-diameter",
-    "rolling": "a roller that a cam of kind disc or constant-diameter turns",
-    "arm": "an arm that a cam of kind disc works",
-    "stem": "a stem that a cam of kind disc works",
-    "stem-face": "a flat face on a stem",
-    "guide": "dynamics.guide of a round follower",
-    "wanted": "cam.delta.law",
-    "speed": "a follower without a linkage, and dynamics.rpm",
-    "stiff": "cam.preload.stiffness",
-    "forces": "dynamics without stiffness",
-    "material": "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
-    "reaction": "dynamics.guide, and no stiffness",
-    "bearing": "a roller that a cam turns, and dynamics without stiffness",
-    "density": "part.density, and in a sweep no linkage",
-}
-"""What a figure is taken from, besides the cam and its files, in words."""
-OF_PART: frozenset[Needs] = frozenset({"density", "material"})
-"""Needs for which the part counts as well, its material or its thickness."""
-
-
-_OPENINGS = ("bore", "hub", "bolts", "dowel", "lightening", "mark")
+def _is_rigid(paths: AbstractSet[str]) -> bool:
+    return "dynamics" in paths and _STIFF not in paths
 
 
 # Names that stand in programs too.
@@ -116,8 +147,21 @@ PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
 AT_SPEED = tuple(f"{name}-at-speed" for name in PEAKS)
 
 
-STEEP = frozenset({PRESSURE_ANGLE, ON_RISE, ON_RETURN, VELOCITY_RATIO, CONTACT_TRAVEL, FACE_WIDTH, *PEAKS, *AT_SPEED})
-"""Figures that are the less the smaller the motion is."""
+_RETURN = Field(
+    "on_return",
+    Kind.NUMBER,
+    "greatest value on the return, where at_most is that on the rise alone",
+    default="at_most",
+    at_least=-(MOST**2),
+    at_most=MOST**2,
+    unit=Kind.ANGLE,
+)
+_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
+
+
+def _at_lift(name: str) -> tuple[Field]:
+    about = "lift at which it is taken, from the lowest"
+    return (Field("at_lift", Kind.LENGTH, about, default=f"{AT_LIFT[name]:g} mm", at_least=0, at_most=MOST),)
 
 
 @dataclass(frozen=True)
@@ -127,173 +171,260 @@ class Figure:
     `kind` is that of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
     the follower or the last link swings or slides. `best` says which values a ranking puts first, `needs` what the
     figure is taken from. `per` ends its unit's name. `of` says whether the exact design has it, each file, or each run
-    of the dynamics. `swept` is whether a sweep knows it.
+    of a capability. `swept` is whether a sweep knows it, `dear` whether designs are given it only where it ranks or
+    limits. `eased_by` is what makes it less: a smaller `motion` alone, or a larger cam (`size`) too; empty: neither.
+    `keys` are those of its limits in a recipe besides the bounds. `after` is the core's
+    figure behind which it stands.
     """
 
     about: str
     kind: Kind
     best: Literal["most", "least"]
-    needs: Needs = ""
+    needs: Need = NOTHING
     per: str = ""
-    of: Literal["design", "file", "dynamics"] = "design"
+    _: KW_ONLY
+    of: Literal["design", "file", "run"] = "design"
     swept: bool = True
+    dear: bool = False
+    eased_by: Literal["", "motion", "size"] = ""
+    keys: tuple[Field, ...] = ()
+    after: str = ""
 
 
-def _of_file(about: str, kind: Kind, needs: Needs = "") -> Figure:
+def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> Figure:
     return Figure(about, kind, "least", needs, of="file", swept=False)
 
 
-FIGURES: dict[str, Figure] = {
-    DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", "dwell"),
-    "dwell-relative": Figure("longest dwell over the relative angle, at that band", Kind.ANGLE, "most", "dwell"),
+_CORE: dict[str, Figure] = {
+    DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", OF_DWELL),
+    "dwell-relative": Figure(
+        "longest dwell over the relative angle, at that band", Kind.ANGLE, "most", OF_DWELL, dear=True
+    ),
     "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
-    PEAKS[0]: Figure("its greatest velocity, per radian of shaft angle", Kind.MOTION, "least", per="/rad"),
-    PEAKS[1]: Figure("its greatest acceleration, per radian squared", Kind.MOTION, "least", per="/rad^2"),
-    PEAKS[2]: Figure("the follower's greatest jerk, per radian cubed", Kind.MOTION, "least", "follower", per="/rad^3"),
-    AT_SPEED[0]: Figure("peak-velocity a second, at the shaft's speed", Kind.MOTION, "least", "speed", per="/s"),
-    AT_SPEED[1]: Figure("peak-acceleration a second squared, at that speed", Kind.MOTION, "least", "speed", per="/s^2"),
-    AT_SPEED[2]: Figure("peak-jerk a second cubed, at that speed", Kind.MOTION, "least", "speed", per="/s^3"),
+    PEAKS[0]: Figure(
+        "its greatest velocity, per radian of shaft angle",
+        Kind.MOTION,
+        "least",
+        per="/rad",
+        dear=True,
+        eased_by="motion",
+    ),
+    PEAKS[1]: Figure(
+        "its greatest acceleration, per radian squared",
+        Kind.MOTION,
+        "least",
+        per="/rad^2",
+        dear=True,
+        eased_by="motion",
+    ),
+    PEAKS[2]: Figure(
+        "the follower's greatest jerk, per radian cubed",
+        Kind.MOTION,
+        "least",
+        OF_FOLLOWER,
+        per="/rad^3",
+        dear=True,
+        eased_by="motion",
+    ),
+    AT_SPEED[0]: Figure(
+        "peak-velocity a second, at the shaft's speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+    ),
+    AT_SPEED[1]: Figure(
+        "peak-acceleration a second squared, at that speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s^2",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+    ),
+    AT_SPEED[2]: Figure(
+        "peak-jerk a second cubed, at that speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s^3",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+    ),
     PRESSURE_ANGLE: Figure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
         "least",
-        "follower",
+        OF_FOLLOWER,
+        eased_by="size",
+        keys=(_RETURN,),
     ),
-    ON_RISE: Figure("greatest pressure angle, above 0 where the cam drives a rise", Kind.ANGLE, "least", "guided"),
-    ON_RETURN: Figure("the same on the return, greatest below 0", Kind.ANGLE, "least", "guided"),
+    ON_RISE: Figure(
+        "greatest pressure angle, above 0 where the cam drives a rise",
+        Kind.ANGLE,
+        "least",
+        OF_GUIDED,
+        dear=True,
+        eased_by="size",
+    ),
+    ON_RETURN: Figure(
+        "the same on the return, greatest below 0", Kind.ANGLE, "least", OF_GUIDED, dear=True, eased_by="size"
+    ),
     JAM_MARGIN: Figure(
         "by how much the pressure angle stays below that at which the stem jams in its guide",
         Kind.ANGLE,
         "most",
-        "guide",
+        OF_GUIDE,
+        dear=True,
     ),
     VELOCITY_RATIO: Figure(
-        "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, "least", "swings"
+        "greatest angular velocity of the arm over that of the shaft",
+        Kind.NUMBER,
+        "least",
+        OF_SWING,
+        eased_by="size",
     ),
-    LAW_ERROR: Figure("greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", "wanted"),
-    CONTACT_TRAVEL: Figure("how far the contact travels along the face", Kind.LENGTH, "least", "face"),
+    LAW_ERROR: Figure(
+        "greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", OF_WANTED_LAW
+    ),
+    CONTACT_TRAVEL: Figure(
+        "how far the contact travels along the face",
+        Kind.LENGTH,
+        "least",
+        OF_FACE,
+        dear=True,
+        eased_by="size",
+    ),
     FACE_WIDTH: Figure(
         "least width of a face, centred on the stem's axis, that the contact does not leave",
         Kind.LENGTH,
         "least",
-        "stem-face",
+        OF_STEM_FACE,
+        dear=True,
+        eased_by="size",
     ),
-    ROLLER_SPEED: Figure("greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", "rolling"),
+    ROLLER_SPEED: Figure(
+        "greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", OF_ROLLING, dear=True
+    ),
     PIVOT_CLEARANCE: Figure(
         "least distance of the arm's pivot from the contour over the turn, below 0 where the disc passes over it",
         Kind.LENGTH,
         "most",
-        "arm",
+        OF_ARM,
+        dear=True,
     ),
     PRELOAD_LEAST: Figure(
         "least force of a preload by interference over the turn, along the travel, N; N m where it turns",
         Kind.THRUST,
         "most",
-        "stiff",
+        OF_STIFFNESS,
+        dear=True,
     ),
-    PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", "stiff"),
-    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.FORCE, "most", "forces"),
-    FORCE_GREATEST: Figure("greatest normal force of any contact at the speed, N", Kind.FORCE, "least", "forces"),
-    TORQUE: Figure("greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", "forces"),
+    PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", OF_STIFFNESS, dear=True),
+    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.FORCE, "most", OF_FORCES, dear=True),
+    FORCE_GREATEST: Figure(
+        "greatest normal force of any contact at the speed, N", Kind.FORCE, "least", OF_FORCES, dear=True
+    ),
+    TORQUE: Figure(
+        "greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", OF_FORCES, dear=True
+    ),
     PRESSURE: Figure(
-        "greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", "material", per="N/mm^2"
+        "greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", OF_MATERIAL, per="N/mm^2", dear=True
     ),
-    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", "reaction"),
-    MEAN_FORCE: Figure("mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", "bearing"),
-    "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
-    "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
-    "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
+    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION, dear=True),
+    MEAN_FORCE: Figure(
+        "mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", OF_BEARING, dear=True
+    ),
+    "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
+    "force-angle": Figure(
+        "least angle between the force at the joint and the rocker", Kind.ANGLE, "most", OF_LINKAGE, dear=True
+    ),
+    "margin": Figure("least distance from binding", Kind.LENGTH, "most", OF_LINKAGE),
     "shaft-rate": Figure(
-        "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", "linkage"
+        "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", OF_LINKAGE
     ),
     RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
-    HOLLOW_RADIUS: Figure("least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"),
+    HOLLOW_RADIUS: Figure(
+        "least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", OF_ROLLER, dear=True
+    ),
     PITCH_RADIUS: Figure(
         "least radius of curvature of the pitch curve, in a ring that of its hollows, infinite without one",
         Kind.LENGTH,
         "most",
-        "roller",
+        OF_ROLLER,
     ),
-    BASE_RADIUS: Figure("radius of the base circle, which `sizing` may find", Kind.LENGTH, "least", "guided"),
-    OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", "stem"),
-    PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", "arm"),
+    BASE_RADIUS: Figure("radius of the base circle, which `sizing` may find", Kind.LENGTH, "least", OF_GUIDED),
+    OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", OF_STEM),
+    PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", OF_ARM),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
-    MASS: Figure("mass of a disc, kg", Kind.MASS, "least", "density", per="kg"),
-    ECCENTRICITY: Figure("distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", "density"),
-    INERTIA: Figure("moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", "density", "kg mm^2"),
-    UNBALANCE: Figure(
-        "mass of a disc times the distance of its centre of mass, kg mm", Kind.NUMBER, "least", "density", "kg mm"
+    MASS: Figure("mass of a disc, kg", Kind.MASS, "least", OF_DENSITY, per="kg", dear=True),
+    ECCENTRICITY: Figure(
+        "distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", OF_DENSITY, dear=True
     ),
-    DURATION: Figure("crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", "stem"),
-    LOBE_CENTRE: Figure("cam angle midway between the crossings of 1.27 mm of lift", Kind.ANGLE, "most", "stem"),
-    RAMP_VELOCITY: Figure("velocity at a lift of 0.1524 mm, a cam degree", Kind.LENGTH, "least", "stem", "/deg"),
-    LIFT_AREA: Figure("lift over the turn, times cam degrees", Kind.LENGTH, "most", "stem", " deg"),
-    LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
-    "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
-    "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
+    INERTIA: Figure(
+        "moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", OF_DENSITY, "kg mm^2", dear=True
+    ),
+    UNBALANCE: Figure(
+        "mass of a disc times the distance of its centre of mass, kg mm",
+        Kind.NUMBER,
+        "least",
+        OF_DENSITY,
+        "kg mm",
+        dear=True,
+    ),
+    DURATION: Figure(
+        "crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", OF_STEM, keys=_at_lift(DURATION)
+    ),
+    LOBE_CENTRE: Figure(
+        "cam angle midway between the crossings of 1.27 mm of lift",
+        Kind.ANGLE,
+        "most",
+        OF_STEM,
+        keys=_at_lift(LOBE_CENTRE),
+    ),
+    RAMP_VELOCITY: Figure(
+        "velocity at a lift of 0.1524 mm, a cam degree",
+        Kind.LENGTH,
+        "least",
+        OF_STEM,
+        "/deg",
+        keys=_at_lift(RAMP_VELOCITY),
+    ),
+    LIFT_AREA: Figure(
+        "lift over the turn, times cam degrees", Kind.LENGTH, "most", OF_STEM, " deg", keys=_at_lift(LIFT_AREA)
+    ),
+    LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
+    "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False),
+    "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False),
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
     BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
-    "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
+    "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, OF_LINKAGE),
     "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
     LEAST_FORCE: Figure(
-        "least contact force, N; N m where it turns", Kind.THRUST, "most", "preload", of="dynamics", swept=False
+        "least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING, of="run", swept=False
     ),
     PEAK_FORCE: Figure(
-        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", "preload", of="dynamics", swept=False
+        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING, of="run", swept=False
     ),
     BACKLASH_LEFT: Figure(
         "least backlash that the dynamics leave between the faces",
         Kind.ERROR,
         "most",
-        "backlash",
-        of="dynamics",
+        OF_BACKLASH,
+        of="run",
         swept=False,
     ),
 }
 
 
-ALL = "parts: all"
-
-
-def there(needs: Needs, offers: frozenset[str], paths: frozenset[str] | set[str]) -> bool:
-    """Say whether a recipe has what a figure needs, by what its cam offers and the paths of the fields given.
-
-    `ALL` is given where a file shows every body.
-    """
-    match needs:
-        case "linkage" | "dwell":
-            return needs in paths
-        case "backlash" | "preload":
-            return {f"dynamics.{needs}", "dynamics.stiffness"} <= paths
-        case "forces":
-            return "dynamics" in paths and "dynamics.stiffness" not in paths
-        case "material":
-            wide = not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
-            return wide and "dynamics.material" in paths and there("forces", offers, paths)
-        case "reaction":
-            return "dynamics.guide" in paths and there("forces", offers, paths)
-        case "bearing":
-            return "rolling" in offers and there("forces", offers, paths)
-        case "follower":
-            return "linkage" not in paths
-        case "speed":
-            return "linkage" not in paths and "dynamics.rpm" in paths
-        case "guide":
-            return "dynamics.guide" in paths and "stem" in offers
-        case "wanted" | "stiff":
-            return NEEDS[needs] in paths
-        case "density":
-            return "part.density" in paths
-        case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
-            return needs in offers
-        case "stem":
-            return not offers.isdisjoint({"stem", "stem-face"})
-        case "wall":
-            return any(f"part.{name}" in paths for name in _OPENINGS)
-        case "all":
-            return ALL in paths
-    return True
+FIGURES: Gathered[Figure] = Gathered(_CORE, lambda capability: capability.figures)
+"""Every figure by name, the core's and those of capabilities."""

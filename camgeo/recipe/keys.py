@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
@@ -10,24 +11,30 @@ from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.dynamics import DYNAMICS, check_guide, check_train, check_width
 from camgeo.recipe.export import EXPORT, check_files
+from camgeo.recipe.figures import ALL
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
 from camgeo.recipe.part import PART, check_part
 from camgeo.recipe.preload import check_preload
-from camgeo.recipe.sweep import SWEEP, check_sweep
 from camgeo.recipe.track import check_track
+from camgeo.registry import registry
+from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
 from camgeo.schema.reader import kind_of
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 MOST_ANGLES = 1_000_000  # of a turn at which files are judged
 UNITS = {"mm": 1.0, "inch": 25.4}  # of length, in mm
 
-RECIPE = Table(
+CORE = Table(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
@@ -80,7 +87,6 @@ RECIPE = Table(
         LIMITS,
         mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
-        mapping("sweep", "a search among designs", *SWEEP),
         Field(
             "dynamics",
             Kind.TABLE,
@@ -93,8 +99,53 @@ RECIPE = Table(
 )
 
 
-def read_values(reader: Reader) -> Values:
-    """Read the whole recipe and note the faults between its fields.
+_KEYS: Gathered[Field] = Gathered(
+    {field.name: field for field in CORE.fields},
+    lambda capability: {field.name: field for field in capability.fields()},
+)
+
+
+def recipe_table(capabilities: Collection[str] | None = None) -> Table:
+    """Give the keys of a recipe, the core's and those of some capabilities, or of all."""
+    return _table(registry.recorded() if capabilities is None else tuple(capabilities))
+
+
+@cache
+def _table(capabilities: tuple[str, ...]) -> Table:
+    table = Table(tuple(_KEYS.among(capabilities).values()))
+    for capability in registry.in_order(capabilities):
+        for path, fields in capability.below.items():
+            table = _with_fields(table, path.split("."), fields)
+    return table
+
+
+def _with_fields(table: Table, path: list[str], more: Collection[Field]) -> Table:
+    """Give a table with more fields in the mapping at a path of it."""
+    if not path:
+        return replace(table, fields=(*table.fields, *more))
+    first, *rest = path
+    grown = {first: replace(table.field(first), table=_with_fields(table.field(first).inner, rest, more))}
+    return replace(table, fields=tuple(grown.get(field.name, field) for field in table.fields))
+
+
+def words_of(root: Node) -> set[str]:
+    """Words by which a recipe uses capabilities (`Label.words`): its keys, formats of its files, `parts: all`."""
+    top = entries(root) if isinstance(root, Mapping) else {}
+    export = top.get("export")
+    files = entries(export).get("files") if isinstance(export, Mapping) else None
+    words = set(top)
+    for item in files.items if isinstance(files, Sequence) else ():
+        if isinstance(item, Scalar):
+            words.add(item.text)
+        for kind, options in entries(item).items() if isinstance(item, Mapping) else ():
+            words.add(kind)
+            parts = entries(options).get("parts") if isinstance(options, Mapping) else None
+            words |= {ALL} if isinstance(parts, Scalar) and parts.text == "all" else set()
+    return words
+
+
+def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
+    """Read the whole recipe, the keys of these capabilities among it, and note the faults between its fields.
 
     What decides how other fields read is looked for first, wherever it stands: the unit, the kinds of cam and linkage,
     and so whether the follower swings and whether the output of the linkage slides.
@@ -123,8 +174,10 @@ def read_values(reader: Reader) -> Values:
         reader.angular |= {Kind.OUTPUT}
     if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:
         reader.angular |= {Kind.MOTION}
-    values = {"mm": reader.mm, **reader.table(RECIPE, root, "")}
+    values = {"mm": reader.mm, **reader.table(reader.root, root, "")}
     _check(values, reader)
+    for capability in registry.in_order(capabilities):
+        capability.check(values, reader)
     return values
 
 
@@ -148,5 +201,3 @@ def _check(values: Values, reader: Reader) -> None:
     check_cutter(reader)
     check_allowance(values.get("manufacture", {}), reader)
     check_limits(values.get("limits", []), reader)
-    if "sweep" in values:
-        check_sweep(values["sweep"], reader)

@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.figures import (
-    ALL,
-    AT_LIFT,
-    AT_SPEED,
-    FIGURES,
-    NEEDS,
-    ON_RETURN,
-    ON_RISE,
-    PRESSURE_ANGLE,
-    there,
-)
+from camgeo.recipe.figures import ALL, AT_LIFT, FIGURES, ON_RETURN, ON_RISE
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import table_schema
@@ -70,35 +61,27 @@ def bounds(figure: Figure) -> Table:
     )
 
 
-_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
-_RETURN = Field(
-    "on_return",
-    Kind.NUMBER,
-    "greatest value on the return, where at_most is that on the rise alone",
-    default="at_most",
-    at_least=-(MOST**2),
-    at_most=MOST**2,
-    unit=Kind.ANGLE,
-)
-
-
-def _at_lift(lift: float) -> Field:
-    about = "lift at which it is taken, from the lowest"
-    return Field("at_lift", Kind.LENGTH, about, default=f"{lift:g} mm", at_least=0, at_most=MOST)
-
-
 def own_bounds(name: str) -> Table:
     """Give the table of the limits of a figure in a recipe's own `limits`."""
-    more = {
-        PRESSURE_ANGLE: (_RETURN,),
-        **dict.fromkeys(AT_SPEED, (_RPM,)),
-        **{figure: (_at_lift(lift),) for figure, lift in AT_LIFT.items()},
-    }.get(name, ())
-    return Table((*bounds(FIGURES[name]).fields, *more))
+    figure = FIGURES[name]
+    return Table((*bounds(figure).fields, *figure.keys))
 
 
-def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read limits by the figures that they bound, those in `field.choices`; lengths in mm, angles in degrees."""
+def limits_form(*, swept: bool) -> Form[Reader]:
+    """Give the form of limits by figures: of a recipe's own, or of a sweep, which knows the figures that are `swept`.
+
+    A sweep's have the bounds alone.
+    """
+    return Form(
+        "limits",
+        "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
+        partial(_read_limits, swept),
+        partial(_limits_schema, swept),
+    )
+
+
+def _read_limits(swept: bool, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
+    """Read limits by the figures that they bound; lengths in mm, angles in degrees."""
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
         return None
@@ -106,29 +89,29 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
     limits = []
     for name, key in keys(node).items():
         below = join(path, name)
-        if name not in field.choices:
-            known = tuple(here for here in of_recipe(reader) if here in field.choices)
+        if name not in FIGURES or (swept and not FIGURES[name].swept):
+            known = tuple(here for here in of_recipe(reader) if FIGURES[here].swept or not swept)
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
         value = given[name]
-        if field is LIMITS and name in AT_LIFT and isinstance(value, Sequence):
-            for i, item in enumerate(reader.items(_bounded(field, name), value, below, MOST_LIFTS)):
-                own = _read_limit(reader, field, name, item, join(below, i))
+        if not swept and name in AT_LIFT and isinstance(value, Sequence):
+            for i, item in enumerate(reader.items(_bounded(swept, name), value, below, MOST_LIFTS)):
+                own = _read_limit(swept, reader, name, item, join(below, i))
                 limits += [{**limit, "place": f"{name}[{i}]"} for limit in own]
         else:
-            limits += _read_limit(reader, field, name, value, below)
+            limits += _read_limit(swept, reader, name, value, below)
     return limits
 
 
-def _bounded(field: Field, name: str) -> Field:
-    return Field("", Kind.TABLE, "", table=own_bounds(name) if field is LIMITS else bounds(FIGURES[name]))
+def _bounded(swept: bool, name: str) -> Field:
+    return Field("", Kind.TABLE, "", table=bounds(FIGURES[name]) if swept else own_bounds(name))
 
 
-def _read_limit(reader: Reader, field: Field, name: str, node: Node, path: str) -> list[Values]:
+def _read_limit(swept: bool, reader: Reader, name: str, node: Node, path: str) -> list[Values]:
     """Read the bounds of one figure: one limit, or those of the rise and of the return; none where there is a fault."""
     faults = len(reader.errors)
-    values = reader.field(_bounded(field, name), node, path)
+    values = reader.field(_bounded(swept, name), node, path)
     if values is None or len(reader.errors) > faults:
         return []
     stated = {key: values.pop(key) for key in ("rpm", "at_lift") if key in values}
@@ -137,7 +120,7 @@ def _read_limit(reader: Reader, field: Field, name: str, node: Node, path: str) 
         reader.fault(node.mark, path, "no bound", None, "give at_least, at_most or both")
     factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
     if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
-        none = "no design" if field is not LIMITS else "nothing"
+        none = "no design" if swept else "nothing"
         reader.fault_at(f"{path}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
     said = {bound: factor * value for bound, value in values.items()}
     if on_return is None:
@@ -153,21 +136,14 @@ def _read_limit(reader: Reader, field: Field, name: str, node: Node, path: str) 
     ]
 
 
-def _limits_schema(field: Field) -> Schema:
-    tables = {name: own_bounds(name) if field is LIMITS else bounds(FIGURES[name]) for name in field.choices}
+def _limits_schema(swept: bool, _: Field) -> Schema:
+    known = {name: figure for name, figure in FIGURES.items() if figure.swept or not swept}
+    tables = {name: bounds(figure) if swept else own_bounds(name) for name, figure in known.items()}
     limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
-    for name in AT_LIFT if field is LIMITS else ():  # one lift, or a list of them
+    for name in () if swept else AT_LIFT:  # one lift, or a list of them
         item = limits[name]
         limits[name] = {**item, "type": ["object", "array"], "items": item, "minItems": 1, "maxItems": MOST_LIFTS}
     return {"type": "object", "properties": limits, "additionalProperties": False}
-
-
-FORM = Form(
-    "limits",
-    "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
-    read_limits,
-    _limits_schema,
-)
 
 
 LIMITS = Field(
@@ -175,32 +151,39 @@ LIMITS = Field(
     Kind.OWN,
     "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
     default="none",
-    choices=tuple(FIGURES),
-    form=FORM,
+    form=limits_form(swept=False),
 )
+
+
+def _given(reader: Reader) -> set[str]:
+    """Paths of the fields that the recipe being read gives, for `Need.there`."""
+    given = set(reader.marks)
+    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
+        given.add(ALL)
+    return given
 
 
 def of_recipe(reader: Reader) -> tuple[str, ...]:
     """Name the figures that the recipe being read has."""
-    given = set(reader.marks)
-    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
-        given.add(ALL)
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.offers, given))
+    given = _given(reader)
+    return tuple(name for name, figure in FIGURES.items() if figure.needs.there(reader.offers, given))
 
 
 def check_limits(limits: list[Values], reader: Reader) -> None:
     """Note limits of figures that the recipe has not."""
-    here, bounded = of_recipe(reader), dict[tuple[str, str, float | None], str]()
+    given, bounded = _given(reader), dict[tuple[str, str, float | None], str]()
     for limit in limits:
+        name, figure = limit["figure"], FIGURES[limit["figure"]]
         for bound in ("at_least", "at_most"):
-            key = limit["figure"], bound, limit.get("at_lift", AT_LIFT.get(limit["figure"]))
+            key = name, bound, limit.get("at_lift", AT_LIFT.get(name))
             if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
                 other, path = sorted((bounded[key], limit["at"]), key=len)
                 how = "at the same lift" if "place" in limit else "with on_return"
                 reader.fault_at(path, f"{other} {how} bounds it too", None, "leave one of the two out")
-        name, needs = limit["figure"], FIGURES[limit["figure"]].needs
-        if needs and name not in here and not ("rpm" in limit and "linkage" not in reader.marks):
-            remedy = f"the figures of this recipe are {either(here, 'and')}"
+        # a key of a limit stands for the field that it takes the place of: rpm for that of the train
+        own = {item.default for item in figure.keys if item.name in limit}
+        if not figure.needs.there(reader.offers, given | own):
+            remedy = f"the figures of this recipe are {either(of_recipe(reader), 'and')}"
             path, what = limit["at"], name
             if "key" in limit:  # one that a key of another figure gives
                 path, what, remedy = (
@@ -208,7 +191,7 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
                     "on_return",
                     "give at_most alone, which holds on the return too",
                 )
-            reader.fault_at(path, f"{what} needs {NEEDS[needs]}", None, remedy)
+            reader.fault_at(path, f"{what} needs {figure.needs.words}", None, remedy)
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:

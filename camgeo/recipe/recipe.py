@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import collections.abc
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal, TypeVar, overload
 
 from camgeo.common.arguments import is_a
 from camgeo.recipe.assembly import MechanismAsked
@@ -17,12 +17,12 @@ from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.dynamics import Dynamics, build_train
 from camgeo.recipe.export import build_export
-from camgeo.recipe.keys import RECIPE, UNITS, read_values
+from camgeo.recipe.keys import UNITS, read_values, recipe_table, words_of
 from camgeo.recipe.limits import Limit, build_limits
 from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part
-from camgeo.recipe.sweep import build_sweep
+from camgeo.registry import registry
 from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
 from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
-    from camgeo.recipe.sweep import Sweep
     from camgeo.schema.change import Value
     from camgeo.schema.reader import Values
     from camgeo.schema.yaml_source import Source
 
+T = TypeVar("T")
 ANGLES = 3600  # of a turn at which files are judged
 
 
@@ -97,19 +97,46 @@ class Order(Document):
 class Recipe(Order):
     """A recipe of a cam, checked as far as no geometry is needed.
 
-    `wheel` is the radius of the grinding wheel, mm, None where none is given.
+    `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` are those that it uses by
+    name, each with the value that it makes of its keys, or None.
     """
 
     cam: Cam
     part: Part
     linkage: Linkage | None = None
     dwell: DwellAsked | None = None
-    sweep: Sweep | None = None
     dynamics: Dynamics | None = None
     manufacture: Manufacture | None = None
     wheel: float | None = None
     mechanism: MechanismAsked | None = None
     limits: tuple[Limit, ...] = ()
+    capabilities: tuple[tuple[str, object], ...] = ()
+
+    @property
+    def uses(self) -> tuple[str, ...]:
+        """Names of the capabilities that the recipe uses."""
+        return tuple(name for name, _ in self.capabilities)
+
+    @property
+    def rpm(self) -> float | None:
+        """Turns a minute of the shaft, None where no capability says them."""
+        speeds = (capability.speed(self) for capability in registry.in_order(self.uses))
+        return next((rpm for rpm in speeds if rpm is not None), None)
+
+    def of(self, kind: type[T]) -> T | None:
+        """Give the value of this class that a capability made of its keys, None where the recipe has none."""
+        return next((value for _, value in self.capabilities if isinstance(value, kind)), None)
+
+    def without(self, *names: str) -> Recipe:
+        """Give the recipe as one that does not use these capabilities; its text and its places stay."""
+        return replace(self, capabilities=tuple(item for item in self.capabilities if item[0] not in names))
+
+    def with_value(self, value: object) -> Recipe:
+        """Give the recipe with another value in the place of the one of its class; raises ValueError without one."""
+        if self.of(type(value)) is None:
+            raise ValueError(f"{self.name}: no {type(value).__name__}")
+        swapped = ((name, value if isinstance(one, type(value)) else one) for name, one in self.capabilities)
+        return replace(self, capabilities=tuple(swapped))
 
     __repr__ = Order.__repr__
 
@@ -186,8 +213,10 @@ def is_of_a_camshaft(source: Source) -> bool:
 def is_meant_as_a_camshaft(source: Source) -> bool:
     """Whether it is one, or has a slip in that word in the place of a cam."""
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
-    words = ("camshaft", *RECIPE.keys)
-    return "camshaft" in top or ("cam" not in top and any("camshaft" in suggestion(key, words) for key in top))
+    if "camshaft" in top or "cam" in top:
+        return "camshaft" in top
+    words = ("camshaft", *recipe_table().keys)
+    return any("camshaft" in suggestion(key, words) for key in top)
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
@@ -196,8 +225,9 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         mark = keys(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
         remedy = "export, check and verify take it; give any other command the recipe of a lobe"
         raise RecipeErrors([RecipeError(str(path), *mark, "camshaft", "a camshaft is no cam", None, remedy)])
-    reader = Reader(source, READERS, RECIPE)
-    values = read_values(reader)
+    reader, values = _read(source, registry.by_words(words_of(source.root)))
+    if reader.errors:  # so that suggestions know all keys, and keys in other tables are found
+        reader, values = _read(source, registry.recorded())
     if "name" not in reader.marks:
         stem = Path(path).stem
         try:
@@ -213,7 +243,12 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         marks=reader.marks,
         kinds=reader.kinds,
     )
-    return _built(values, document)
+    return _built(values, document, words_of(source.root))
+
+
+def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values]:
+    reader = Reader(source, READERS, recipe_table(capabilities))
+    return reader, read_values(reader, capabilities)
 
 
 def file_bytes(path: str | PathLike[str]) -> bytes:
@@ -231,8 +266,10 @@ def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recip
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 
 
-def _built(values: Values, document: Document) -> Recipe:
-    """Make the recipe of values in which there is no fault."""
+def _built(values: Values, document: Document, words: set[str]) -> Recipe:
+    """Make the recipe of values in which there is no fault; `words` are those by which it uses capabilities."""
+    capabilities = tuple((name, registry.capability(name).build(values)) for name in _used(document, words))
+    values = _of_core(values, [name for name, _ in capabilities])
     milling, wheel = build_manufacture(values.get("manufacture", {}))
     linkage = build_linkage(values["linkage"]) if "linkage" in values else None
     cam = build_cam(values["cam"], values["mm"])
@@ -248,11 +285,39 @@ def _built(values: Values, document: Document) -> Recipe:
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         linkage=linkage,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
-        sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,
         manufacture=milling,
         wheel=wheel,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         limits=build_limits(values.get("limits", [])),
+        capabilities=capabilities,
         **vars(document),
     )
+
+
+def _used(document: Document, words: set[str]) -> tuple[str, ...]:
+    """Name the capabilities that a recipe uses: by its words, or by a key of theirs in another table."""
+    named = registry.by_words(words)
+    below = [
+        name
+        for name in registry.loaded()
+        for path, fields in registry.capability(name).below.items()
+        if any(f"{path}.{field.name}" in document.marks for field in fields)
+    ]
+    return tuple(name for name in registry.recorded() if name in {*named, *below})
+
+
+def _of_core(values: Values, capabilities: list[str]) -> Values:
+    """Take the keys of these capabilities out of the tables of the core."""
+    for capability in registry.in_order(capabilities):
+        for path, fields in capability.below.items():
+            values = _left(values, path.split("."), {field.name for field in fields})
+    return values
+
+
+def _left(values: Values, path: list[str], names: set[str]) -> Values:
+    """Give values without some names in the mapping at a path of them."""
+    if not path:
+        return {name: value for name, value in values.items() if name not in names}
+    first, *rest = path
+    return {**values, first: _left(values[first], rest, names)} if first in values else values

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.camshaft import SHAFT
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.track import OF_A_DISC
+from camgeo.registry.gathered import Gathered
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import Field, Kind, Table, either
 from kin.numeric.records import dataclass, field, replace
@@ -24,11 +25,11 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 
 
 @dataclass(frozen=True)
-class _Starter:
+class Starter:
     """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
 
     `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown. A
-    starter of a camshaft has no cam.
+    starter of a camshaft has no cam. `after` is the core's starter behind which that of a capability stands.
     """
 
     title: str
@@ -36,10 +37,11 @@ class _Starter:
     cam: Given
     more: Given = field(default_factory=dict)
     unfit: tuple[str, ...] = ()
+    after: str = ""
 
 
-def _roller(title: str, ratio: str, route: str, values: str | Given) -> _Starter:
-    return _Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: values})
+def _roller(title: str, ratio: str, route: str, values: str | Given) -> Starter:
+    return Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: values})
 
 
 _DWELLS = (
@@ -50,40 +52,38 @@ _DWELLS = (
 )
 
 
-def _disc(title: str, base: str, stroke: str, follower: Given) -> _Starter:
+def _disc(title: str, base: str, stroke: str, follower: Given) -> Starter:
     unfit: tuple[str, ...] = ("offset", "tilt", "width") if "arm" in follower else ()
     unfit += ("conjugate",) if follower["kind"] == "knife-edge" or (unfit and follower["kind"] == "flat") else ()
     cam: Given = {"base_radius": base, "follower": follower, "motion": _DWELLS.format(stroke)}
-    return _Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
+    return Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
 
 
 _SHAFT: Given = {"shaft": "[10, 4]"}
 # Figures 9a and 13a of AS 2023: what their outputs do around 3 pi/2 and pi no plain four-bar can
-_DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
-_FOUR_BAR: Given = {
+DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
+FOUR_BAR: Given = {
     "linkage": {"kind": "four-bar", "ground": "80", "coupler": "70", "rocker": "105"},
     "dwell": {"band": "0.1", "at_least": "36"},
 }
-_STARTERS = {
-    "support": _Starter(
-        "A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_SHAFT}
-    ),
-    "fourier": _Starter(
+_CORE = {
+    "support": Starter("A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_SHAFT}),
+    "fourier": Starter(
         "A cam from a Fourier series; odd harmonics alone give constant breadth.",
         "support",
         {"fourier": {"mean": "25", "cos": "{3: 1.5}", "sin": "{5: 0.3}"}, **_SHAFT},
     ),
-    "reuleaux": _Starter(
+    "reuleaux": Starter(
         "A regular Reuleaux polygon with rounded corners.",
         "support",
         {"reuleaux": {"sides": "3", "breadth": "50", "rounding": "5"}, **_SHAFT},
     ),
-    "hypocycloid": _Starter(
+    "hypocycloid": Starter(
         "The parallel curve of a hypocycloid.",
         "support",
         {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_SHAFT},
     ),
-    "constant-breadth": _Starter(
+    "constant-breadth": Starter(
         "A cam between two parallel faces, from its motion over one half turn.",
         "constant-breadth",
         {
@@ -104,7 +104,7 @@ _STARTERS = {
         {"kind": "roller", "radius": "8", "arm": {"length": "65", "pivot": "80"}},
     ),
     "disc-flat": _disc("a flat tappet", "30", "12", {"kind": "flat", "width": "34"}),
-    "disc-lobe": _Starter(
+    "disc-lobe": Starter(
         "A valve lobe for a flat tappet.",
         "disc",
         {
@@ -120,7 +120,7 @@ _STARTERS = {
     ),
     "disc-shoe": _disc("a curved shoe on a stem", "30", "10", {"kind": "shoe", "radius": "60"}),
     "disc-knife-edge": _disc("a knife edge on a stem", "30", "12", {"kind": "knife-edge"}),
-    "disc-conjugate": _Starter(
+    "disc-conjugate": Starter(
         "Two discs on one shaft, for a stem with a roller on either side of it.",
         "disc",
         {
@@ -132,7 +132,7 @@ _STARTERS = {
         {"part": {"thickness": "12", "bore": "20"}},
         unfit=("track", "length", "angle", "arm", "hub", "set_screw", "dynamics", "mechanism"),
     ),
-    "disc-ring": _Starter(
+    "disc-ring": Starter(
         "A ring for a roller that runs inside it, on a stem.",
         "disc",
         {
@@ -144,7 +144,7 @@ _STARTERS = {
         {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
         unfit=(*OF_A_DISC, "conjugate", "mechanism"),
     ),
-    "disc-groove": _Starter(
+    "disc-groove": Starter(
         "A disc with a groove that pushes a roller on a stem out and back.",
         "disc",
         {
@@ -156,7 +156,7 @@ _STARTERS = {
         {"part": {"thickness": "12", "bore": "16", "outer": "160"}},
         unfit=("undercut", "chamfer", "dynamics"),
     ),
-    "constant-diameter": _Starter(
+    "constant-diameter": Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",
         "constant-diameter",
         {
@@ -186,50 +186,33 @@ _STARTERS = {
         "rosette",
         {"leaf": "8*sin(pi*x)"},
     ),
-    "flat-pair": _Starter(
+    "flat-pair": Starter(
         "A single disk that works a rigid pair of flat faces.",
         "flat-pair",
         {"ratio": "2", "arm": "30", "delta": {"cos": "{1: 252}"}},
     ),
-    "four-bar": _Starter(
+    "four-bar": Starter(
         "A cam in a square frame, the frame the coupler of a four-bar that dwells.",
         "support",
-        {"p": _DWELLING, "shaft": "[18, 8.5]"},
-        _FOUR_BAR,
+        {"p": DWELLING, "shaft": "[18, 8.5]"},
+        FOUR_BAR,
     ),
-    "inverted-slider-crank": _Starter(
+    "inverted-slider-crank": Starter(
         "A cam in a square frame that slides on a rocker, which dwells.",
         "support",
-        {"p": _DWELLING, "shaft": "[18.5, 8.5]"},
+        {"p": DWELLING, "shaft": "[18.5, 8.5]"},
         {
             "linkage": {"kind": "inverted-slider-crank", "ground": "130", "rocker": "70"},
             "dwell": {"band": "0.1", "at_least": "35"},
         },
     ),
-    "slider-crank": _Starter(
+    "slider-crank": Starter(
         "A cam in a square frame, the frame the coupler of a slider-crank.",
         "support",
         {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_SHAFT},
         {"linkage": {"kind": "slider-crank", "coupler": "75", "offset": "5"}, "dwell": {"band": "0.1"}},
     ),
-    "sweep": _Starter(
-        "A search for a longer dwell of a four-bar.",
-        "support",
-        {"p": _DWELLING, "shaft": "[18, 8.5]"},
-        {
-            **_FOUR_BAR,
-            "sweep": {
-                "vary": (
-                    "\n    cam.shaft[0]: {from: 16, to: 20, steps: 9}"
-                    "\n    linkage.rocker: {from: 95, to: 110, steps: 16}"
-                ),
-                "limits": "{radius-of-curvature: {at_least: 3}, transmission-angle: {at_least: 30}}",
-                "rank": "dwell",
-                "keep": "5",
-            },
-        },
-    ),
-    "camshaft": _Starter(
+    "camshaft": Starter(
         "Lobes of other recipes on one shaft: `camgeo new disc-lobe lobe.yaml` makes theirs.",
         "",
         {},
@@ -248,8 +231,8 @@ _STARTERS = {
     ),
 }
 
-KINDS = tuple(name for name, each in _STARTERS.items() if each.kind)  # those of cams
-TITLES = {name: each.title for name, each in _STARTERS.items()}
+STARTERS: Gathered[Starter] = Gathered(_CORE, lambda capability: capability.starters())
+"""Every starter by its name, the core's and those of capabilities."""
 
 _REST: Given = {
     "units": "mm",
@@ -262,28 +245,28 @@ _REST: Given = {
 
 def starters_for(kind: str) -> tuple[str, ...]:
     """Name the starters of a kind of cam, such as disc; none for another word."""
-    return tuple(name for name, each in _STARTERS.items() if each.kind and each.kind == kind)
+    return tuple(name for name, each in STARTERS.items() if each.kind and each.kind == kind)
 
 
 def starter(kind: str) -> str:
-    """Write a recipe to start from; raises ValueError for a kind that is not one of TITLES."""
-    if kind not in _STARTERS:
-        there = f"there is {either(starters_for(kind) or tuple(_STARTERS), 'and')}"
-        hint = there if starters_for(kind) else suggestion(kind, _STARTERS) or there
+    """Write a recipe to start from; raises ValueError for a kind that is not one of STARTERS."""
+    if kind not in STARTERS:
+        there = f"there is {either(starters_for(kind) or tuple(STARTERS), 'and')}"
+        hint = there if starters_for(kind) else suggestion(kind, STARTERS) or there
         raise ValueError(f"no starter for {kind!r}; {hint}")
-    chosen = _STARTERS[kind]
+    chosen = STARTERS[kind]
     given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
     lines = _lines(_recipe(chosen) if chosen.kind else SHAFT, given, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 
-def _recipe(chosen: _Starter) -> Table:
+def _recipe(chosen: Starter) -> Table:
     """Make the table of a recipe with this kind of cam and of linkage; if there is none, without what needs one."""
     linkage = chosen.more.get("linkage")
     kinds = {"cam": _with_forms(_kinded("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):
         kinds["linkage"] = _kinded("the kind of linkage", LINKAGES, str(linkage["kind"]))
-    fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
+    fields = (replace(item, table=kinds.get(item.name, item.table)) for item in recipe_table().fields)
     if linkage:
         return Table(tuple(fields))
     unfit = {*chosen.unfit, "dwell", "output_error"}
@@ -291,7 +274,7 @@ def _recipe(chosen: _Starter) -> Table:
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 
-def _with_forms(table: Table, chosen: _Starter) -> Table:
+def _with_forms(table: Table, chosen: Starter) -> Table:
     """Give each field that has kinds of its own the table of the kind that is given."""
 
     def shown(item: Field) -> Field:

@@ -4,35 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.checks.declared import (
-    BENT,
-    CHAMFER,
-    CLEARANCE,
-    JAM,
-    LEAST_BACKLASH,
-    MOBILITY,
-    PRESSURE,
-    RATIO,
-    REVERSAL,
-    WALL,
-)
+from camgeo.checks.declared import declaration
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-STRICT: dict[str, float | None] = {
-    **dict.fromkeys(BENT),
-    CHAMFER.name: None,
-    WALL.name: 0.0,
-    MOBILITY.name: 0.0,
-    REVERSAL.name: 0.0,
-    LEAST_BACKLASH.name: 0.0,
-    CLEARANCE.name: 0.0,
-    RATIO.name: 1.0,
-    PRESSURE.name: 90.0,
-    JAM.name: None,
-}
-"""Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
 
 
 def title(check: Mapping[str, object]) -> str:
@@ -48,8 +23,8 @@ def unit_text(check: Mapping[str, Any]) -> str:
 
 def is_strict(check: dict[str, Any]) -> bool:
     """Whether a figure equal to the check's limit fails."""
-    name, limit = check["name"], check["limit"]
-    return name in STRICT and "file" not in check and STRICT[name] in {None, limit}
+    declared = None if "file" in check else declaration(check["name"])
+    return declared is not None and (declared.strict or check["limit"] in declared.strict_at)
 
 
 def words(check: dict[str, Any]) -> str:

@@ -56,6 +56,7 @@ class Findings:
     displacements: tuple[float, str] = (1.0, "mm")
     contours: Mapping[str, Measures] = field(default_factory=dict)
     balances: tuple[Balance, ...] = ()
+    sections: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:
@@ -88,6 +89,7 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         **dynamics,
         **preload,
         **({} if findings.forces is None else {"forces": findings.forces}),
+        **findings.sections,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in findings.stages],
         "skipped": [{"what": what, "why": why} for what, why in findings.skipped],
     }

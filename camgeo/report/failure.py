@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.checks.declared import EVERY, LIMIT, LIMITS, Declared
+from camgeo.checks.declared import LIMIT, Declared, declaration
 from camgeo.report.bound import title, unit_text, words
 
 if TYPE_CHECKING:
@@ -45,13 +45,13 @@ def headline(check: dict[str, Any]) -> str:
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Tell what would let the check hold; empty where nothing would, or where the check itself says it."""
-    declared = EVERY.get(check["name"])
+    declared = declaration(check["name"])
     return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 
 
 def _field(check: dict[str, Any], recipe: Recipe) -> str:
-    declared = EVERY.get(check["name"], UNKNOWN)
-    if check["name"] in LIMITS:
+    declared = declaration(check["name"]) or UNKNOWN
+    if check["name"].startswith(LIMIT):
         figure = check["name"].removeprefix(LIMIT)
         own = [one for one in recipe.limits if one.figure == figure and getattr(one, check["sense"]) is not None]
         return next((one.field(check["sense"]) for one in own), f"limits.{figure}.{check['sense']}")

@@ -94,7 +94,10 @@ class Form(Generic[R]):
 
 @dataclass(frozen=True)
 class Field:
-    """One key of a table. Bounds are in the recipe's own units and degrees, as written."""
+    """One key of a table. Bounds are in the recipe's own units and degrees, as written.
+
+    `after` is the core's key behind which that of a capability stands.
+    """
 
     name: str
     kind: Kind
@@ -113,6 +116,7 @@ class Field:
     unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
     form: Form[Any] | None = None  # of a field of Kind.OWN
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
+    after: str = ""
 
     @property
     def noun(self) -> str:

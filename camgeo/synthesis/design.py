@@ -15,6 +15,7 @@ from camgeo.checks.declared import BENT, CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDE
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
+from camgeo.registry import registry
 from kin.judge.check import Check
 from kin.numeric.records import dataclass, replace
 
@@ -166,7 +167,10 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
         checks = [check for surface in sounded for check in surface.checks]
         contours = [(made.surface, made.contour) for made in sounded if made.contour is not None]
-        checks += motion_checks(exact) + guide_checks(recipe, exact, contours)
+        checks += motion_checks(exact)
+        for capability in registry.in_order(recipe.uses):
+            checks += capability.exact(recipe, exact, contours)
+        checks += guide_checks(recipe, exact, contours)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import EVERY, Scene
+from camgeo.checks.declared import Scene, declarations
 
 if TYPE_CHECKING:
     from camgeo.cams.follower import Follower
@@ -30,9 +30,10 @@ class Foreseen(NamedTuple):
 def foreseen(recipe: Recipe, *, second_opinion: bool = False) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
     scene = Scene(recipe, _follower(recipe), second_opinion=second_opinion)
-    found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
+    every = declarations(recipe)
+    found = [Foreseen(one.name) for one in every if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
-    in_turn = sorted(EVERY.values(), key=lambda one: one.backlash or one.exact is not None)
+    in_turn = sorted(every, key=lambda one: one.backlash or one.exact is not None)
     for request in recipe.export.files:
         names = recipe.filenames(request)
         for file in names:

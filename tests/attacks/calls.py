@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from attacks.outcome import Attack
 from camgeo.recipe.export import KINDS
-from camgeo.recipe.starter import TITLES as STARTERS
+from camgeo.recipe.starter import STARTERS
 
 if TYPE_CHECKING:
     from random import Random

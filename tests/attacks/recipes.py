@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 from support.places import ROOT, SHIPPED
+from support.starters import OF_CAMS
 
 from attacks.cams import drawn, wrong_verdict
 from attacks.outcome import Attack, nothing_more
-from camgeo.recipe.starter import KINDS, starter
+from camgeo.recipe.starter import starter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,7 +65,7 @@ def of_any_kind(rng: Random, number: int) -> Attack:
 @cache
 def bases() -> tuple[str, ...]:
     """Recipes to spoil: the starters and the shipped ones that need no other file and no search."""
-    texts = [starter(kind) for kind in KINDS if kind != "sweep"]
+    texts = [starter(kind) for kind in OF_CAMS if kind != "sweep"]
     texts += [path.read_text(encoding="utf-8") for path in SHIPPED]
     return tuple(text for text in texts if "table:" not in text and "\nsweep:" not in text and "parts: all" not in text)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from support.places import ROOT
 
-from camgeo.checks.declared import CHECKS, EVERY, LIMIT, OUTLINE, READABLE
+from camgeo.checks.declared import CHECKS, LIMIT, OUTLINE, READABLE, declaration, declarations
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load, load_text
@@ -81,8 +81,9 @@ def test_the_search_for_names_finds_some() -> None:
 def test_each_is_declared_once() -> None:
     text = (PACKAGE / "checks" / "declared.py").read_text(encoding="utf-8")
     assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) == len(CHECKS)
-    assert set(EVERY) == {*CHECKS, *(LIMIT + name for name in FIGURES)}
-    assert all(name == one.name for name, one in EVERY.items())
+    names = [one.name for one in declarations()]
+    assert names == [*CHECKS, *(LIMIT + name for name in FIGURES)]
+    assert all(declaration(name).name == name for name in names)
 
 
 @cache
@@ -232,8 +233,8 @@ def test_a_file_that_cannot_be_read_fails_by_a_declared_name(tmp_path: Path) -> 
 @pytest.mark.parametrize("path", sorted((ROOT / "recipes").glob("*.yaml")), ids=lambda path: path.stem)
 def test_every_check_of_a_shipped_recipe_is_declared(path: Path) -> None:
     for check in made(path):
-        assert check["name"] in EVERY
-        declared = EVERY[check["name"]]
+        declared = declaration(check["name"])
+        assert declared is not None
         assert declared.name == OUTLINE.name or (declared.of_file if check.get("file") else declared.exact), check
 
 
@@ -247,13 +248,13 @@ def test_the_report_s_page_has_each_check() -> None:
 
 
 def test_fields_are_those_of_a_recipe() -> None:
-    from camgeo.recipe.keys import RECIPE
+    from camgeo.recipe.keys import recipe_table
     from camgeo.schema.fields import field_at
 
-    for one in EVERY.values():
+    for one in declarations():
         for path in filter(None, (one.field, one.own_field)):
             kinds = ("double-roller", "disc")
-            known = any(field_at(RECIPE, path, {"cam": kind, "linkage": "four-bar"}) for kind in kinds)
+            known = any(field_at(recipe_table(), path, {"cam": kind, "linkage": "four-bar"}) for kind in kinds)
             assert known or one.name.startswith(LIMIT), path
 
 

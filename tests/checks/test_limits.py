@@ -13,18 +13,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
+from support.starters import OF_CAMS
 from support.sweepers import evaluate
 
-from camgeo.capabilities.sweep.search.figures import REASONS, asked_of
-from camgeo.checks.declared import CHECKS, EVERY, LIMIT
+from camgeo.capabilities.sweep.figures import REASONS, asked_of
+from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
 from camgeo.measures.figures import of_design
 from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
+from camgeo.recipe import figures as needs
 from camgeo.recipe.figures import FIGURES
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.starter import KINDS, starter
+from camgeo.recipe.starter import starter
 from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
@@ -288,27 +290,35 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 
 
 def test_a_figure_that_a_recipe_has_not() -> None:
-    missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "face": ROLLER}
-    missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "backlash": FLAT}
-    missing |= {
-        "guided": ROLLER,
-        "rolling": ROLLER,
-        "arm": STEM,
-        "stem": ARM,
-        "stem-face": FLAT,
-        "guide": FLAT,
-        "speed": FLAT,
-        "stiff": FLAT,
-        "forces": FLAT,
-        "material": FLAT,
-        "bearing": FLAT,
-        "reaction": FLAT,
-        "wanted": ROLLER,
-        "density": FLAT,
+    missing = {
+        needs.OF_LINKAGE: FLAT,
+        needs.OF_DWELL: FLAT,
+        needs.OF_FOLLOWER: LINKED,
+        needs.OF_ROLLER: FLAT,
+        needs.OF_SWING: FLAT,
+        needs.OF_FACE: ROLLER,
+        needs.OF_WALL: ROLLER,
+        needs.OF_BODIES: FLAT,
+        needs.OF_SPRING: FLAT,
+        needs.OF_BACKLASH: FLAT,
+        needs.OF_GUIDED: ROLLER,
+        needs.OF_ROLLING: ROLLER,
+        needs.OF_ARM: STEM,
+        needs.OF_STEM: ARM,
+        needs.OF_STEM_FACE: FLAT,
+        needs.OF_GUIDE: FLAT,
+        needs.OF_SPEED: FLAT,
+        needs.OF_STIFFNESS: FLAT,
+        needs.OF_FORCES: FLAT,
+        needs.OF_MATERIAL: FLAT,
+        needs.OF_BEARING: FLAT,
+        needs.OF_REACTION: FLAT,
+        needs.OF_WANTED_LAW: ROLLER,
+        needs.OF_DENSITY: FLAT,
     }
     offered: dict[str, set[str]] = {}
     for name, figure in FIGURES.items():
-        if figure.needs:
+        if figure.needs is not needs.NOTHING:
             (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
             assert f"limits.{name}: {name} needs " in one
             assert "; the figures of this recipe are " in one
@@ -483,7 +493,7 @@ def test_a_lobe_s_limit_says_its_lift_where_it_holds() -> None:
 
 
 def test_the_schema_knows_every_limit() -> None:
-    schema = json_schema(RECIPE)["properties"]["limits"]
+    schema = json_schema(recipe_table())["properties"]["limits"]
     assert set(schema["properties"]) == set(FIGURES)
     assert schema["additionalProperties"] is False
     more = {"pressure-angle": {"on_return"}, **{f"peak-{one}-at-speed": {"rpm"} for one in ("velocity", "jerk")}}
@@ -499,7 +509,7 @@ def test_the_schema_knows_every_limit() -> None:
     assert json.loads(json.dumps(schema)) == schema
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", OF_CAMS)
 def test_each_starter_tells_of_limits(kind: str) -> None:
     assert re.search(r"^# limits: +# figures that must keep within bounds", starter(kind), re.MULTILINE)
 
@@ -544,7 +554,7 @@ def test_a_sweep_has_the_figures_of_its_limits() -> None:
 
 
 def test_every_limit_is_declared() -> None:
-    assert set(EVERY) == {*CHECKS, *(LIMIT + name for name in FIGURES)}
+    assert {one.name for one in declarations()} == {*CHECKS, *(LIMIT + name for name in FIGURES)}
 
 
 COEFFICIENTS = st.lists(st.integers(-30, 30), min_size=3, max_size=3)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 from support.cases import few
+from support.starters import OF_CAMS
 
 from camgeo.cli.main import main
-from camgeo.recipe.starter import KINDS, starter
+from camgeo.recipe.starter import starter
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -140,7 +141,7 @@ def test_verify_judges_a_file_and_says_what_is_wrong(
 
 
 @pytest.mark.thin(4)
-@pytest.mark.parametrize("kind", few(KINDS, 3))
+@pytest.mark.parametrize("kind", few(OF_CAMS, 3))
 def test_new_gives_a_recipe_that_passes(kind: str, tmp_path: Path) -> None:
     path = tmp_path / f"my-{kind}.yaml"
     assert main(["new", kind, str(path)]) == 0
@@ -154,7 +155,7 @@ def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> No
     assert "support" in capsys.readouterr().err
     assert main(["new"]) == 0
     rows = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
-    assert [name for name, _ in rows] == [*KINDS, "camshaft"]
+    assert [name for name, _ in rows] == [*OF_CAMS, "camshaft"]
     assert all(len(words) > 20 and words.endswith(".") for _, words in rows)
     assert main(["new", "disc"]) == 0
     discs = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]

@@ -24,7 +24,7 @@ from camgeo.cli.main import main
 from camgeo.measures.remarks import RemarkName
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_order, read
-from camgeo.recipe.starter import KINDS, TITLES, starters_for
+from camgeo.recipe.starter import STARTERS, starters_for
 from camgeo.report.page.content import DRAWN
 
 ROOT = Path(__file__).parents[2]
@@ -164,7 +164,7 @@ def test_every_command_of_camgeo_is_known(capsys):
             continue
         assert complaint(words, capsys, prose=True) == "", f"{page}: camgeo {shlex.join(words)}"
         if words[0] == "new" and len(words) > 1 and words[1].islower():
-            assert words[1] in TITLES or starters_for(words[1]), f"{page}: camgeo {shlex.join(words)}"
+            assert words[1] in STARTERS or starters_for(words[1]), f"{page}: camgeo {shlex.join(words)}"
         seen.add(words[0])
     capsys.readouterr()
     assert seen >= {"export", "check", "verify", "sweep", "study", "report", "new", "laws", "schema"}
@@ -194,7 +194,7 @@ def test_the_starters_that_pages_name_are_written(capsys):
     named = {
         name for cell in re.findall(r"^\|.*\| `camgeo new (.*) \|$", text, re.MULTILINE) for name in cell.split("`, `")
     }
-    assert {name.rstrip("`") for name in named} == set(KINDS)
+    assert {name.rstrip("`") for name in named} == set(STARTERS)
     assert main(["new", "support"]) == 0
     read(capsys.readouterr().out.encode(), "starter.yaml")
 

@@ -14,7 +14,7 @@ from support.cases import examples
 from camgeo.cli.main import main
 from camgeo.motions.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.output import pipeline
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
@@ -138,7 +138,7 @@ def test_a_lobe_stands_in_the_middle_of_a_part_of_a_turn_and_at_0_of_a_whole_one
 
 def reader_of(text):
     source = read_source(f"motion: {text}\n".encode(), "case.yaml")
-    reader = Reader(source, READERS, RECIPE)
+    reader = Reader(source, READERS, recipe_table())
     reader.survey(source.root, "")
     return reader, entries(source.root)["motion"]
 
@@ -214,8 +214,8 @@ def test_the_schema_takes_what_the_reader_takes():
 def test_a_number_of_a_source_can_be_varied_by_its_path():
     kinds = {"cam": "constant-breadth"}
     for path in ("cam.motion.lobe.lift", "cam.motion[0].rise", "cam.motion.reading"):
-        assert field_at(RECIPE, path, kinds) is not None
-    assert field_at(RECIPE, "cam.motion.lobe.drop", kinds) is None
+        assert field_at(recipe_table(), path, kinds) is not None
+    assert field_at(recipe_table(), "cam.motion.lobe.drop", kinds) is None
 
 
 # --- tables -----------------------------------------------------------------------------------------------------------

@@ -235,7 +235,7 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
 
 UNUSED = {
     "camgeo": "assembly cli.laws cli.report cli.watch machining report.page schema.edit",
-    "camgeo.capabilities": "study.command sweep.search",
+    "camgeo.capabilities": "study.command sweep.record",
     "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
     "camgeo.synthesis": "linkage motion_table part.lightening view",
     "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",

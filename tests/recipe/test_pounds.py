@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camgeo.recipe.keys import RECIPE
+from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
@@ -113,7 +114,7 @@ def test_a_sweep_accepts_designs_by_pounds() -> None:
     more = (
         "sweep: {vary: {cam.base_radius: [40, 45]}, limits: {contact-force-greatest: {at_most: 100 lbf}}, rank: size}\n"
     )
-    sweep = made("mass: 1, preload: 12 lbf", more=more).sweep
+    sweep = made("mass: 1, preload: 12 lbf", more=more).of(Sweep)
     assert sweep is not None
     assert sweep.limits[0].at_most == pytest.approx(444.82216152605)
 
@@ -166,7 +167,7 @@ def test_a_length_in_pounds() -> None:
 
 
 def test_the_schema_takes_them() -> None:
-    schema = json_schema(RECIPE)["properties"]["dynamics"]["properties"]
+    schema = json_schema(recipe_table())["properties"]["dynamics"]["properties"]
     for key, value, ok in (
         ("preload", "10 lbf", True),
         ("preload", "3 lbf*in", True),

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camgeo.recipe.keys import RECIPE
+from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
@@ -174,10 +175,10 @@ def test_points_of_a_motion() -> None:
 def test_a_sweep_varies_in_the_unit_of_its_field() -> None:
     sweep = "sweep:\n  vary: {{{}}}\n  rank: size\n"
     at = "'cam.shaft[0]': "
-    found = load_text(support("1 cm") + sweep.format(at + "{from: 1 cm, to: 0.75 in, steps: 4}"), "a.yaml").sweep
+    found = load_text(support("1 cm") + sweep.format(at + "{from: 1 cm, to: 0.75 in, steps: 4}"), "a.yaml").of(Sweep)
     assert found is not None
     assert (found.vary[0].low, found.vary[0].high) == (10.0, 19.05)
-    listed = load_text(support("1", "inch") + sweep.format(at + "[12.7 mm, 1]"), "a.yaml").sweep
+    listed = load_text(support("1", "inch") + sweep.format(at + "[12.7 mm, 1]"), "a.yaml").of(Sweep)
     assert listed is not None
     assert listed.vary[0].values == (0.5, 1.0)
     assert "'kg' is no unit of a length" in refusal(support("1") + sweep.format(at + "[1 kg]"))
@@ -202,11 +203,11 @@ def test_replaced_by_a_program() -> None:
 
 
 def test_the_json_schema_knows_them() -> None:
-    cam = json_schema(RECIPE)["properties"]["cam"]["oneOf"]
+    cam = json_schema(recipe_table())["properties"]["cam"]["oneOf"]
     lengths = next(kind for kind in cam if "base_radius" in kind["properties"])["properties"]["base_radius"]
     pattern = re.compile(lengths["anyOf"][1]["pattern"])
     assert all(map(pattern.search, ("15/25.4 in", "10mm", "1.5 cm", "3/4 inch", "2*pi mm")))
     assert not any(map(pattern.search, ("10 deg", "10 m", "mm", "10 mm 3", "10 N/m")))
-    start = json_schema(RECIPE)["properties"]["manufacture"]["properties"]["start"]["anyOf"][1]["pattern"]
+    start = json_schema(recipe_table())["properties"]["manufacture"]["properties"]["start"]["anyOf"][1]["pattern"]
     assert re.search(start, "30 deg")
     assert not re.search(start, "30 mm")

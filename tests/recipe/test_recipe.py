@@ -15,6 +15,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from support.places import SHIPPED
+from support.starters import OF_CAMS
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.constant_diameter import ConstantDiameterCam
@@ -29,12 +30,12 @@ from camgeo.motions.motion import SegmentsAsked
 from camgeo.motions.segments import MotionSegment, SccaLaw
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, read
 from camgeo.recipe.machining import Compensation, Manufacture
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
-from camgeo.recipe.starter import KINDS, starter
+from camgeo.recipe.starter import starter
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
 from camgeo.schema.scalars import Complaint, read_number
@@ -522,7 +523,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
 # --- starters and the JSON schema -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", OF_CAMS)
 def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
     recipe = text(starter(kind))
     assert recipe.cam is not None
@@ -531,7 +532,7 @@ def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
 
 
 def test_starters_show_every_kind_of_cam() -> None:
-    cams = [text(starter(kind)).cam for kind in KINDS]
+    cams = [text(starter(kind)).cam for kind in OF_CAMS]
     kinds = {SupportCam, ConstantBreadthCam, ConstantDiameterCam, DoubleRollerCam, FlatPairCam, DiscCam}
     assert {type(cam) for cam in cams} == kinds
     assert {(cam.arrangement.guide, cam.arrangement.touch) for cam in cams if isinstance(cam, DiscCam)} >= {
@@ -541,7 +542,7 @@ def test_starters_show_every_kind_of_cam() -> None:
         (Translating, Flat),
         (Oscillating, Flat),
     }
-    assert {text(starter(kind)).cam.kind for kind in KINDS} == set(CAMS)
+    assert {text(starter(kind)).cam.kind for kind in OF_CAMS} == set(CAMS)
 
 
 def test_a_starter_of_an_arm_shows_no_field_of_a_stem() -> None:
@@ -630,14 +631,14 @@ def plain_yaml(text: str | bytes) -> dict:
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_the_json_schema_admits_what_is_shipped(path: Path) -> None:
     plain = plain_yaml(path.read_bytes())
-    assert valid(plain, json_schema(RECIPE))
-    assert not valid({**plain, "linkage": {}}, json_schema(RECIPE))
-    assert not valid({key: value for key, value in plain.items() if key != "cam"}, json_schema(RECIPE))
+    assert valid(plain, json_schema(recipe_table()))
+    assert not valid({**plain, "linkage": {}}, json_schema(recipe_table()))
+    assert not valid({key: value for key, value in plain.items() if key != "cam"}, json_schema(recipe_table()))
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", OF_CAMS)
 def test_the_json_schema_admits_the_starters(kind: str) -> None:
-    assert valid(plain_yaml(starter(kind)), json_schema(RECIPE))
+    assert valid(plain_yaml(starter(kind)), json_schema(recipe_table()))
 
 
 SUPPORT = "{kind: support, p: 9}"
@@ -664,8 +665,8 @@ SUPPORT = "{kind: support, p: 9}"
 )
 def test_the_json_schema_refuses_linkages_and_sweeps_that_load_refuses(body: str, more: str) -> None:
     plain = {"cam": plain_yaml(body), **plain_yaml(more)}
-    assert valid({"cam": plain["cam"]}, json_schema(RECIPE))
-    assert not valid(plain, json_schema(RECIPE))
+    assert valid({"cam": plain["cam"]}, json_schema(recipe_table()))
+    assert not valid(plain, json_schema(recipe_table()))
     with pytest.raises(RecipeErrors):
         text(json.dumps(plain))
 
@@ -686,7 +687,7 @@ def test_the_json_schema_refuses_linkages_and_sweeps_that_load_refuses(body: str
     ],
 )
 def test_the_json_schema_refuses_what_load_refuses(body: str) -> None:
-    assert not valid({"cam": yaml.safe_load(body)}, json_schema(RECIPE))
+    assert not valid({"cam": yaml.safe_load(body)}, json_schema(recipe_table()))
     with pytest.raises(RecipeErrors):
         cam(body)
 

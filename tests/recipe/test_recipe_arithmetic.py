@@ -8,7 +8,7 @@ import re
 import pytest
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
@@ -76,7 +76,7 @@ def test_no_text_takes_long() -> None:
 
 
 def test_the_json_schema_knows_it() -> None:
-    kinds = json_schema(RECIPE)["properties"]["cam"]["oneOf"]
+    kinds = json_schema(recipe_table())["properties"]["cam"]["oneOf"]
     cam = next(kind for kind in kinds if "base_radius" in kind["properties"])
     pattern = re.compile(cam["properties"]["base_radius"]["anyOf"][1]["pattern"])
     assert all(map(pattern.search, ("15/25.4", "2*(3 + 0.5)", "1e-3", "pi", "-.5")))

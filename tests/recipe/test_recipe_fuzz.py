@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,24 +13,26 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.places import SHIPPED as SHIPPED_FILES
+from support.starters import OF_CAMS
 
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.loading import read
-from camgeo.recipe.starter import KINDS, starter
-from camgeo.recipe.sweep import FIGURES, RANGE
-from camgeo.schema.edit import with_values, without
+from camgeo.recipe.starter import starter
+from camgeo.registry import registry
+from camgeo.schema.edit import without
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.fields import Table
 
-STARTERS = {f"new {kind}": starter(kind).encode() for kind in KINDS}
-SHIPPED = STARTERS | {path.name: path.read_bytes() for path in SHIPPED_FILES}
+NEW = {f"new {kind}": starter(kind).encode() for kind in OF_CAMS}
+SHIPPED = NEW | {path.name: path.read_bytes() for path in SHIPPED_FILES}
 
 
 def reading(data: bytes) -> Recipe | RecipeErrors:
@@ -62,23 +63,20 @@ def outcome(data: bytes) -> Recipe | str:
     assert all((folder / name).resolve().parent == folder for name in names)
     assert found.export.tolerance > 0
     assert found == reading(data)
-    if found.sweep is not None:
+    if found.uses:
         edited(found)
     return found
 
 
 def edited(recipe: Recipe) -> None:
-    """Hold that what a sweep does to a recipe's text is what it says."""
-    assert recipe.sweep is not None
-    for axis in recipe.sweep.vary:
-        value = axis.values[0] if axis.values else axis.low
-        other = reading(with_values(recipe.text, {axis.path: value}).encode())
-        assert isinstance(other, RecipeErrors) or other.sweep == recipe.sweep
-    try:
-        left = without(recipe.text, "sweep")
-    except RecipeErrors:  # an alias, or YAML that cannot be cut
-        return
-    assert reading(left.encode()) == replace(recipe, sweep=None)
+    """Hold that a capability whose key is cut out of the text is one that the recipe does not use."""
+    for name in recipe.uses:
+        if name in recipe.marks:
+            try:
+                left = reading(without(recipe.text, name).encode())
+            except RecipeErrors:  # an alias, or YAML that cannot be cut
+                continue
+            assert isinstance(left, RecipeErrors) or left == recipe.without(name)
 
 
 def test_there_is_something_to_mutate() -> None:
@@ -117,8 +115,8 @@ def _keys(table: Table) -> set[str]:
     return {*table.keys, *below}
 
 
-TABLES = [*CAMS.values(), *LINKAGES.values(), *DYADS.values(), RANGE, *map(bounds, FIGURES.values())]
-KEYS = sorted({"kind", *FILES, *FIGURES, *_keys(RECIPE), *(key for table in TABLES for key in _keys(table))})
+TABLES = [*CAMS.values(), *LINKAGES.values(), *DYADS.values(), *map(bounds, FIGURES.values())]
+KEYS = sorted({"kind", *FILES, *FIGURES, *_keys(recipe_table()), *(key for table in TABLES for key in _keys(table))})
 TEXTS = [
     *CAMS,
     *LINKAGES,
@@ -150,7 +148,7 @@ def kinded(kinds: dict[str, Table]) -> st.SearchStrategy[object]:
 
 
 def tabled(name: str, **known: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
-    table = RECIPE.field(name).table
+    table = recipe_table().field(name).table
     assert table
     return st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in table.keys})
 
@@ -165,13 +163,13 @@ PATHS = ["cam.shaft[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].
 ranges = st.fixed_dictionaries({"from": numbers, "to": numbers}, optional={"steps": st.integers(0, 9)})
 vary = st.dictionaries(st.sampled_from(PATHS), ranges | st.lists(numbers, max_size=3) | structures, max_size=4)
 known = {
+    **{name: tabled(name, vary=vary) for name in registry.recorded() if name in recipe_table().keys},
     "cam": kinded(CAMS),
     "linkage": linkages,
-    "sweep": tabled("sweep", vary=vary),
     "dwell": tabled("dwell"),
     "verify": tabled("verify"),
 }
-recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in RECIPE.keys})
+recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in recipe_table().keys})
 
 
 @pytest.mark.slow

@@ -418,8 +418,8 @@ def test_a_guide_without_a_stem() -> None:
 
 @pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.figures import figures as searched
+    from camgeo.capabilities.sweep.ask import Ask
+    from camgeo.capabilities.sweep.figures import figures as searched
 
     text = disc("kind: roller, radius: 9, offset: 6", more=TRAIN + "\n")
     text += """\

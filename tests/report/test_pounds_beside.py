@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from camgeo.capabilities.sweep.search.ask import Ask
+from camgeo.capabilities.sweep.ask import Ask
 from camgeo.measures.units import in_pounds, pounds
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.figures import Evaluator
-from camgeo.capabilities.sweep.search.gather import REASON
-from camgeo.capabilities.sweep.search.job import Job
-from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
-from camgeo.capabilities.sweep.search.search import Means
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.figures import Evaluator
+from camgeo.capabilities.sweep.gather import REASON
+from camgeo.capabilities.sweep.job import Job
+from camgeo.capabilities.sweep.keys import varied
+from camgeo.capabilities.sweep.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.search import Means
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -130,4 +131,4 @@ def evaluate(recipe, paths, values, **how):
 
 def compute(recipe, values):
     """Figures of designs with the values (m, k) of a recipe's sweep."""
-    return evaluate(recipe, tuple(axis.path for axis in recipe.sweep.vary), values).figures
+    return evaluate(recipe, tuple(axis.path for axis in varied(recipe)), values).figures

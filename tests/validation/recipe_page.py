@@ -6,13 +6,13 @@ import re
 from pathlib import Path
 
 from camgeo.cams.disc import FOLLOWERS
+from camgeo.capabilities.sweep.keys import RANGE
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
-from camgeo.recipe.figures import FIGURES, NEEDS
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
-from camgeo.recipe.sweep import RANGE
 from camgeo.schema.fields import Kind
 
 ROOT = Path(__file__).parents[2]
@@ -97,7 +97,7 @@ def contents(text):
 def figures():
     lines = ["| figure | unit | best | needs | sweep | meaning |", "| --- | --- | --- | --- | --- | --- |"]
     for name, figure in FIGURES.items():
-        needs, swept = NEEDS.get(figure.needs, ""), "yes" if figure.swept else ""
+        needs, swept = figure.needs.words, "yes" if figure.swept else ""
         row = f"| `{name}` | {UNITS.get(figure.kind, '')} | {figure.best} | {needs} | {swept} | {figure.about} |"
         lines.append(row.replace("  ", " ").replace("  ", " "))
     return "\n".join(lines)
@@ -105,7 +105,7 @@ def figures():
 
 def tables():
     """Every table of the schema, written out, by the name that marks its place in the page."""
-    found = {"recipe": RECIPE, **dict(below(RECIPE, "")), "sweep.vary": RANGE}
+    found = {"recipe": recipe_table(), **dict(below(recipe_table(), "")), "sweep.vary": RANGE}
     found["limits"] = bounds(next(iter(FIGURES.values())))
     for noun, kinds in (("cam", CAMS), ("follower", FOLLOWERS), ("linkage", LINKAGES), ("dyad", DYADS)):
         for kind, one in kinds.items():

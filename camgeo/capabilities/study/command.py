@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.study import FORMS
 from camgeo.cli.arguments import add_out, decimal
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
+FORMS = ("polyline", "arcs", "spline", "stl")
 REPORT, PICTURE = "study.json", "study.png"
 PATIENCE = 2.0  # seconds of a run, fit, write and judge together, after which a ladder goes no further
 

@@ -14,9 +14,9 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.run import Listener
-    from camgeo.capabilities.sweep.search.search import Means, Outcome
+    from camgeo.capabilities.sweep.ask import Ask
+    from camgeo.capabilities.sweep.run import Listener
+    from camgeo.capabilities.sweep.search import Means, Outcome
     from camgeo.checks.remedies import Entry
 
 EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
-    from camgeo.capabilities.sweep.search.ask import EXACT, Ask
+    from camgeo.capabilities.sweep.ask import EXACT, Ask
     from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
@@ -75,10 +75,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
     """Outcome, or what went wrong, and the exit status."""
-    from camgeo.capabilities.sweep.search.engines import EngineError
-    from camgeo.capabilities.sweep.search.job import VersionsError
-    from camgeo.capabilities.sweep.search.run import How
-    from camgeo.capabilities.sweep.search.search import search
+    from camgeo.capabilities.sweep.engines import EngineError
+    from camgeo.capabilities.sweep.job import VersionsError
+    from camgeo.capabilities.sweep.run import How
+    from camgeo.capabilities.sweep.search import search
     from camgeo.common.errors import SurroundingsError
 
     progress = Progress(ask.recipe.name, _EVERY)
@@ -105,10 +105,10 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
 def means() -> Means:
     """What computes, measures and polishes designs of a recipe."""
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.figures import REASONS, figures
-    from camgeo.capabilities.sweep.search.refine import polish
-    from camgeo.capabilities.sweep.search.search import Means
+    from camgeo.capabilities.sweep.ask import Ask
+    from camgeo.capabilities.sweep.figures import REASONS, figures
+    from camgeo.capabilities.sweep.refine import polish
+    from camgeo.capabilities.sweep.search import Means
 
     return Means(figures, Ask.measured, polish, REASONS)
 

@@ -109,12 +109,12 @@ def search(
     has no sweep, or one that cannot be run, SurroundingsError where the disk, a package or a scheduler is not what it
     should be, CallError for a number of processes below 1.
     """
+    from camgeo.capabilities.sweep.ask import Ask
     from camgeo.capabilities.sweep.command import EXTRAS, means
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.engines import EngineError
-    from camgeo.capabilities.sweep.search.job import VersionsError
-    from camgeo.capabilities.sweep.search.run import How
-    from camgeo.capabilities.sweep.search.search import search as searched
+    from camgeo.capabilities.sweep.engines import EngineError
+    from camgeo.capabilities.sweep.job import VersionsError
+    from camgeo.capabilities.sweep.run import How
+    from camgeo.capabilities.sweep.search import search as searched
     from camgeo.files.errors import install
 
     recipe, folder = recipe_of(recipe), path_of("out", out)

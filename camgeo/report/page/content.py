@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from camgeo.curve.ring import Ring, disc
+from camgeo.registry import registry
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.overlays import Stage, overlaid
@@ -76,6 +77,8 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
     plots += curves.preload(recipe, design) + curves.forces(recipe, design)
+    for capability in registry.in_order(recipe.uses):
+        plots += capability.plots(recipe, design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     measured = [(file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items()]

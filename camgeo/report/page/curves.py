@@ -147,9 +147,9 @@ def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot
 
 def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
     """Return factor, unit and note of a derivative: by radian, or by second where the shaft's speed is given."""
-    if recipe.dynamics is None:
+    rpm = recipe.rpm
+    if rpm is None:
         return 1.0, POWERS[order - 1], ""
-    rpm = recipe.dynamics.rpm
     return (rpm * TURN / 60.0) ** order, TIMES[order - 1], f"at {rpm:g} rpm"
 
 

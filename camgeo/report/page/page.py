@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.registry import registry
 from camgeo.report.document import finite
 from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.asset import asset
@@ -34,13 +35,18 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
-        "dynamics": tables.preload(report) + tables.forces(report) + tables.dynamics(report),
+        "panels": tables.preload(report) + tables.forces(report) + tables.dynamics(report) + _panels(recipe, report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
         "script": asset("page.js"),
         "data": encoded(data(recipe, content)),
     }
     return head(recipe, report) + _filled("page.html", parts)
+
+
+def _panels(recipe: Recipe, report: dict[str, Any]) -> str:
+    """Return what the capabilities of a recipe show of its report."""
+    return "".join(capability.panel(report) for capability in registry.in_order(recipe.uses))
 
 
 def head(recipe: Order, report: dict[str, Any], more: str = "") -> str:

@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from camgeo.checks.declared import CHECKS
+from camgeo.checks.declared import declaration
 from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.units import in_pounds
 from camgeo.report.bound import sign, title
@@ -87,7 +87,8 @@ def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, t
 
 def _is_in_frame(check: dict[str, Any]) -> bool:
     """Whether a check concerns the cam in its frame alone: its place is the relative angle then (docs/report.md)."""
-    return check["name"] in CHECKS and CHECKS[check["name"]].in_frame
+    declared = declaration(check["name"])
+    return declared is not None and declared.in_frame
 
 
 def written(report: dict[str, Any]) -> str:

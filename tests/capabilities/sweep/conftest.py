@@ -7,11 +7,11 @@ import pytest
 def no_pictures(monkeypatch):
     """Pictures are composed, but not drawn: for tests that look at other files."""
     made = {"png": b"\x89PNG", "svg": b"<svg/>"}
-    monkeypatch.setattr("camgeo.capabilities.sweep.search.pictures._encoded", lambda _: made)
+    monkeypatch.setattr("camgeo.capabilities.sweep.pictures._encoded", lambda _: made)
 
 
 @pytest.fixture
 def pooled(monkeypatch):
     """More processes are started after the first piece of work, however short."""
-    monkeypatch.setattr("camgeo.capabilities.sweep.search.engines._TRIED", 0.0)
-    monkeypatch.setattr("camgeo.capabilities.sweep.search.engines._PAYS", 0.0)
+    monkeypatch.setattr("camgeo.capabilities.sweep.engines._TRIED", 0.0)
+    monkeypatch.setattr("camgeo.capabilities.sweep.engines._PAYS", 0.0)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo.recipe.figures import NEEDS
-from camgeo.recipe.keys import RECIPE
+from camgeo.capabilities.sweep.keys import Axis, Sweep, swept, varied
+from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import MOST_AXES, MOST_VALUES, field_at
@@ -20,7 +20,8 @@ from camgeo.schema.yaml_source import join
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
-HERE = {"", "linkage", "dwell", "face"}  # what a recipe with a linkage and a dwell has
+FIGURES = swept()
+HERE = (NOTHING, OF_LINKAGE, OF_DWELL, OF_FACE)  # what a recipe with a linkage and a dwell has
 
 BASE = """\
 cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, shaft: [10, 4]}
@@ -37,7 +38,7 @@ def recipe(body: str) -> Recipe:
 
 
 def sweep(body: str, base: str = BASE) -> Sweep:
-    found = recipe(base + body).sweep
+    found = recipe(base + body).of(Sweep)
     assert found
     return found
 
@@ -130,14 +131,13 @@ def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> Non
 )
 def test_any_number_of_the_cam_may_vary(cam: str, path: str) -> None:
     found = recipe(f"cam: {cam}\nsweep:\n  vary:\n    {path}: [1, 2.5]\n  rank: size")
-    assert found.sweep
-    assert found.sweep.vary == (Axis(path, values=(1.0, 2.5)),)
+    assert varied(found) == (Axis(path, values=(1.0, 2.5)),)
     assert "2.5" in with_values(found.text, {path: 2.5}).splitlines()[0]
 
 
 def test_whole_numbers_vary_by_a_list() -> None:
     body = "cam: {kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}}\nsweep: {rank: size, vary: {VARY}}"
-    found = recipe(body.replace("VARY", "cam.reuleaux.sides: [3, 5, 7]")).sweep
+    found = recipe(body.replace("VARY", "cam.reuleaux.sides: [3, 5, 7]")).of(Sweep)
     assert found
     assert found.vary == (Axis("cam.reuleaux.sides", values=(3.0, 5.0, 7.0)),)
     with pytest.raises(RecipeErrors) as caught:
@@ -376,7 +376,7 @@ def test_a_bound_on_the_number_of_axes() -> None:
 @pytest.mark.parametrize(("name", "figure"), FIGURES.items())
 def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None:
     needs = FIGURES[name].needs
-    if needs and needs not in HERE:
+    if needs not in HERE:
         return  # BASE has a linkage: see test_a_figure_that_a_linkage_has_not
     lines = BASE.splitlines(keepends=True)
     vary = "  vary: {cam.fourier.mean: [25]}\n"
@@ -384,7 +384,7 @@ def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None
         "dwell": "".join(line for line in lines if not line.startswith("dwell")),
         "linkage": "".join(line for line in lines if not line.startswith(("dwell", "linkage"))),
     }
-    section = NEEDS.get(needs, "")
+    section = needs.words
     remedy = f"{name} needs {section}; give {section}, or take another figure"
     for missing, base in bodies.items():
         for body, at in (
@@ -394,7 +394,7 @@ def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None
                 f"2:{14 + len(name)}: sweep.limits.{name}: {remedy}",
             ),
         ):
-            if needs in {"linkage", "dwell"} and (missing in (needs, "linkage")):
+            if (needs is OF_LINKAGE and missing == "linkage") or needs is OF_DWELL:
                 assert told(body, base) == [at]
             else:
                 assert sweep(body, base)
@@ -402,10 +402,10 @@ def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None
 
 
 @pytest.mark.parametrize(
-    "name", [name for name, one in FIGURES.items() if one.needs in {"follower", "roller", "swings"}]
+    "name", [name for name, one in FIGURES.items() if one.needs in (OF_FOLLOWER, OF_ROLLER, OF_SWING)]
 )
 def test_a_figure_that_a_linkage_has_not(name: str) -> None:
-    section = NEEDS[FIGURES[name].needs]
+    section = FIGURES[name].needs.words
     body = f"  vary: {{cam.fourier.mean: [25]}}\n  rank: {name}\n"
     assert told(body) == [f"2:9: sweep.rank: {name} needs {section}; give {section}, or take another figure"]
 
@@ -413,7 +413,7 @@ def test_a_figure_that_a_linkage_has_not(name: str) -> None:
 def test_a_sweep_may_stand_before_what_it_varies() -> None:
     top, _, last = BASE.partition("linkage:")
     body = "sweep: {vary: {linkage.rocker: [95]}, rank: dwell}\nlinkage:"
-    assert recipe(top + body + last.replace("sweep:\n", "")).sweep
+    assert recipe(top + body + last.replace("sweep:\n", "")).of(Sweep)
 
 
 @pytest.mark.parametrize(
@@ -435,4 +435,4 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
 )
 def test_fields_of_the_schema_are_known_by_their_paths(path: str, known: bool) -> None:
     kinds = {"cam": "support", "linkage": "four-bar"}
-    assert (field_at(RECIPE, path, kinds) is not None) == known
+    assert (field_at(recipe_table(), path, kinds) is not None) == known

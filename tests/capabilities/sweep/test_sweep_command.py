@@ -20,7 +20,7 @@ from support.places import TESTS
 from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.capabilities.sweep import command as sweep
-from camgeo.capabilities.sweep.search import search
+from camgeo.capabilities.sweep import search
 from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
 

@@ -23,14 +23,14 @@ from support.heavy import distributed
 from support.places import TESTS
 from support.sweepers import GRID, MEANS, Aside, ask, calls, hills, job, tree
 
-from camgeo.capabilities.sweep.search import engines
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.figures import figures
-from camgeo.capabilities.sweep.search.job import Job, VersionsError, result
-from camgeo.capabilities.sweep.search.plan import Axis, Plan
-from camgeo.capabilities.sweep.search.run import How, chunks_of, compute
-from camgeo.capabilities.sweep.search.search import search
-from camgeo.capabilities.sweep.search.store import decode
+from camgeo.capabilities.sweep import engines
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.figures import figures
+from camgeo.capabilities.sweep.job import Job, VersionsError, result
+from camgeo.capabilities.sweep.plan import Axis, Plan
+from camgeo.capabilities.sweep.run import How, chunks_of, compute
+from camgeo.capabilities.sweep.search import search
+from camgeo.capabilities.sweep.store import decode
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -42,9 +42,9 @@ RUN = """\
 import sys
 from pathlib import Path
 from support.sweepers import MEANS, ask
-from camgeo.capabilities.sweep.search import engines
-from camgeo.capabilities.sweep.search.run import How
-from camgeo.capabilities.sweep.search.search import search
+from camgeo.capabilities.sweep import engines
+from camgeo.capabilities.sweep.run import How
+from camgeo.capabilities.sweep.search import search
 if __name__ == "__main__":
     engines._TRIED = engines._PAYS = 0.0  # processes after the first chunk
     search(ask(sys.argv[1]), Path(sys.argv[2]), How(int(sys.argv[3])), MEANS)
@@ -167,7 +167,7 @@ def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalClust
 def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("camgeo.capabilities.sweep.search.job.__version__", "99.0")
+    monkeypatch.setattr("camgeo.capabilities.sweep.job.__version__", "99.0")
     how = How(2) if engine == "processes" else How(scheduler=cluster.scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
@@ -299,7 +299,7 @@ def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
 
 STARTING = """\
 import signal
-from camgeo.capabilities.sweep.search.engines import at_once
+from camgeo.capabilities.sweep.engines import at_once
 from test_sweep_engines import slowly
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, lambda *_: None)

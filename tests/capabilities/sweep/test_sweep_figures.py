@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,16 +12,18 @@ from support.cases import examples, few
 from support.sweepers import compute, evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.figures import REASONS, Evaluator
-from camgeo.capabilities.sweep.search.figures import figures as searched
-from camgeo.capabilities.sweep.search.linkages import Lengths, Support, angles, engine
-from camgeo.capabilities.sweep.search.rebuilt import recipe_with
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.figures import REASONS, Evaluator
+from camgeo.capabilities.sweep.figures import figures as searched
+from camgeo.capabilities.sweep.keys import swept as known
+from camgeo.capabilities.sweep.linkages import ENGINES, Lengths, Support, angles, engine
+from camgeo.capabilities.sweep.rebuilt import recipe_with
 from camgeo.measures.figures import of_design
+from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_LINKAGE
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.sweep import FIGURES
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.linkage import mechanism_of
+from kin.linkage import four_bar
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 
 CAM_2A = "p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25"
@@ -35,7 +36,8 @@ PATHS = {
     INVERTED: ("linkage.ground", "linkage.rocker"),
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
-OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs in {"", "linkage", "dwell", "face"})
+HERE = (NOTHING, OF_LINKAGE, OF_DWELL, OF_FACE)
+OF_LINKAGES = tuple(name for name, figure in known().items() if figure.needs in HERE)
 PIVOT = ("cam.shaft[0]", "cam.shaft[1]")
 
 
@@ -401,7 +403,7 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
 
 def test_screening_leaves_the_recipe_alone():
     one = swept("size: {at_most: 40}")
-    assert replace(one, sweep=None) == replace(swept(""), sweep=None)
+    assert one.without("sweep") == swept("").without("sweep")
 
 
 @pytest.mark.slow
@@ -436,3 +438,8 @@ def test_forces_of_a_rigid_train_are_ranked_by(figure):
         own = recipe.replace("cam.base_radius", base)
         exact = designed(own)
         assert value == of_design(own, exact, exact.checks, [figure])[figure].value
+
+
+def test_every_first_loop_has_an_engine():
+    loops = (one for one in vars(four_bar).values() if isinstance(one, type) and one.__module__ == four_bar.__name__)
+    assert set(ENGINES) == {loop for loop in loops if "margin" in vars(loop)}

@@ -56,7 +56,7 @@ def test_what_cannot_be_searched_is_told(tmp_path: Path, monkeypatch: pytest.Mon
         camgeo.search(camgeo.load(TEXT.partition("sweep")[0]), tmp_path)
     with pytest.raises(camgeo.CallError, match="jobs is a number of processes from 1, not 0"):
         camgeo.search(recipe, tmp_path, jobs=0)
-    monkeypatch.setattr("camgeo.capabilities.sweep.search.search.find_spec", lambda _: None)
+    monkeypatch.setattr("camgeo.capabilities.sweep.search.find_spec", lambda _: None)
     with pytest.raises(camgeo.SurroundingsError, match=r"the package distributed is missing: .*\[dask\]"):
         camgeo.search(recipe, tmp_path, scheduler="tcp://127.0.0.1:1")
     (tmp_path / "file").write_text("")

@@ -15,16 +15,16 @@ from hypothesis import strategies as st
 from support.heavy import parquet
 from support.sweepers import GRID, MEANS, ask, hills
 
-from camgeo.capabilities.sweep.search import gather as gathering
-from camgeo.capabilities.sweep.search import outputs
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.gather import KEPT, OUTSIDE, STUCK, Ranking, gather
-from camgeo.capabilities.sweep.search.pictures import draw_map
-from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
-from camgeo.capabilities.sweep.search.recipes import Best, curve_of, recipe_text
-from camgeo.capabilities.sweep.search.refine import PolishError
-from camgeo.capabilities.sweep.search.run import How
-from camgeo.capabilities.sweep.search.search import search
+from camgeo.capabilities.sweep import gather as gathering
+from camgeo.capabilities.sweep import outputs
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.gather import KEPT, OUTSIDE, STUCK, Ranking, gather
+from camgeo.capabilities.sweep.pictures import draw_map
+from camgeo.capabilities.sweep.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.recipes import Best, curve_of, recipe_text
+from camgeo.capabilities.sweep.refine import PolishError
+from camgeo.capabilities.sweep.run import How
+from camgeo.capabilities.sweep.search import search
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load, read
@@ -179,7 +179,7 @@ def test_the_best_are_whole_recipes_that_say_what_was_measured(swept: Path) -> N
         recipe = load(swept / f"best-{place}.yaml")
         x, y = GRID.values(index, index + 1)[0]
         assert recipe.name == f"four-bar-best-{place}"
-        assert recipe.sweep is None
+        assert not recipe.uses
         assert vars(recipe.cam)["shaft"] == (x, 8.5)
         assert replace(recipe.linkage.loop, rocker=9.0) == replace(ask().recipe.linkage.loop, rocker=9.0)
         assert recipe.linkage.loop.rocker == y

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.heavy import qmc
 
-from camgeo.capabilities.sweep.search.plan import GREATEST, MOST, SMALLEST, Axis, Plan, steps
+from camgeo.capabilities.sweep.plan import GREATEST, MOST, SMALLEST, Axis, Plan, steps
 
 AXES = (Axis("a", -1.0, 3.0), Axis("b", 5.0, 5.5), Axis("c", 0.0, 2.0, (0.0, 1.5, 2.0)))
 

@@ -10,10 +10,10 @@ from support.places import RECIPES
 from support.sweepers import evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.search import refine
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, recipe_with
-from camgeo.capabilities.sweep.search.refine import PolishError, output_error, polish
+from camgeo.capabilities.sweep import refine
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.rebuilt import mechanism_in, recipe_with
+from camgeo.capabilities.sweep.refine import PolishError, output_error, polish
 from camgeo.recipe.loading import load, load_text
 from camgeo.synthesis.linkage import mechanism_of
 

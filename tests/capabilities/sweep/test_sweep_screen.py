@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.capabilities.sweep.screen.certify import error_of
-from camgeo.capabilities.sweep.screen.errors import DEGREES
-from camgeo.capabilities.sweep.search.ask import EXACT, Ask
-from camgeo.capabilities.sweep.search.figures import REASONS, Evaluator, estimated
-from camgeo.capabilities.sweep.search.run import How
-from camgeo.capabilities.sweep.search.search import Means, search
+from camgeo.capabilities.sweep.ask import EXACT, Ask
+from camgeo.capabilities.sweep.certify import error_of
+from camgeo.capabilities.sweep.estimate_errors import DEGREES
+from camgeo.capabilities.sweep.figures import REASONS, Evaluator, estimated
+from camgeo.capabilities.sweep.keys import varied
+from camgeo.capabilities.sweep.run import How
+from camgeo.capabilities.sweep.search import Means, search
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 
@@ -230,7 +231,7 @@ def test_files_tell_words(tmp_path):
     assert rows[1][2:5] == ["45.0", "harmonic", "roller"]
     made = load(outcome.folder / "best-1.yaml")
     assert "rise: 20, over: 110, law: harmonic" in made.text
-    assert made.sweep is None
+    assert not made.uses
 
 
 def test_words_of_a_linkage():
@@ -239,7 +240,7 @@ def test_words_of_a_linkage():
     text += "sweep: {vary: {linkage.rocker: [105, 110], linkage.assembly: [crossed, open]}, rank: swing}\n"
     one = load_text(text, "a.yaml")
     values = Ask.of(one).plan.values(0, 4)
-    found = Evaluator.of(one, tuple(axis.path for axis in one.sweep.vary)).found(values).figures["swing"]
+    found = Evaluator.of(one, tuple(axis.path for axis in varied(one))).found(values).figures["swing"]
     for row, (rocker, word) in enumerate([(105, "crossed"), (105, "open"), (110, "crossed"), (110, "open")]):
         single = load_text(
             text.replace("105,", f"{rocker},", 1).replace("assembly: open", f"assembly: {word}"), "a.yaml"

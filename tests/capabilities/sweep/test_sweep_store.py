@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
-from camgeo.capabilities.sweep.search import job as jobs
-from camgeo.capabilities.sweep.search import store
-from camgeo.capabilities.sweep.search.ask import Ask
-from camgeo.capabilities.sweep.search.figures import Scene
-from camgeo.capabilities.sweep.search.gather import Ranking
-from camgeo.capabilities.sweep.search.job import Job, VersionsError, result
-from camgeo.capabilities.sweep.search.plan import Axis, Plan
-from camgeo.capabilities.sweep.search.run import How, chunks_of, compute, gathered
-from camgeo.capabilities.sweep.search.store import ChunkError, Chunks, decode, encode
+from camgeo.capabilities.sweep import job as jobs
+from camgeo.capabilities.sweep import store
+from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.figures import Scene
+from camgeo.capabilities.sweep.gather import Ranking
+from camgeo.capabilities.sweep.job import Job, VersionsError, result
+from camgeo.capabilities.sweep.plan import Axis, Plan
+from camgeo.capabilities.sweep.run import How, chunks_of, compute, gathered
+from camgeo.capabilities.sweep.store import ChunkError, Chunks, decode, encode
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load_text, read
 

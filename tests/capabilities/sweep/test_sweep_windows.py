@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.scanned import scanned
 
-from camgeo.capabilities.sweep.search.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
-from camgeo.capabilities.sweep.search.linkages import angles
-from camgeo.capabilities.sweep.search.windows import Samples, longest
+from camgeo.capabilities.sweep.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
+from camgeo.capabilities.sweep.linkages import angles
+from camgeo.capabilities.sweep.windows import Samples, longest
 from kin.numeric.longest_window import dwells
 
 TURN = 2 * math.pi

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.plan import Axis, Plan
+    from camgeo.capabilities.sweep.plan import Axis, Plan
     from camgeo.recipe.limits import Limit
 
     Floats: TypeAlias = NDArray[np.float64]

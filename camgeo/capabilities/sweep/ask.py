@@ -6,40 +6,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.sweep.search.figures import Evaluator, Scene, asked_of, estimated
-from camgeo.capabilities.sweep.search.gather import Ranking
-from camgeo.capabilities.sweep.search.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.figures import Evaluator, Scene, asked_of, estimated
+from camgeo.capabilities.sweep.gather import Ranking
+from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.capabilities.sweep.plan import Axis, Plan, steps
 from camgeo.recipe.export import Export
-from camgeo.recipe.figures import (
-    AT_SPEED,
-    CONTACT_TRAVEL,
-    ECCENTRICITY,
-    FACE_WIDTH,
-    FORCE_GREATEST,
-    FORCE_LEAST,
-    GUIDE_FORCE,
-    HOLLOW_RADIUS,
-    INERTIA,
-    JAM_MARGIN,
-    MASS,
-    MEAN_FORCE,
-    OF_PART,
-    ON_RETURN,
-    ON_RISE,
-    PEAKS,
-    PIVOT_CLEARANCE,
-    PRELOAD_GREATEST,
-    PRELOAD_LEAST,
-    PRESSURE,
-    ROLLER_SPEED,
-    TORQUE,
-    UNBALANCE,
-)
-from camgeo.recipe.keys import RECIPE
+from camgeo.recipe.figures import FIGURES, OF_GUIDE, OF_SPEED
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
-from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.errors import RecipeErrors, shown
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.yaml_source import join
@@ -48,15 +24,10 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from camgeo.capabilities.sweep.search.figures import FigureTable
-    from camgeo.capabilities.sweep.search.gather import Floats
-    from camgeo.recipe.sweep import Axis as Varied
-    from camgeo.recipe.sweep import Sweep
+    from camgeo.capabilities.sweep.figures import FigureTable
+    from camgeo.capabilities.sweep.gather import Floats
+    from camgeo.capabilities.sweep.keys import Axis as Varied
 
-# What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
-_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN, MASS, ECCENTRICITY, INERTIA, UNBALANCE)
-_DEAR += (PRELOAD_LEAST, PRELOAD_GREATEST, FORCE_LEAST, FORCE_GREATEST, TORQUE, PRESSURE, GUIDE_FORCE, MEAN_FORCE)
 EXACT = 100  # designs: of no more each is worked out, which takes seconds
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
@@ -83,7 +54,7 @@ class Ask:
     @staticmethod
     def of(recipe: Recipe) -> Ask:
         """Take the sweep of a recipe; raises RecipeErrors where it has none."""
-        sweep = recipe.sweep
+        sweep = recipe.of(Sweep)
         if sweep is None:
             raise recipe.error("sweep", "this recipe has no sweep", None, "add what to vary: `sweep: {vary: ...}`")
         axes = tuple(map(_axis, sweep.vary))
@@ -107,7 +78,7 @@ class Ask:
             return self._estimated
         if self.recipe.linkage is not None and Evaluator.of(self.recipe, self.paths).slow:
             return self.all_figures
-        return tuple(name for name in self.all_figures if name in self._asked or name not in _DEAR)
+        return tuple(name for name in self.all_figures if name in self._asked or not FIGURES[name].dear)
 
     @property
     def _asked(self) -> set[str]:
@@ -157,11 +128,12 @@ class Ask:
         It leaves out what has no bearing on them, so that a change of limits, ranking or files to export leaves what
         was computed as it is.
         """
-        timed = any(FIGURES[name].needs in {"speed", "guide"} for name in figures)
-        whole = any(FIGURES[name].needs in OF_PART for name in figures)
+        owners = {"sweep", *(FIGURES.owner(name) for name in figures)}
+        timed = any(FIGURES[name].needs in (OF_SPEED, OF_GUIDE) for name in figures)
+        whole = any(FIGURES[name].needs.part for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
-            self.recipe,
+            self.recipe.without(*(name for name in self.recipe.uses if name not in owners)).with_value(plain),
             name="",
             about="",
             part=self.recipe.part if whole else Part(),
@@ -169,7 +141,6 @@ class Ask:
             verify=Verify(1),
             dynamics=self.recipe.dynamics if timed else None,
             path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
-            sweep=plain,
         )
         return Scene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))
 
@@ -199,7 +170,7 @@ class Ask:
     def axis_unit(self, path: str) -> str:
         """Unit in which the recipe writes a field that is varied; empty for a plain number."""
         linkage = "" if self.recipe.linkage is None else self.recipe.linkage.kind
-        field = field_at(RECIPE, path, {"cam": self.recipe.cam.kind, "linkage": linkage})
+        field = field_at(recipe_table(), path, {"cam": self.recipe.cam.kind, "linkage": linkage})
         length = _LENGTH[self.recipe.units]
         if field is None:
             return ""

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.capabilities.sweep.screen.certify import slack
-from camgeo.capabilities.sweep.search.figures import DWELLS, Evaluator
-from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, recipe_with
+from camgeo.capabilities.sweep.certify import slack
+from camgeo.capabilities.sweep.figures import DWELLS, Evaluator
+from camgeo.capabilities.sweep.rebuilt import mechanism_in, recipe_with
 from camgeo.common.rounding import downward
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
@@ -26,7 +26,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.capabilities.sweep.search.ask import Ask
+    from camgeo.capabilities.sweep.ask import Ask
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
 
@@ -173,7 +173,7 @@ def _narrowed(recipe: Recipe, error: float) -> Recipe:
 
 def _unlimited(ask: Ask) -> Recipe:
     """The recipe with a sweep that computes all designs, whatever limits are broken."""
-    return replace(ask.recipe, sweep=replace(ask.sweep, limits=()))
+    return ask.recipe.with_value(replace(ask.sweep, limits=()))
 
 
 def _goal(ask: Ask, paths: Sequence[str], start: Array) -> _Goal:

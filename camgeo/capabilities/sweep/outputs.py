@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.gather import MOST_ROWS
-from camgeo.capabilities.sweep.search.pictures import draw_best, draw_map
-from camgeo.capabilities.sweep.search.recipes import curve_of, loaded, recipe_text
-from camgeo.capabilities.sweep.search.table import as_csv, as_parquet, columns, with_polished
+from camgeo.capabilities.sweep.gather import MOST_ROWS
+from camgeo.capabilities.sweep.keys import swept
+from camgeo.capabilities.sweep.pictures import draw_best, draw_map
+from camgeo.capabilities.sweep.recipes import curve_of, loaded, recipe_text
+from camgeo.capabilities.sweep.table import as_csv, as_parquet, columns, with_polished
 from camgeo.files.errors import install
-from camgeo.recipe.sweep import FIGURES
+from camgeo.recipe.figures import FIGURES, OF_DWELL
 from camgeo.report.document import encoded
 from camgeo.report.listed import listed
 from camgeo.version import __version__
@@ -21,10 +22,10 @@ from kin.numeric.records import dataclass, field
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.capabilities.sweep.search.ask import Ask, Unit
-    from camgeo.capabilities.sweep.search.gather import Certificate, Gathered, Nearest
-    from camgeo.capabilities.sweep.search.plan import Axis
-    from camgeo.capabilities.sweep.search.recipes import Best
+    from camgeo.capabilities.sweep.ask import Ask, Unit
+    from camgeo.capabilities.sweep.gather import Certificate, Gathered, Nearest
+    from camgeo.capabilities.sweep.plan import Axis
+    from camgeo.capabilities.sweep.recipes import Best
     from camgeo.checks.remedies import Entry
 
 REPORT = "sweep.json"
@@ -99,7 +100,7 @@ def _map(ask: Ask, designs: Gathered, best: Sequence[Best]) -> list[bytes]:
     flat = len(paths) > 1
     counts = designs.counts
     notes = f"{counts.kept:,} of {counts.computed:,} designs kept"
-    if FIGURES[rank].needs == "dwell":
+    if FIGURES[rank].needs is OF_DWELL:
         notes += f"; band of {_band(ask)}"
     if len(paths) > 2:
         notes += f"; each cell shows the best over {_and(paths[2:])}"
@@ -147,7 +148,7 @@ def _curves(ask: Ask, best: Sequence[Best], files: dict[str, bytes]) -> list[byt
 
 def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
     """What was asked and what came of it, figures in the recipe's units."""
-    sweep, counts, units = ask.sweep, designs.counts, ask.units(FIGURES)
+    sweep, counts, units = ask.sweep, designs.counts, ask.units(swept())
     bounds = {
         limit.figure: {
             name: value / units[limit.figure].divisor
@@ -176,7 +177,7 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
         },
         "figures": {
             name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in designs.figures}
-            for name in FIGURES
+            for name in swept()
             if name in designs.figures or any(name in design.figures for design in best)
         },
         "counts": {
@@ -208,7 +209,8 @@ def _screen(ask: Ask, certificate: Certificate | None) -> Entry:
     """Whether figures are estimates, and if so what was worked out exactly and what estimates may be off by."""
     if certificate is None:
         return {"used": False, "why": ask.unscreened}
-    from camgeo.capabilities.sweep.screen.errors import DEGREES, DESIGNS, ERRORS
+    from camgeo.capabilities.sweep.estimate_errors import DESIGNS
+    from camgeo.capabilities.sweep.screen import estimates
 
     return {
         "used": True,
@@ -217,8 +219,8 @@ def _screen(ask: Ask, certificate: Certificate | None) -> Entry:
         "fell": certificate.fell,
         "greatest_error": {
             name: {
-                "unit": "deg" if name in DEGREES else "share of the value",
-                f"of {DESIGNS} random designs": ERRORS.get(name),
+                "unit": "deg" if estimates()[name].in_degrees else "share of the value",
+                f"of {DESIGNS} random designs": estimates()[name].error,
                 "of the designs worked out here": off,
             }
             for name, off in certificate.off.items()

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.sweep.screen.certify import certified, slack
-from camgeo.capabilities.sweep.search.engines import spread
-from camgeo.capabilities.sweep.search.job import Job
-from camgeo.capabilities.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
-from camgeo.capabilities.sweep.search.recipes import Best, recipe_text
-from camgeo.capabilities.sweep.search.refine import PolishError
-from camgeo.capabilities.sweep.search.run import chunks_of, compute, gathered
+from camgeo.capabilities.sweep.certify import certified, slack
+from camgeo.capabilities.sweep.engines import spread
+from camgeo.capabilities.sweep.job import Job
+from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, outputs
+from camgeo.capabilities.sweep.recipes import Best, recipe_text
+from camgeo.capabilities.sweep.refine import PolishError
+from camgeo.capabilities.sweep.run import chunks_of, compute, gathered
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
 from kin.numeric.records import dataclass, replace
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.gather import Floats, Gathered
-    from camgeo.capabilities.sweep.search.job import Compute
-    from camgeo.capabilities.sweep.search.run import How, Listener, Work
+    from camgeo.capabilities.sweep.ask import Ask
+    from camgeo.capabilities.sweep.gather import Floats, Gathered
+    from camgeo.capabilities.sweep.job import Compute
+    from camgeo.capabilities.sweep.run import How, Listener, Work
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.cams import EDGE
+from camgeo.capabilities.sweep.cams import EDGE
 
 if TYPE_CHECKING:
     from collections.abc import Callable

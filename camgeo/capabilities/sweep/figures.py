@@ -2,8 +2,8 @@
 
 Designs that differ in the place of the shaft, the lengths of a linkage and the harmonics of a cam are computed
 together, in blocks that stay in the cache; other fields of a cam cost one evaluation of its lift for each distinct cam.
-Dyads, and recipes without a linkage, are computed design by design (`rebuilt.py`). All is sampled at the recipe's
-`angles`, a multiple of 4, and rounded so that it does not depend on which designs are computed together.
+Dyads, and recipes without a linkage, are computed one by one (`rebuilt`). All is sampled at the recipe's `angles`,
+a multiple of 4, and rounded so that it does not depend on which designs are computed together.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.capabilities.sweep.search import rebuilt
-from camgeo.capabilities.sweep.search.cams import BINDS, BROKEN, FINE, IMPOSSIBLE, REVERSES, Cams
-from camgeo.capabilities.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
-from camgeo.capabilities.sweep.search.gather import REASON
-from camgeo.capabilities.sweep.search.linkages import Lengths, angles, engine
-from camgeo.capabilities.sweep.search.windows import Samples, longest
-from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, NEEDS, RADIUS, SIZE, there
+from camgeo.capabilities.sweep import rebuilt
+from camgeo.capabilities.sweep.cams import BINDS, BROKEN, FINE, IMPOSSIBLE, REVERSES, Cams
+from camgeo.capabilities.sweep.ends import Ends, cell_bounds, ends, greatest, least, lengths
+from camgeo.capabilities.sweep.gather import REASON
+from camgeo.capabilities.sweep.keys import Sweep, swept, varied
+from camgeo.capabilities.sweep.linkages import Lengths, angles, engine
+from camgeo.capabilities.sweep.windows import Samples, longest
+from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, RADIUS, SIZE
 from camgeo.recipe.linkage import output_slides
-from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.errors import RecipeErrors
 from kin.linkage.loop import side_of
 from kin.numeric.records import dataclass, full_text, replace
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import Cam
-    from camgeo.capabilities.sweep.screen.screen import Screen
+    from camgeo.capabilities.sweep.screen import Screen
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from kin.linkage.four_bar import Linkage
@@ -76,26 +76,25 @@ class Scene:
     @property
     def paths(self) -> tuple[str, ...]:
         """The fields that vary."""
-        return tuple(axis.path for axis in self.recipe.sweep.vary) if self.recipe.sweep else ()
+        return tuple(axis.path for axis in varied(self.recipe))
 
 
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
-    given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
-    given |= {path for path in recipe.marks if path.partition(".")[0] == "dynamics"}
+    given = {path for path in recipe.marks if path.partition(".")[0] != "part"}
     if recipe.part.density is not None and recipe.linkage is None:
         given.add("part.density")
     if recipe.part.thickness is not None:
         given.add("part.thickness")
-    given |= {NEEDS["wanted"], NEEDS["stiff"]}.intersection(recipe.marks)
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
+    offers = recipe.cam.arrangement.offers
+    return tuple(name for name, figure in swept().items() if figure.needs.there(offers, given))
 
 
 def estimated(recipe: Recipe) -> tuple[str, ...]:
     """Names of those of a cam without a linkage that can be estimated."""
-    from camgeo.capabilities.sweep.screen.screen import FIGURES as KNOWN
+    from camgeo.capabilities.sweep.screen import estimates
 
-    return tuple(name for name in asked_of(recipe) if name in KNOWN)
+    return tuple(name for name in asked_of(recipe) if name in estimates())
 
 
 class _Motion(Protocol):
@@ -146,7 +145,7 @@ class Evaluator:
         of 4. Cams without a linkage are estimated where they are `screened` and can be. Raises ValueError for a path at
         which no number stands.
         """
-        sweep = recipe.sweep
+        sweep = recipe.of(Sweep)
         limits = sweep.limits if sweep else ()
         wanted = figures or (estimated(recipe) if screened and recipe.linkage is None else asked_of(recipe))
         wanted = tuple(dict.fromkeys((*wanted, *(limit.figure for limit in limits))))
@@ -198,7 +197,7 @@ class Evaluator:
     @cached_property
     def screen(self) -> Screen | str:
         """What estimates figures of cams without a linkage, or why nothing does; of words, with those of the recipe."""
-        from camgeo.capabilities.sweep.screen.screen import Screen
+        from camgeo.capabilities.sweep.screen import Screen
 
         if self.worded:
             return replace(self, paths=tuple(np.delete(self.paths, self.worded).tolist())).screen

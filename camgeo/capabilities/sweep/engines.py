@@ -11,14 +11,14 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from camgeo.capabilities.sweep.search.job import VersionsError, result, versions
+from camgeo.capabilities.sweep.job import VersionsError, result, versions
 from camgeo.common import workers
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.search.job import Job
+    from camgeo.capabilities.sweep.job import Job
 
 Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 

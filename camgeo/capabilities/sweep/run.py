@@ -10,10 +10,10 @@ import time
 from contextlib import closing
 from typing import TYPE_CHECKING, TypeAlias
 
-from camgeo.capabilities.sweep.search import engines
-from camgeo.capabilities.sweep.search.gather import gather
-from camgeo.capabilities.sweep.search.job import Job, result
-from camgeo.capabilities.sweep.search.store import ChunkError, Chunks
+from camgeo.capabilities.sweep import engines
+from camgeo.capabilities.sweep.gather import gather
+from camgeo.capabilities.sweep.job import Job, result
+from camgeo.capabilities.sweep.store import ChunkError, Chunks
 from camgeo.common import workers
 from kin.numeric.records import dataclass
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.gather import Gathered, Ranking
+    from camgeo.capabilities.sweep.gather import Gathered, Ranking
     from camgeo.recipe.limits import Limit
 
 # hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took

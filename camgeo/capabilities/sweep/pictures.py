@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.gather import KEPT, NONE, OUTSIDE, STUCK
+from camgeo.capabilities.sweep.gather import KEPT, NONE, OUTSIDE, STUCK
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.gather import Cells
+    from camgeo.capabilities.sweep.gather import Cells
 
     Floats: TypeAlias = NDArray[np.float64]
 

@@ -1,20 +1,22 @@
 """Figures of many cams at once, without a linkage: estimates, from which a sweep chooses what it works out exactly.
 
 An extreme between two samples is that of the parabola through three of them. What the estimates may be off by was
-measured (`ERRORS`, `benchmarks/sweep.py screen`); whatever a sweep keeps is certified by the exact design.
+measured (`Estimated.error`, `benchmarks/sweep.py screen`); whatever a sweep keeps is certified by the exact design.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import TYPE_CHECKING
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sweep.screen.contours import MAKERS, plate
-from camgeo.capabilities.sweep.screen.samples import Template, shot_of
-from camgeo.capabilities.sweep.search.cams import FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.capabilities.sweep.cams import FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.capabilities.sweep.contours import MAKERS, plate
+from camgeo.capabilities.sweep.estimate_errors import DEGREES, ERRORS
+from camgeo.capabilities.sweep.keys import varied
+from camgeo.capabilities.sweep.samples import Template, shot_of
 from camgeo.recipe.figures import (
     AT_SPEED,
     BASE_RADIUS,
@@ -35,6 +37,7 @@ from camgeo.recipe.figures import (
     SIZE,
 )
 from camgeo.recipe.loading import load_text
+from camgeo.registry import registry
 from camgeo.schema.errors import RecipeErrors
 from kin.law.programme import IntentError
 from kin.numeric.angles import TURN
@@ -43,9 +46,9 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.capabilities.sweep.screen.contours import Contours
-    from camgeo.capabilities.sweep.screen.samples import Sampled, Shot
-    from camgeo.capabilities.sweep.search.cams import Codes
+    from camgeo.capabilities.sweep.cams import Codes
+    from camgeo.capabilities.sweep.contours import Contours
+    from camgeo.capabilities.sweep.samples import Sampled, Shot
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
@@ -127,6 +130,16 @@ class Cams:
         return np.sqrt(self.most(self.contours.distance) if self.side > 0 else self.least(self.contours.distance))
 
     @property
+    def slope(self) -> Array:
+        """Tangent of the pressure angle, above 0 on the rise, (m, n)."""
+        return self.contours.slope
+
+    @property
+    def lean(self) -> Array | None:
+        """Tangent of the pressure angle at rest, (m,); None without a stem."""
+        return None if self.contours.lean is None else self.contours.lean[:, 0]
+
+    @property
     def contact(self) -> Array:
         """Where a face is touched, mm (m, n)."""
         rows = self.contours.contact
@@ -162,7 +175,7 @@ def _degrees(slope: Array) -> Array:
     return np.degrees(np.arctan(slope))
 
 
-FIGURES: dict[str, Callable[[Cams], Array]] = {
+_CORE: dict[str, Callable[[Cams], Array]] = {
     "swing": lambda cams: cams.scale * (cams.most(cams.sampled.rows[0]) - cams.least(cams.sampled.rows[0])),
     PEAKS[0]: lambda cams: cams.peak(1),
     PEAKS[1]: lambda cams: cams.peak(2),
@@ -186,7 +199,24 @@ FIGURES: dict[str, Callable[[Cams], Array]] = {
     OFFSET: lambda cams: cams.size("offset"),
     PIVOT: lambda cams: cams.size("pivot"),
 }
-"""How a figure is estimated, in mm and degrees (m,)."""
+"""How a figure of the core is estimated, in mm and degrees (m,)."""
+
+
+class Estimated(NamedTuple):
+    """How a figure is estimated, and the greatest error seen, as `camgeo.registry.capability.Estimate` has them."""
+
+    of: Callable[[Cams], Array]
+    error: float | None
+    in_degrees: bool
+
+
+@cache
+def estimates() -> dict[str, Estimated]:
+    """Give every figure that is estimated, those of capabilities behind the core's."""
+    found = {name: Estimated(of, ERRORS.get(name), name in DEGREES) for name, of in _CORE.items()}
+    for capability in registry.in_order(registry.recorded()):
+        found |= {name: Estimated(*estimate) for name, estimate in capability.estimates().items()}
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +234,7 @@ class Screen:
         """Prepare for a recipe's sweep; the reason in words where its designs cannot be screened."""
         if recipe.linkage is not None:
             return "it has a linkage"
-        if unknown := [name for name in names if name not in FIGURES]:
+        if unknown := [name for name in names if name not in estimates()]:
             return f"{unknown[0]} is not sampled"
         if recipe.cam.undercut == "trim":
             return "undercut is trimmed"
@@ -216,7 +246,7 @@ class Screen:
             except (RecipeErrors, IntentError):
                 return None
 
-        ranges = {axis.path: axis for axis in (recipe.sweep.vary if recipe.sweep else ())}
+        ranges = {axis.path: axis for axis in varied(recipe)}
         ends = [(ranges[path].values or (ranges[path].low, ranges[path].high)) for path in paths]
         try:
             exact = recipe.cam.exact()
@@ -256,5 +286,5 @@ class Screen:
                     code[~cams.contours.sound] = IMPOSSIBLE
                     faults[rows] = code
                     for name in self.names:
-                        figures[name][rows] = np.where(code == FINE, FIGURES[name](cams), np.nan)
+                        figures[name][rows] = np.where(code == FINE, estimates()[name].of(cams), np.nan)
         return figures, faults

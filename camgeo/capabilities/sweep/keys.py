@@ -6,9 +6,8 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.recipe.figures import FIGURES as EVERY
-from camgeo.recipe.figures import NEEDS, there
-from camgeo.recipe.limits import FORM, Limit, build_limits
+from camgeo.recipe.figures import FIGURES, Figure
+from camgeo.recipe.limits import Limit, build_limits, limits_form
 from camgeo.schema.errors import shown, suggestion
 from camgeo.schema.fields import (
     MOST_AXES,
@@ -26,6 +25,7 @@ from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entr
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -66,8 +66,15 @@ class Sweep:
     refine: bool
 
 
-FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
-"""The figures that a sweep knows."""
+def varied(recipe: Recipe) -> tuple[Axis, ...]:
+    """Give what the sweep of a recipe varies; nothing without one."""
+    sweep = recipe.of(Sweep)
+    return () if sweep is None else sweep.vary
+
+
+def swept() -> dict[str, Figure]:
+    """Give the figures that a sweep knows, by name."""
+    return {name: figure for name, figure in FIGURES.items() if figure.swept}
 
 
 def _range_of(unit: Kind | None) -> Table:
@@ -157,50 +164,77 @@ _VARY = Form(
 _AXIS = Form("a range", "a range such as {from: 95, to: 110, steps: 16}, or a list of values", read_vary, _vary_schema)
 
 
-SWEEP = (
-    Field(
-        "vary",
-        Kind.OWN,
-        "numbers and words of cam and linkage by their paths, each with its range or values",
-        required=True,
-        form=_VARY,
-    ),
-    Field("method", Kind.CHOICE, "how the designs are chosen", default="grid", choices=("grid", "random", "sobol")),
-    Field("count", Kind.INTEGER, "number of designs; not for a grid", at_least=1, at_most=MOST_DESIGNS),
-    Field("seed", Kind.INTEGER, "seed of random and sobol", default="0", at_least=0, at_most=2**32 - 1),
-    Field(
-        "limits",
-        Kind.OWN,
-        "figures that a design must keep within bounds",
-        default="none",
-        choices=tuple(FIGURES),
-        form=FORM,
-    ),
-    Field(
-        "rank",
-        Kind.CHOICE,
-        "figure by which the designs are ranked",
-        required=True,
-        choices=tuple(FIGURES),
-    ),
-    Field("keep", Kind.INTEGER, "number of best designs that become recipes", default="10", at_least=1, at_most=1000),
-    Field(
-        "angles",
-        Kind.INTEGER,
-        "number of angles at which a design is sampled",
-        default="360",
-        at_least=24,
-        at_most=36_000,
-    ),
-    Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
-)
+def fields() -> tuple[Field, ...]:
+    """Give the key `sweep` of a recipe."""
+    return (
+        Field(
+            "sweep",
+            Kind.TABLE,
+            "a search among designs",
+            after="dwell",
+            table=Table(
+                (
+                    Field(
+                        "vary",
+                        Kind.OWN,
+                        "numbers and words of cam and linkage by their paths, each with its range or values",
+                        required=True,
+                        form=_VARY,
+                    ),
+                    Field(
+                        "method",
+                        Kind.CHOICE,
+                        "how the designs are chosen",
+                        default="grid",
+                        choices=("grid", "random", "sobol"),
+                    ),
+                    Field("count", Kind.INTEGER, "number of designs; not for a grid", at_least=1, at_most=MOST_DESIGNS),
+                    Field("seed", Kind.INTEGER, "seed of random and sobol", default="0", at_least=0, at_most=2**32 - 1),
+                    Field(
+                        "limits",
+                        Kind.OWN,
+                        "figures that a design must keep within bounds",
+                        default="none",
+                        form=limits_form(swept=True),
+                    ),
+                    Field(
+                        "rank",
+                        Kind.CHOICE,
+                        "figure by which the designs are ranked",
+                        required=True,
+                        choices=tuple(swept()),
+                    ),
+                    Field(
+                        "keep",
+                        Kind.INTEGER,
+                        "number of best designs that become recipes",
+                        default="10",
+                        at_least=1,
+                        at_most=1000,
+                    ),
+                    Field(
+                        "angles",
+                        Kind.INTEGER,
+                        "number of angles at which a design is sampled",
+                        default="360",
+                        at_least=24,
+                        at_most=36_000,
+                    ),
+                    Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
+                )
+            ),
+        ),
+    )
 
 
 _VARIED = ("cam.", "linkage.")  # what figures depend on
 
 
-def check_sweep(sweep: Values, reader: Reader) -> None:
-    """Note the faults of a sweep that was read."""
+def check_sweep(values: Values, reader: Reader) -> None:
+    """Note the faults of the sweep of a recipe, where there is one that was read."""
+    sweep: Values | None = values.get("sweep")
+    if sweep is None:
+        return
     _figures(sweep, reader)
     axes: list[Values] = sweep.get("vary", [])
     design = [path for path in reader.numbers if path.startswith(_VARIED)]
@@ -238,9 +272,9 @@ def _figures(sweep: Values, reader: Reader) -> None:
     given = set(reader.marks) - ({"part.density"} if "linkage" in reader.marks else set())  # designs are not weighed
     for path, name in asked:
         needs = FIGURES[name].needs
-        if not there(needs, reader.offers, given):
-            remedy = f"give {NEEDS[needs]}, or take another figure"
-            reader.fault_at(path, f"{name} needs {NEEDS[needs]}", None, remedy)
+        if not needs.there(reader.offers, given):
+            remedy = f"give {needs.words}, or take another figure"
+            reader.fault_at(path, f"{name} needs {needs.words}", None, remedy)
 
 
 def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
@@ -331,8 +365,11 @@ KEEP = 10  # designs of a sweep
 SAMPLES = 360  # angles at which a sweep looks at a design
 
 
-def build_sweep(sweep: Values) -> Sweep:
-    """Make the sweep of values in which there is no fault."""
+def build_sweep(values: Values) -> Sweep | None:
+    """Make the sweep of a recipe's values in which there is no fault, where there is one."""
+    sweep: Values | None = values.get("sweep")
+    if sweep is None:
+        return None
     return Sweep(
         vary=tuple(map(_range, sweep["vary"])),
         method=sweep.get("method", "grid"),

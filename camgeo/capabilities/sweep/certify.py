@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sweep.screen.errors import DEGREES, ERRORS
-from camgeo.capabilities.sweep.search.figures import REASONS
-from camgeo.capabilities.sweep.search.gather import Certificate, Nearest
+from camgeo.capabilities.sweep.figures import REASONS
+from camgeo.capabilities.sweep.gather import Certificate, Nearest
+from camgeo.capabilities.sweep.screen import estimates
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.search.ask import Ask
-    from camgeo.capabilities.sweep.search.gather import Gathered
+    from camgeo.capabilities.sweep.ask import Ask
+    from camgeo.capabilities.sweep.gather import Gathered
     from camgeo.recipe.limits import Limit
     from kin.numeric.arrays import Array, Indices, Mask
 
@@ -35,7 +35,11 @@ class Exact(NamedTuple):
 
 def _room(name: str, value: float) -> float:
     """By how much an estimate of a figure near a value may be off."""
-    return _ROOM * ERRORS.get(name, 0.0) * (1.0 if name in DEGREES else abs(value))
+    estimate = estimates().get(name)
+    error = None if estimate is None else estimate.error
+    if estimate is None or error is None:
+        return 0.0
+    return _ROOM * error * (1.0 if estimate.in_degrees else abs(value))
 
 
 def slack(limit: Limit) -> float:
@@ -47,7 +51,7 @@ def error_of(name: str, estimate: float, exact: float) -> float:
     """By how much an estimate is off: in degrees of an angle, else as a share of the value."""
     if estimate == exact or np.isnan(estimate):
         return 0.0
-    return abs(estimate - exact) / (1.0 if name in DEGREES else max(abs(exact), 1e-300))
+    return abs(estimate - exact) / (1.0 if estimates()[name].in_degrees else max(abs(exact), 1e-300))
 
 
 def certified(

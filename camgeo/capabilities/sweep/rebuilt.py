@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.capabilities.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
-from camgeo.capabilities.sweep.search.linkages import angles
+from camgeo.capabilities.sweep.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.capabilities.sweep.keys import varied
+from camgeo.capabilities.sweep.linkages import angles
 from camgeo.checks.declared import BENT, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
-from camgeo.recipe.figures import FIGURES, OF_PART
+from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
@@ -32,7 +33,7 @@ _ROUND = 720  # angles at which faces are held against the shaft
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What `LoopArrays` (`linkages.py`) knows of m mechanisms at n relative angles, (m, n) each."""
+    """What `LoopArrays` (`linkages`) knows of m mechanisms at n relative angles, (m, n) each."""
 
     output: Array
     rate: Array
@@ -50,7 +51,7 @@ class Rows:
 
 def words_of(recipe: Recipe) -> dict[str, tuple[str, ...]]:
     """The words that a recipe's sweep varies, by their paths."""
-    return {axis.path: axis.words for axis in recipe.sweep.vary if axis.words} if recipe.sweep else {}
+    return {axis.path: axis.words for axis in varied(recipe) if axis.words}
 
 
 def text_with(recipe: Recipe, values: Mapping[str, float]) -> str:
@@ -75,7 +76,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
     from camgeo.measures.figures import of_design
     from camgeo.synthesis.design import designed
 
-    m, whole = len(values), any(FIGURES[name].needs in OF_PART for name in names)
+    m, whole = len(values), any(FIGURES[name].needs.part for name in names)
     figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.pictures import Curve
-from camgeo.capabilities.sweep.search.rebuilt import mechanism_in, text_with
+from camgeo.capabilities.sweep.pictures import Curve
+from camgeo.capabilities.sweep.rebuilt import mechanism_in, text_with
 from camgeo.recipe.loading import read
 from camgeo.schema.change import changed
 from camgeo.schema.edit import without
@@ -20,7 +20,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.capabilities.sweep.search.ask import Ask
+    from camgeo.capabilities.sweep.ask import Ask
     from camgeo.recipe.recipe import Recipe
 
 _POINTS = 720  # of a curve, over a turn

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.gather import MOST_ROWS
+from camgeo.capabilities.sweep.gather import MOST_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.ask import Unit
-    from camgeo.capabilities.sweep.search.gather import Gathered, Ranking
-    from camgeo.capabilities.sweep.search.plan import Axis, Plan
-    from camgeo.capabilities.sweep.search.recipes import Best
+    from camgeo.capabilities.sweep.ask import Unit
+    from camgeo.capabilities.sweep.gather import Gathered, Ranking
+    from camgeo.capabilities.sweep.plan import Axis, Plan
+    from camgeo.capabilities.sweep.recipes import Best
 
     Marks: TypeAlias = dict[str, NDArray[np.bool_]]
     Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64] | NDArray[np.str_]]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.plan import Plan
+    from camgeo.capabilities.sweep.plan import Plan
 
 _MAGIC = b"camgeo sweep chunk 1\n"
 _LEFT_OVER = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.cams.flat_faced import is_constant_breadth
-from camgeo.capabilities.sweep.search.ends import least
-from camgeo.capabilities.sweep.search.linkages import Support, angles
+from camgeo.capabilities.sweep.ends import least
+from camgeo.capabilities.sweep.linkages import Support, angles
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import dataclass, replace

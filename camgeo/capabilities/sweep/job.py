@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.sweep.search.store import encode
+from camgeo.capabilities.sweep.store import encode
 from camgeo.version import __version__
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -17,7 +17,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.search.plan import Plan
+    from camgeo.capabilities.sweep.plan import Plan
 
 REVISION = 3  # raised with every change of what a figure comes to, as the version is with every release
 

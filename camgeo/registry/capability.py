@@ -1,0 +1,195 @@
+"""The contract between the core and a capability: all that the core asks of one, each by its name in the record.
+
+A capability is a folder of `camgeo/capabilities`: its `__init__` holds a `Label`, its module `record` one `Capability`,
+named `CAPABILITY`. What is left out of the record is nothing. The types below stand above this module, for which alone
+imports for types run upwards. Functions import what they need when they are called: a record is read with the recipe.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from camgeo.cams.family import ExactCam
+    from camgeo.cams.surface import Surface
+    from camgeo.checks.declared import Declared
+    from camgeo.common.clock import Clock
+    from camgeo.curve.curve import Curve
+    from camgeo.measures.file_result import FileResult
+    from camgeo.measures.measured import Measured
+    from camgeo.measures.remarks import Remark
+    from camgeo.recipe.figures import Figure
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.starter import Starter
+    from camgeo.report.page.curves import Plot
+    from camgeo.schema.fields import Field
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.synthesis.design import Design
+    from kin.judge.check import Check
+    from kin.numeric.arrays import Array
+
+EMPTY: Mapping[str, Any] = MappingProxyType({})
+
+
+class Results(NamedTuple):
+    """What a capability makes of a run: sections of the report by their keys, checks, and figures of runs of its own.
+
+    `runs` has for each figure that is `of` a run its values by the file that drives it, None for the intended motion.
+    """
+
+    sections: Mapping[str, Any] = EMPTY
+    checks: Sequence[Check] = ()
+    runs: Mapping[str, Mapping[str | None, Measured]] = EMPTY
+
+
+class SampledCams(Protocol):
+    """Cams of m designs, each sampled at n places, of which a sweep estimates figures (m,) in mm and degrees."""
+
+    @property
+    def recipe(self) -> Recipe:
+        """The recipe whose cam varies."""
+
+    def most(self, rows: Array) -> Array:
+        """Greatest value of rows (m, n) over the turn, (m,)."""
+
+    def peak(self, order: int, speed: float = 1.0) -> Array:
+        """Greatest derivative of the motion by the shaft angle, or by time at a speed in rad/s, (m,)."""
+
+    @property
+    def slope(self) -> Array:
+        """Tangent of the pressure angle, above 0 on the rise, (m, n)."""
+
+    @property
+    def lean(self) -> Array | None:
+        """Tangent of the pressure angle at rest, (m,); None without a stem."""
+
+
+class Estimate(NamedTuple):
+    """How a figure is estimated: `of` gives it (m,), `error` is the greatest seen, in degrees or as a share of it.
+
+    An estimate without error, None, is exact.
+    """
+
+    of: Callable[[SampledCams], Array]
+    error: float | None = None
+    in_degrees: bool = False
+
+
+# --- what a record holds where it leaves a function out ---------------------------------------------------------------
+
+
+def no_fields() -> Sequence[Field]:
+    """Give no keys."""
+    return ()
+
+
+def no_fault(_values: Values, _reader: Reader, /) -> None:
+    """Note nothing."""
+
+
+def no_value(_values: Values, /) -> object | None:
+    """Make nothing."""
+    return None
+
+
+def no_speed(_recipe: Recipe, /) -> float | None:
+    """Give no speed."""
+    return None
+
+
+def no_starters() -> Mapping[str, Starter]:
+    """Give no starters."""
+    return EMPTY
+
+
+def no_declarations() -> Sequence[Declared]:
+    """Declare no checks."""
+    return ()
+
+
+def no_exact_checks(
+    _recipe: Recipe, _exact: ExactCam, _contours: Sequence[tuple[Surface, Curve]], /
+) -> Sequence[Check]:
+    """Make no checks."""
+    return ()
+
+
+def no_results(_recipe: Recipe, _design: Design, _files: Sequence[FileResult], _clock: Clock, /) -> Results:
+    """Examine nothing."""
+    return Results()
+
+
+def no_figures(
+    _recipe: Recipe, _design: Design, _names: Sequence[str], _speeds: Mapping[str, float], /
+) -> Mapping[str, Measured]:
+    """Measure nothing."""
+    return EMPTY
+
+
+def no_panel(_report: dict[str, Any], /) -> str:
+    """Show nothing."""
+    return ""
+
+
+def no_plots(_recipe: Recipe, _design: Design, /) -> Sequence[Plot]:
+    """Plot nothing."""
+    return ()
+
+
+def no_estimates() -> Mapping[str, Estimate]:
+    """Estimate nothing."""
+    return EMPTY
+
+
+# --- the record -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Capability:
+    """Everything that a capability adds. Lengths are mm, angles radians, figures and checks in mm and degrees.
+
+    Of the recipe:
+
+    fields    keys of the top level, each with the core's key behind which it stands as `after`
+    below     keys of another table, by the table's path such as `part`; they are taken out before that table is made
+    check     notes all faults between its keys and others: `reader.fault_at(path, problem, value, remedy)`
+    build     makes of the values in which there is no fault what `recipe.of(Class)` gives; None for nothing
+    speed     turns a minute of the shaft, where a recipe gives it
+    starters  recipes for `camgeo new`, by name
+
+    Of figures and checks:
+
+    figures   by name, as recipes limit them and sweeps rank by them
+    measure   figures `of` the design: (recipe, design, names, speeds of limits, turns a minute, by figure)
+    estimates figures of many cams at once for a sweep, by name
+    checks    declarations of all its checks; every check that it makes is one of them
+    exact     checks that need no file: (recipe, exact cam, each surface with its contour)
+    examine   checks, sections of the report and figures of runs, when all files were judged
+
+    Of what is shown:
+
+    remarks   by the core's group of remarks behind which they stand, see `remarks_of`: (recipe, design) -> remarks
+    panel     HTML on the page, from the report
+    plots     on the page, over a turn
+    """
+
+    fields: Callable[[], Sequence[Field]] = no_fields
+    below: Mapping[str, Sequence[Field]] = EMPTY
+    check: Callable[[Values, Reader], None] = no_fault
+    build: Callable[[Values], object | None] = no_value
+    speed: Callable[[Recipe], float | None] = no_speed
+    starters: Callable[[], Mapping[str, Starter]] = no_starters
+    figures: Mapping[str, Figure] = EMPTY
+    measure: Callable[[Recipe, Design, Sequence[str], Mapping[str, float]], Mapping[str, Measured]] = no_figures
+    estimates: Callable[[], Mapping[str, Estimate]] = no_estimates
+    checks: Callable[[], Sequence[Declared]] = no_declarations
+    exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = no_exact_checks
+    examine: Callable[[Recipe, Design, Sequence[FileResult], Clock], Results] = no_results
+    remarks: Mapping[str, Callable[[Recipe, Design], Sequence[Remark]]] = EMPTY
+    panel: Callable[[dict[str, Any]], str] = no_panel
+    plots: Callable[[Recipe, Design], Sequence[Plot]] = no_plots

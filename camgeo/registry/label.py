@@ -1,0 +1,30 @@
+"""What is known of a capability before its record is read."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+NONE: Mapping[str, str] = MappingProxyType({})
+
+
+class Label(NamedTuple):
+    """`LABEL` of a capability's folder, read at every start: ten lines that import nothing else.
+
+    rank      order wherever capabilities follow one another
+    words     keys of a recipe's top level, formats, or `parts: all`, by which a recipe uses the capability
+    commands  names of its commands, each with its help; the module `command` of the folder has them
+    reports   files of the output folder that list others, as `report.json` does
+    absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
+    record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
+    """
+
+    rank: int
+    words: tuple[str, ...] = ()
+    commands: Mapping[str, str] = NONE
+    reports: tuple[str, ...] = ()
+    absent: str = ""
+    record: bool = True

@@ -1,0 +1,61 @@
+"""Which capabilities there are, and their records: each is imported when it is first looked at."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import camgeo.capabilities
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from camgeo.registry.capability import Capability
+    from camgeo.registry.label import Label
+
+PACKAGE = camgeo.capabilities.__name__
+
+
+@cache
+def labels() -> dict[str, Label]:
+    """Label of each capability by the name of its folder, in the order of their ranks."""
+    (folder,) = camgeo.capabilities.__path__
+    names = [path.name for path in Path(folder).iterdir() if (path / "__init__.py").is_file()]
+    found: dict[str, Label] = {name: import_module(f"{PACKAGE}.{name}").LABEL for name in names}
+    return dict(sorted(found.items(), key=lambda item: (item[1].rank, item[0])))
+
+
+_RECORDS: dict[str, Capability] = {}
+
+
+def capability(name: str) -> Capability:
+    """Record of a capability that has one; raises KeyError for a name that no folder has."""
+    if name not in _RECORDS:
+        if name not in labels():
+            raise KeyError(name)
+        record: Capability = import_module(f"{PACKAGE}.{name}.record").CAPABILITY
+        _RECORDS[name] = record
+    return _RECORDS[name]
+
+
+def recorded() -> tuple[str, ...]:
+    """Names of all capabilities that have a record."""
+    return tuple(name for name, label in labels().items() if label.record)
+
+
+def loaded() -> tuple[str, ...]:
+    """Names of those whose record was read already."""
+    return tuple(name for name in recorded() if name in _RECORDS)
+
+
+def in_order(names: Iterable[str]) -> list[Capability]:
+    """Records of these capabilities, in the order of their ranks."""
+    chosen = set(names)
+    return [capability(name) for name in recorded() if name in chosen]
+
+
+def by_words(words: Collection[str]) -> tuple[str, ...]:
+    """Names of the recorded capabilities that a recipe with these words uses, see `Label.words`."""
+    return tuple(name for name in recorded() if not set(labels()[name].words).isdisjoint(words))

@@ -1,0 +1,20 @@
+"""Every loop of a linkage has its maker on the page and in printed sets."""
+
+import pytest
+
+from camgeo.assembly import linked as bodies
+from camgeo.report.page import linked as page
+from kin.linkage import dyad, four_bar
+
+
+def kinds(module):
+    """Classes of a module of kin that are loops: they tell how far they are from binding."""
+    own = (one for one in vars(module).values() if isinstance(one, type) and one.__module__ == module.__name__)
+    return {kind for kind in own if "margin" in vars(kind)}
+
+
+@pytest.mark.parametrize("table", [page.MAKERS, bodies.MAKERS], ids=["page", "bodies"])
+def test_every_loop_has_a_maker(table):
+    loops = kinds(four_bar) | kinds(dyad)
+    assert len(loops) == 6
+    assert set(table) == loops

@@ -1,0 +1,72 @@
+"""Imports: the contracts of pyproject.toml catch what they are for, and heavy libraries are imported where called."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from support.places import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+HEAVY = {
+    *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
+    *("pyarrow", "dask", "distributed", "OCP"),
+}
+LINTED = importlib.util.find_spec("importlinter") is not None
+PLANTED = {
+    "the core knows no capability": ("camgeo/output/table.py", "from camgeo.capabilities.sweep import keys"),
+    "kin judges without camgeo": ("kin/judge/verify.py", "from camgeo.version import __version__"),
+    "Layers of kin": ("kin/numeric/angles.py", "from kin.law import contacts"),
+    "in a circle": ("kin/judge/check.py", "from kin.judge import verdict"),
+    "know no other": ("camgeo/capabilities/study/margins.py", "from camgeo.capabilities.sweep import keys"),
+}
+
+
+def at_top(path: Path) -> set[str]:
+    """Names of the packages that a file imports as it is itself imported."""
+    found: set[str] = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import):
+            found.update(alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: imports are absolute"
+            found.add(str(node.module).split(".")[0])
+    return found
+
+
+@pytest.mark.parametrize("package", ["kin", "camgeo"])
+def test_heavy_libraries_are_imported_where_they_are_called(package: str) -> None:
+    paths = sorted((ROOT / package).rglob("*.py"))
+    assert len(paths) >= 100
+    offenders = {str(path): heavy for path in paths if (heavy := at_top(path) & HEAVY)}
+    assert not offenders
+
+
+def linted(folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run import-linter over the packages in a folder."""
+    code = "from importlinter.cli import lint_imports_command as run; run(['--no-cache'])"
+    return subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not LINTED, reason="needs import-linter, of the extra `dev`")
+@pytest.mark.parametrize("name", PLANTED)
+def test_a_planted_import_breaks_its_contract(name: str, tmp_path: Path) -> None:
+    for package in ("camgeo", "kin"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    assert linted(tmp_path).returncode == 0
+    path, line = PLANTED[name]
+    with (tmp_path / path).open("a", encoding="utf-8") as stream:
+        stream.write(f"\n{line}\n")
+    done = linted(tmp_path)
+    assert done.returncode == 1, done.stdout + done.stderr
+    broken = [row for row in done.stdout.splitlines() if row.strip().endswith("BROKEN") or " BROKEN (" in row]
+    assert any(name in row for row in broken)
