@@ -147,7 +147,7 @@ def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot
 
 def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
     """Return factor, unit and note of a derivative: by radian, or by second where the shaft's speed is given."""
-    rpm = recipe.rpm
+    rpm = recipe.rpm if recipe.dynamics is None else recipe.dynamics.rpm
     if rpm is None:
         return 1.0, POWERS[order - 1], ""
     return (rpm * TURN / 60.0) ** order, TIMES[order - 1], f"at {rpm:g} rpm"
