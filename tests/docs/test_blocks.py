@@ -17,6 +17,7 @@ from typing import NamedTuple, get_args
 
 import pytest
 from support.cases import few
+from support.starters import OF_CAMS
 
 import camgeo
 from camgeo.checks.declared import CHECKS
@@ -194,7 +195,7 @@ def test_the_starters_that_pages_name_are_written(capsys):
     named = {
         name for cell in re.findall(r"^\|.*\| `camgeo new (.*) \|$", text, re.MULTILINE) for name in cell.split("`, `")
     }
-    assert {name.rstrip("`") for name in named} == set(STARTERS)
+    assert {name.rstrip("`") for name in named} == set(OF_CAMS)
     assert main(["new", "support"]) == 0
     read(capsys.readouterr().out.encode(), "starter.yaml")
 
