@@ -8,8 +8,10 @@ from camgeo.version import __version__
 
 TYPE_CHECKING = False  # as typing has it; importing that takes longer than all the rest
 if TYPE_CHECKING:
+    from camgeo.api.camshaft import CamshaftDesign
     from camgeo.api.check import Check, Figure, Figures
-    from camgeo.api.design import Design, design
+    from camgeo.api.design import Design
+    from camgeo.api.designing import design
     from camgeo.api.edges import Arc, Edges, Line, Spline
     from camgeo.api.errors import BusyError, CallError, CamgeoError, SurroundingsError
     from camgeo.api.laws import Law, laws
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from camgeo.api.run import check, export, verify
     from camgeo.capabilities.sweep.library import Candidate, Search, search
     from camgeo.fit.nodes import ToleranceError
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
@@ -28,6 +31,8 @@ __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file wi
     "BusyError",
     "CallError",
     "CamgeoError",
+    "CamshaftDesign",
+    "CamshaftRecipe",
     "Candidate",
     "Check",
     "Design",
@@ -61,6 +66,8 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "BusyError": "camgeo.api.errors",
         "CallError": "camgeo.api.errors",
         "CamgeoError": "camgeo.api.errors",
+        "CamshaftDesign": "camgeo.api.camshaft",
+        "CamshaftRecipe": "camgeo.recipe.camshaft",
         "Candidate": "camgeo.capabilities.sweep.library",
         "Check": "camgeo.api.check",
         "Design": "camgeo.api.design",
@@ -80,7 +87,7 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "ToleranceError": "camgeo.fit.nodes",
         "UnitsError": "kin.judge.verify",
         "check": "camgeo.api.run",
-        "design": "camgeo.api.design",
+        "design": "camgeo.api.designing",
         "export": "camgeo.api.run",
         "laws": "camgeo.api.laws",
         "load": "camgeo.api.loading",

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
     from camgeo.checks.remedies import Entry
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.expected_checks import Foreseen
@@ -155,7 +156,7 @@ class RecipeRun:
     shown: str
     out: Path | None
     second_opinion: bool = False
-    recipe: Recipe | None = None
+    recipe: Recipe | CamshaftRecipe | None = None
     fault: str = ""
     certain: bool = False
     selected: set[str] = field(default_factory=set)
@@ -163,11 +164,11 @@ class RecipeRun:
 
     def load(self) -> None:
         """Read the recipe, or find its faults."""
-        from camgeo.recipe.loading import load
+        from camgeo.recipe.loading import load_order
         from camgeo.schema.errors import RecipeErrors
 
         try:
-            self.recipe = load(self.path)
+            self.recipe = load_order(self.path)
         except RecipeErrors as errors:
             self._refused(errors)
 
@@ -199,7 +200,7 @@ class RecipeRun:
             self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
             self._refused(errors)
-        except (SurroundingsError, OSError) as error:
+        except (SurroundingsError, OSError, ModuleNotFoundError) as error:
             self.fault = f"{self.shown}: {error}"
 
     def _refused(self, errors: RecipeErrors) -> None:
@@ -231,11 +232,14 @@ class RecipeFile(pytest.File):
             yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
 
 
-def _foreseen(recipe: Recipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:
-    """Tell the checks to come; none where there is no such motion, which the recipe's own item then reports."""
+def _foreseen(recipe: Recipe | CamshaftRecipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:
+    """Tell the checks to come; none of a camshaft, or where there is no such motion: its own item has them all."""
+    from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.expected_checks import foreseen
     from kin.law.programme import IntentError
 
+    if not isinstance(recipe, Recipe):
+        return ()
     try:
         return foreseen(recipe, second_opinion=second_opinion)
     except IntentError:
@@ -296,25 +300,27 @@ class CheckItem(pytest.Item):
         self._missing(foreseen, report)
 
     def _hold(self, checks: list[Entry], report: Entry) -> None:
-        from camgeo.report.failure import failure
+        from camgeo.api.report import explained
 
         assert self.run.recipe is not None
-        failed = [failure(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
+        failed = [explained(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
         if failed:
             _fail("\n".join(failed))
 
     def _missing(self, foreseen: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
         from camgeo.checks.declared import CHECKS, MOTION, SECOND_OPINIONS
+        from camgeo.recipe.recipe import Recipe
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
 
-        assert self.run.recipe is not None
+        recipe = self.run.recipe
+        assert isinstance(recipe, Recipe)  # none is foreseen of a camshaft
         cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, foreseen.file)]
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
-        if self.run.recipe.cam.undercut == "trim" and (
+        if recipe.cam.undercut == "trim" and (
             foreseen.name == MOTION.name or (foreseen.name in CHECKS and CHECKS[foreseen.name].backlash)
         ):
             reason = (

@@ -10,9 +10,10 @@ in the recipe's units, as in its report.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec, TypeAlias, TypeVar
 
-from camgeo.api.loading import recipe_of
+from camgeo.api.loading import order_of, recipe_of
 from camgeo.checks.declared import (
     BENT,
     CHECKS,
@@ -28,17 +29,19 @@ from camgeo.checks.declared import (
 from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.keys import MOST_ANGLES
+from kin.numeric.errors import CamgeoError
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from os import PathLike
     from pathlib import Path
 
-    from camgeo.api.loading import RecipeSource
+    from camgeo.api.loading import OrderSource, RecipeSource
     from camgeo.api.report import Report
     from camgeo.checks.remedies import Entry
+    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.drawing.drawing import Drawing
@@ -91,16 +94,34 @@ class Motion:
     dwell_flatness: float | None
 
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def _ending_here(assertion: Callable[P, R]) -> Callable[P, R]:
+    """Have the traceback of a failure end at the line of the test: what lies below is the library's own."""
+
+    @wraps(assertion)
+    def asserted(*arguments: P.args, **named: P.kwargs) -> R:
+        __tracebackhide__ = True
+        try:
+            return assertion(*arguments, **named)
+        except (AssertionError, CamgeoError, OSError, TypeError) as error:
+            raise error.with_traceback(None) from None
+
+    return asserted
+
+
 # --- any file ---------------------------------------------------------------------------------------------------------
 
 
+@_ending_here
 def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
 
     Returns the widest gap between two entities, mm; at most `gap` is permitted. Of a solid its whole surface has to be
     closed, as `assert_watertight` has it, and the gap is 0.
     """
-    __tracebackhide__ = True
     path = path_of("path", path)
     if _is_solid(path):
         assert_watertight(path)
@@ -111,12 +132,12 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     return drawing.widest_gap
 
 
+@_ending_here
 def assert_watertight(path: AnyPath) -> float:
     """Assert that an STL, 3MF or STEP is closed, its faces looking outward, none of them without area or there twice.
 
     Returns the enclosed volume, mm^3.
     """
-    __tracebackhide__ = True
     path = path_of("path", path)
     if not _is_solid(path):
         raise CallError(f"{path.name}: not a .stl, .3mf or .step file")
@@ -125,6 +146,7 @@ def assert_watertight(path: AnyPath) -> float:
     return solid.volume
 
 
+@_ending_here
 def assert_constant_breadth(
     path: AnyPath, breadth: float | None = None, tolerance: float = 1e-3, *, mm: float | None = None
 ) -> Breadth:
@@ -134,7 +156,6 @@ def assert_constant_breadth(
     without one, from the mean of its extremes. All in mm; `mm` is the length of a drawing unit, for a DXF that states
     none. The extremes are those of the whole turn, not of samples. Returns them.
     """
-    __tracebackhide__ = True
     path = path_of("path", path)
     found = _breadth(_contour(path, None if mm is None else _length("mm", mm)))
     nominal = 0.5 * (found.least + found.greatest) if breadth is None else number_of("breadth", breadth)
@@ -171,6 +192,7 @@ def _breadth(contour: Contour) -> Breadth:
 # --- a file against a recipe ------------------------------------------------------------------------------------------
 
 
+@_ending_here
 def assert_motion(
     recipe: RecipeSource,
     path: AnyPath,
@@ -188,7 +210,6 @@ def assert_motion(
     shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error, of
     several surfaces the greatest.
     """
-    __tracebackhide__ = True
     names, more = {MOTION.name, *BACKLASH}, second_opinion
     rows = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)
     if any(row["motion"] is None for row in rows):
@@ -197,6 +218,7 @@ def assert_motion(
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
+@_ending_here
 def assert_contour(
     recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
 ) -> float:
@@ -205,7 +227,6 @@ def assert_contour(
     Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `second_opinion` as in
     `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
-    __tracebackhide__ = True
     rows = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)
     return max(float(row["measured_error"]) for row in rows)
 
@@ -221,7 +242,6 @@ def _judged(
     second_opinion: bool = False,
 ) -> list[Entry]:
     """Judge a file and assert the checks of those names; what the report says of each of its surfaces."""
-    __tracebackhide__ = True
     from camgeo import verify as judged
 
     path, recipe = path_of("path", path), recipe_of(recipe)
@@ -254,18 +274,18 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Report:
-    """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
+@_ending_here
+def assert_recipe(recipe: OrderSource, *, second_opinion: bool = False) -> Report:
+    """Assert that a recipe has no faults, and that every check of its exact curves and of its files holds.
 
-    Makes and judges the files in a temporary folder; `second_opinion` as in `assert_motion`. Returns
-    the report, which as a mapping is what report.json holds.
+    It may be of a cam or of a camshaft. Makes and judges the files in a temporary folder; `second_opinion` as in
+    `assert_motion`. Returns the report, which as a mapping is what report.json holds.
     """
-    __tracebackhide__ = True
     from camgeo import check
     from camgeo.schema.errors import RecipeErrors
 
     try:
-        recipe = recipe_of(recipe)
+        recipe = order_of(recipe)
         report = check(recipe, second_opinion=second_opinion)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
@@ -274,13 +294,13 @@ def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Repo
     return report
 
 
+@_ending_here
 def assert_no_undercut(recipe: RecipeSource) -> float:
     """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
 
     Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
     a roller.
     """
-    __tracebackhide__ = True
     from camgeo.report.document import Findings, document
     from camgeo.synthesis.design import designed
 
@@ -306,17 +326,15 @@ def _length(name: str, value: float) -> float:
 # --- all of them ------------------------------------------------------------------------------------------------------
 
 
-def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Recipe, what: str) -> None:
-    __tracebackhide__ = True
-    from camgeo.report.failure import failure
+def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Recipe | CamshaftRecipe, what: str) -> None:
+    from camgeo.api.report import explained
 
-    failed = [failure(check, report, recipe) for check in checks if not check["ok"]]
+    failed = [explained(check, report, recipe) for check in checks if not check["ok"]]
     if failed:
         raise AssertionError(f"{what}: " + "\n".join(failed))
 
 
 def _no_faults(path: Path, faults: list[str]) -> None:
-    __tracebackhide__ = True
     if faults:
         more = f"; and {len(faults) - MOST_NAMED} more" if len(faults) > MOST_NAMED else ""
         raise AssertionError(f"{path}: {'; '.join(faults[:MOST_NAMED])}{more}")
@@ -330,7 +348,6 @@ def _crossings(contour: Contour) -> list[str]:
 
 def _contour(path: Path, mm: float | None) -> Contour:
     """Outer contour of a file, mm."""
-    __tracebackhide__ = True
     if _is_solid(path):
         return _solid(path).contour
     drawing = _drawing(path, GAP)
@@ -342,7 +359,6 @@ def _contour(path: Path, mm: float | None) -> Contour:
 
 
 def _drawing(path: Path, gap: float) -> Drawing:
-    __tracebackhide__ = True
     from kin.read.errors import ReadError
     from kin.read.files import read_drawing
 
@@ -353,7 +369,6 @@ def _drawing(path: Path, gap: float) -> Drawing:
 
 
 def _solid(path: Path) -> AnySolid:
-    __tracebackhide__ = True
     from kin.read.errors import ReadError
     from kin.read.files import read_solid
 

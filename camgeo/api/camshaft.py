@@ -2,17 +2,115 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from camgeo.api import notebook
+from camgeo.api.check import Check, Figures
+from camgeo.api.design import Design
 from camgeo.api.errors import CallError
+from camgeo.api.log import staged
 from camgeo.camshaft import pipeline
+from camgeo.camshaft.lobes import lobe_checks, placed
+from camgeo.common.arguments import numbers_of, spelled, whole_of
+from camgeo.common.clock import Clock
+from camgeo.report import failure
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from numpy.typing import ArrayLike
+
+    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.checks.remedies import Entry
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.camshaft import CamshaftRecipe
+    from kin.numeric.arrays import Array
+
+MOST_DERIVATIVE = 6  # of a lobe's motion by the shaft angle
+
+
+@dataclass(frozen=True, eq=False)
+class CamshaftDesign:
+    """The exact cams of a camshaft, each where it stands on the shaft; no file is made.
+
+    Checks and figures are in the camshaft's own units, each with its unit beside it, and name their lobe.
+    """
+
+    recipe: CamshaftRecipe
+    _placed: tuple[PlacedLobe, ...] = field(repr=False)
+
+    @cached_property
+    def lobes(self) -> Mapping[str, Design]:
+        """The design of each lobe by its name, in the order of the recipe; lobes of one recipe share its cam."""
+        return {lobe.lobe.name: Design(lobe.lobe.recipe, lobe.design) for lobe in self._placed}
+
+    @property
+    def angles(self) -> Mapping[str, float]:
+        """Shaft angle at which the motion of each lobe begins, rad from 0 to below a turn, by its name."""
+        return {lobe.lobe.name: float(np.mod(lobe.zero, 2.0 * np.pi)) for lobe in self._placed}
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file: those of each cam, and that it stands out of the shaft."""
+        return tuple(Check.of(self.recipe, check) for check in lobe_checks(self.recipe, self._placed))
+
+    @property
+    def ok(self) -> bool:
+        """Whether all these checks hold."""
+        return all(check.ok for check in self.checks)
+
+    @cached_property
+    def figures(self) -> Figures:
+        """The figures of each lobe, such as `radius-of-curvature, intake`."""
+        return Figures(
+            {f"{name}, {lobe}": one for lobe, design in self.lobes.items() for name, one in design.figures.items()}
+        )
+
+    def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
+        """Positions of all followers at shaft angles theta, rad, or a derivative by the shaft angle, up to the sixth.
+
+        A row for each lobe in the recipe's order, each of the shape of `theta`: mm, or rad where the follower swings.
+        Raises CallError for another order, and for angles that are not finite.
+        """
+        angle, order = numbers_of("theta", theta), whole_of("derivative", derivative)
+        if not np.isfinite(angle).all():
+            raise CallError("shaft angles are finite numbers, in radians")
+        if order not in range(MOST_DERIVATIVE + 1):
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {spelled(order)}")
+        return np.array([lobe.rows(angle.ravel(), order)[order].reshape(angle.shape) for lobe in self._placed])
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.recipe.name!r}, {len(self._placed)} lobes)"
+
+    def __str__(self) -> str:
+        """Write the verdict on one line, and each check that fails on one more."""
+        failed = [f"\n  {check}" for check in self.checks if not check.ok]
+        return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}  {len(self._placed)} lobes{''.join(failed)}"
+
+    def _repr_svg_(self) -> str:
+        from camgeo.camshaft.diagrams import diagram
+
+        return diagram(self.recipe, self._placed, "timing")
+
+    def _repr_html_(self) -> str:
+        rows = [(name, str(figure)) for name, figure in self.figures.items()]
+        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows))
+
+
+def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
+    """Design the cams of a camshaft; raises RecipeErrors where there is no such motion or curve."""
+    return CamshaftDesign(recipe, placed(recipe, Clock(staged(recipe))))
+
+
+def failed(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:
+    """Tell a failed check of a report over several lines, with the lobe's place in the recipe of the camshaft."""
+    fields = {lobe.name: f"camshaft.lobes[{i}].recipe" for i, lobe in enumerate(recipe.lobes)}
+    return failure.placed(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)
 
 
 def made(

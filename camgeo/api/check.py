@@ -14,7 +14,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.measures.measured import Measured
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Check(judge.Check):
     """
 
     @staticmethod
-    def of(recipe: Recipe, check: judge.Check) -> Check:
+    def of(recipe: Order, check: judge.Check) -> Check:
         """Give a check of the judge's, which is in mm, in the recipe's units."""
         value, unit = in_units(recipe, check.value, check.unit)
         limit, _ = in_units(recipe, check.limit, check.unit)

@@ -11,36 +11,20 @@ from camgeo.api import notebook
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.edges import FORMS, Edges, Form
 from camgeo.api.errors import CallError
-from camgeo.api.loading import recipe_of
-from camgeo.api.log import staged, tell_checks
 from camgeo.common.arguments import number_of, numbers_of, spelled, text_of, whole_of
-from camgeo.common.clock import Clock
 from camgeo.schema.fields import MOST
-from camgeo.synthesis.design import Design as Exact
-from camgeo.synthesis.design import designed
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from camgeo.api.loading import RecipeSource
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design as Exact
     from kin.numeric.arrays import Array
 
 MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly made
 MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in print
-
-
-def design(recipe: RecipeSource) -> Design:
-    """Design the cam of a recipe: no file is made, and no contour fitted.
-
-    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
-    """
-    recipe = recipe_of(recipe)
-    found = Design(recipe, designed(recipe, Clock(staged(recipe))))
-    tell_checks(recipe.name, found.checks)
-    return found
 
 
 @dataclass(frozen=True, eq=False)

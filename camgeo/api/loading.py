@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.common.arguments import is_a, path_of
 from camgeo.recipe.loading import load as load_file
-from camgeo.recipe.loading import load_order, load_text
+from camgeo.recipe.loading import load_order, load_order_text
 from camgeo.recipe.recipe import Order, Recipe
 
 if TYPE_CHECKING:
@@ -18,26 +18,28 @@ if TYPE_CHECKING:
     RecipeSource: TypeAlias = Recipe | str | PathLike[str]
     OrderSource: TypeAlias = RecipeSource | CamshaftRecipe
 
+Loaded: TypeAlias = "Recipe | Any"
+"""A Recipe, or a CamshaftRecipe: that is Any to a type checker, as what a path leads to is seen when it is read."""
 NAME = "recipe"  # of what has no file
 
 OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `str`
 
 
-def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
+def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
     A `str` with a line break, or with `: ` as YAML has it, is a text, any other the path of a file. A recipe that is no
-    file and gives no `name` is called recipe. Raises RecipeErrors, which has every fault with line, column and remedy,
-    and TypeError for what is none of the three.
+    file and gives no `name` is called recipe. The recipe of a camshaft is a CamshaftRecipe. Raises RecipeErrors, which
+    has every fault with line, column and remedy, and TypeError for what is none of the three.
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
         from camgeo.schema.change import written
 
-        return load_text(written(source, NAME), NAME, NAME)
+        return load_order_text(written(source, NAME), NAME, NAME)
     if isinstance(source, str) and any(mark in source for mark in OF_TEXT):
-        return load_text(source, NAME)
-    return load_file(path_of("source", source))
+        return load_order_text(source, NAME)
+    return load_order(path_of("source", source))
 
 
 def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:

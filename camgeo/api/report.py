@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from camgeo.api.check import Figure
-    from camgeo.api.design import Design
-    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.api.check import Figures
+    from camgeo.api.designing import Designed
+    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.recipe.recipe import Recipe
 
 JSON: TypeAlias = "bool | int | float | str | list[JSON] | dict[str, JSON] | None"
 
@@ -75,7 +76,7 @@ class Report(Mapping[str, JSON]):
     where files were judged and none kept.
     """
 
-    recipe: Order
+    recipe: Recipe | CamshaftRecipe
     _document: dict[str, Any] = field(repr=False)
     path: Path | None = None
     _paths: tuple[Path, ...] = field(default=(), repr=False)
@@ -114,35 +115,24 @@ class Report(Mapping[str, JSON]):
         return File(name, path, **{name: entry.get(name) for name in names}, motion=told)
 
     @cached_property
-    def design(self) -> Design:
-        """The design, made anew from the recipe."""
-        from camgeo.api.design import design
+    def design(self) -> Designed:
+        """The design, made anew from the recipe; of a camshaft a CamshaftDesign."""
+        from camgeo.api.designing import design
 
-        return design(self._of_one_cam)
-
-    @property
-    def _of_one_cam(self) -> Recipe:
-        """The recipe, which is no camshaft's: that has a design for each lobe, of the lobe's own recipe."""
-        from camgeo.recipe.recipe import Recipe
-
-        if not isinstance(self.recipe, Recipe):
-            raise CallError(f"{self.recipe.name} is a camshaft: design the recipe of a lobe")
-        return self.recipe
+        return design(self.recipe)
 
     @property
-    def figures(self) -> Mapping[str, Figure]:
+    def figures(self) -> Figures:
         """The figures of the design by name, such as `radius-of-curvature`."""
-        return self.design.figures
+        figures: Figures = self.design.figures
+        return figures
 
     def explain(self, check: Check) -> str:
         """Tell of a check that fails over several lines: figure, limit, place, the recipe's field, what would do."""
-        from camgeo.report.failure import failure
-
         is_a("check", check, Check, "a Check")
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
-        index = self.checks.index(check)
-        return failure(self._document["checks"][index], self._document, self._of_one_cam)
+        return explained(self._document["checks"][self.checks.index(check)], self._document, self.recipe)
 
     def to_json(self) -> str:
         """Write the report as report.json has it."""
@@ -181,7 +171,8 @@ class Report(Mapping[str, JSON]):
         return summary(self._document)
 
     def _repr_svg_(self) -> str:
-        return self.design._repr_svg_()
+        picture: str = self.design._repr_svg_()
+        return picture
 
     def _repr_html_(self) -> str:
         from camgeo.api import notebook
@@ -203,3 +194,18 @@ class Report(Mapping[str, JSON]):
 def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
     """Leave out what an entry of the report has beyond the fields of its class."""
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
+
+
+def explained(
+    check: dict[str, Any], report: dict[str, Any], recipe: Recipe | CamshaftRecipe, shown: str | None = None
+) -> str:
+    """Tell of a check that fails over several lines; `shown` names the recipe's file in place of its path."""
+    from camgeo.recipe.recipe import Recipe
+
+    if isinstance(recipe, Recipe):
+        from camgeo.report.failure import failure
+
+        return failure(check, report, recipe, shown)
+    from camgeo.api.camshaft import failed
+
+    return failed(check, recipe, shown)

@@ -8,6 +8,7 @@ one: its keys, how they are read and published, what they are checked for and wh
 from __future__ import annotations
 
 import collections.abc
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeVar, overload
 
@@ -32,6 +33,7 @@ from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, keys, read_so
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from os import PathLike
 
     from camgeo.cams.family import Cam
@@ -196,13 +198,17 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
 
     Bytes that no file has, and nobody has seen, have no lines to speak of: `unplaced` names them in errors.
     """
-    if unplaced:
-        try:
-            recipe = read(data, path)
-        except RecipeErrors as errors:
-            raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
-        return replace(recipe, unplaced=unplaced)
-    return of_source(read_source(data, str(path)), path)
+    with without_places(unplaced):
+        return replace(of_source(read_source(data, str(path)), path), unplaced=unplaced)
+
+
+@contextmanager
+def without_places(name: str) -> Iterator[None]:
+    """Have errors meanwhile name this text, which has no lines that anybody has seen; without a name leave them."""
+    try:
+        yield
+    except RecipeErrors as errors:
+        raise RecipeErrors(error.without_place(name) if name else error for error in errors.errors) from None
 
 
 def is_of_a_camshaft(source: Source) -> bool:

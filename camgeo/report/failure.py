@@ -8,7 +8,7 @@ from camgeo.checks.declared import LIMIT, Declared, declaration
 from camgeo.report.bound import title, unit_text, words
 
 if TYPE_CHECKING:
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
 
 INDENT = "\n  "
 UNKNOWN = Declared("", ())  # of a check that none declares
@@ -16,7 +16,11 @@ UNKNOWN = Declared("", ())  # of a check that none declares
 
 def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None = None) -> str:
     """Tell a failed check of a report over several lines; `shown` names the recipe's file in place of its path."""
-    field = _field(check, recipe)
+    return placed(check, recipe, _field(check, recipe), remedy(check, report, recipe), shown)
+
+
+def placed(check: dict[str, Any], recipe: Order, field: str, would_do: str = "", shown: str | None = None) -> str:
+    """Tell a failed check over several lines, with the place of a recipe's field and what would let it hold."""
     line, column = recipe.locate(field)
     place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
     rows = [
@@ -25,7 +29,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("at", "" if check["at_deg"] is None else f"{check['at_deg']:.4f} deg of shaft angle"),
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
-        ("remedy", remedy(check, report, recipe)),
+        ("remedy", would_do),
         ("recipe", f"{place} {field}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)

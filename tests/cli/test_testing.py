@@ -340,3 +340,31 @@ def test_a_neck_narrower_than_the_roller(recipe):
     larger = replace(loaded, cam=replace(cast("Any", loaded.cam), roller_radius=sound + 1.0))
     with pytest.raises(AssertionError, match=r"undercut-\w+: .* mm, at most 0 mm"):
         testing.assert_no_undercut(larger)
+
+
+ENDING = """
+from camgeo import testing
+def test_a(): testing.assert_motion("cams/small.yaml", "none.dxf")
+def test_b(): testing.assert_closed("x.foo")
+def test_c(): testing.assert_recipe("cams/none.yaml")
+def test_d(): testing.assert_no_undercut("cams/cut.yaml")
+def test_e(): testing.assert_closed(3)
+def test_f(): testing.assert_watertight("none.stl")
+def test_g(): testing.assert_contour("cams/none.yaml", "none.dxf")
+def test_h(): testing.assert_constant_breadth("none.svg")
+"""
+
+
+def test_a_failure_ends_at_the_line_of_the_test(pytester: pytest.Pytester) -> None:
+    """Whatever is raised: of the library's own source nothing is shown."""
+    (pytester.path / "cams").mkdir()
+    small = "cam: {kind: support, p: 9 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\n"
+    (pytester.path / "cams" / "small.yaml").write_text(small)
+    (pytester.path / "cams" / "cut.yaml").write_text(small.replace("9 +", "7 +"))
+    pytester.makepyfile(ENDING)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+        result = pytester.runpytest_inprocess()
+    result.assert_outcomes(failed=8)
+    places = re.findall(r"^(\S+\.py):\d+: \w+$", result.stdout.str(), re.MULTILINE)
+    assert places == ["test_a_failure_ends_at_the_line_of_the_test.py"] * 8
