@@ -55,7 +55,8 @@ class Sagittas:
 class Edges:
     """Edges with their proved deviation.
 
-    `overhang` is how far the feet of the curve's points can fall beyond the ends of the edge that belongs to them.
+    `heights` (n,) is that of each edge, either side, mm. `overhang` is how far the feet of the curve's points can fall
+    beyond the ends of the edge that belongs to them.
     """
 
     vertices: Array
@@ -63,6 +64,7 @@ class Edges:
     inward: float
     overhang: float
     deviation: Deviation
+    heights: Array
 
     @property
     def extremes(self) -> tuple[float, float]:
@@ -171,4 +173,6 @@ def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:
     found = chain_deviation(curve, chain, tolerance, decide=True)
     overhang = -min(0.0, float(edges.behind.min()), float(edges.beyond.min()))
     outward, inward = max(0.0, float(edges.away.max())), max(0.0, -float(edges.away.min()))
-    return Edges(edges.vertices, outward, inward, overhang, found)
+    heights = np.zeros(edges.nodes.size - 1)
+    np.maximum.at(heights, edges.edge, found.worst)
+    return Edges(edges.vertices, outward, inward, overhang, found, heights)

@@ -7,7 +7,7 @@ stands, and at its inflections, which one edge crosses; in each part as few edge
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,8 @@ BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the
 AIMS = (1.0, 0.998, 0.995, 0.99, 0.97, 0.9, 0.6, 0.3, 0.1)  # parts of the tolerance aimed at until it is proved
 TRIES = 24  # of placing nodes for one aim
 ROUNDS = 5  # of levelling the edges of a part before there are more of them
+SHORTENINGS = 3  # of edges across inflections after a proof, before less is aimed at
+SHORTENED = 1.05  # times, at least
 FREE_TRIES = 4  # counts tried with edges across the breaks
 LEVELLINGS = 16  # steps for each
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
@@ -102,6 +104,11 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
         if len(densities) > 1 and height < FULL * goal:
             parts, height = _across_breaks(curve, run, densities, parts, goal) or (parts, height)
         edges = _balanced(curve, run, parts, min(height, goal), tolerance)
+        for _ in range(SHORTENINGS):
+            if not _shortened(parts, edges, tolerance):
+                break
+            parts, height = _settled(curve, run, parts, goal)
+            edges = _balanced(curve, run, parts, min(height, goal), tolerance)
         best = min(best, max(edges.extremes))
         if best <= tolerance:
             return edges
@@ -110,7 +117,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
 
 def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
     """Proved edges; moved once more where one side is used more than the other, which runs without corners allow."""
-    nodes, _, sides = _chained(parts)
+    nodes, sides = _chained(parts)
     at = frames(curve, run, nodes)
     edges = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
     outward, inward = edges.extremes
@@ -188,18 +195,14 @@ def _worthwhile(bends: Array, sense: float, whole: Density, root: float, *, clos
     return np.array(kept), sense
 
 
-def _chained(parts: list[_Part]) -> tuple[Array, Array, Array]:
-    """All nodes in order, for each edge its part (-1 across an inflection), for each node the side of its vertex."""
-    nodes, owner = [parts[0].nodes], [np.zeros(parts[0].count, dtype=np.int64)]
-    sides = [np.full(parts[0].nodes.size, parts[0].sense)]
-    for i, part in enumerate(parts[1:], start=1):
-        skip = 0 if parts[i - 1].crossed else 1
+def _chained(parts: list[_Part]) -> tuple[Array, Array]:
+    """All nodes in order, and for each the side of its vertex; an edge across an inflection joins two parts' nodes."""
+    nodes, sides = [parts[0].nodes], [np.full(parts[0].nodes.size, parts[0].sense)]
+    for before, part in pairwise(parts):
+        skip = 0 if before.crossed else 1
         nodes.append(part.nodes[skip:])
         sides.append(np.full(part.nodes.size - skip, part.sense))
-        if not skip:
-            owner.append(np.array([-1]))
-        owner.append(np.full(part.count, i))
-    return np.concatenate(nodes), np.concatenate(owner), np.concatenate(sides)
+    return np.concatenate(nodes), np.concatenate(sides)
 
 
 def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
@@ -208,16 +211,17 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
     noise = 0.5 * rounding(curve.size)
     height = math.inf
     for _ in range(TRIES):
-        nodes, owner, sides = _chained(parts)
+        nodes, sides = _chained(parts)
         seen = look(curve, placed(frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance)
         height = 0.5 * float(seen.load.max())
         busy = False
-        for i, part in enumerate(parts):
-            mine = owner == i
+        first_edges = list(accumulate((part.count + part.crossed for part in parts), initial=0))
+        for part, k in zip(parts, first_edges, strict=False):
+            mine = slice(k, k + part.count)
             busy |= _improve(part, Sagittas(seen.load[mine], seen.by_low[mine], seen.by_high[mine]), allowed, noise)
-        for first, second in pairwise(parts):
+        for (first, second), k in zip(pairwise(parts), first_edges[1:], strict=False):
             if first.crossed:
-                over = float(seen.load[(owner < 0) & (nodes[:-1] == first.nodes[-1])].max(initial=0.0)) / allowed
+                over = float(seen.load[k - 1]) / allowed
                 busy |= over > SEEN and _shorter(first, second, over)
         check_count(sum(part.count for part in parts), "straight edges", tolerance, 2.0)
         if not busy:
@@ -250,6 +254,17 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
         part.nodes = reshared(part.nodes, load, 2.0, part.least)
         part.tried = 1
     return True
+
+
+def _shortened(parts: list[_Part], edges: Edges, tolerance: float) -> bool:
+    """Whether edges across inflections were shortened that a proof found too high, by less than it gives up at."""
+    last = list(accumulate((part.count + part.crossed for part in parts), initial=-1))[1:]
+    shorter = False
+    for (first, second), k in zip(pairwise(parts), last, strict=False):
+        if first.crossed and tolerance < edges.heights[k] < math.inf:
+            # as much as its height and not less than `SHORTENED`: a crossing is no cubic throughout
+            shorter |= _shorter(first, second, max(float(edges.heights[k]) / tolerance, SHORTENED) ** 3)
+    return shorter
 
 
 def _shorter(first: _Part, second: _Part, over: float) -> bool:
