@@ -34,6 +34,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     files.altered,
     calls.called,
     wider.searched,
+    wider.on_a_shaft,
 )
 """Ways to attack, in turn."""
 

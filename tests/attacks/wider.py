@@ -194,6 +194,35 @@ def searched(rng: Random, number: int) -> Attack:
     return Attack(f"sweep {number}", ("sweep", "cam.yaml", "--jobs", "1"), {"cam.yaml": text.encode()}, seconds=LONG)
 
 
+def on_a_shaft(rng: Random, number: int) -> Attack:
+    """A camshaft of one cam by chance, several times, with an engine or without, and its diagrams, tables and page."""
+    engine = rng.random() < 0.6
+    order = list(range(1, rng.choice([1, 2, 3, 4, 6]) + 1))
+    rng.shuffle(order)
+    rows, z = [], 2.0
+    for _ in range(rng.randrange(1, 6)):
+        long, gap = rng.choice([4, 4, 8, 8, 0.1, 12.5]), rng.choice([0, 1, 1, 2.5, 2.5, 2.5, 1e-9, -1])
+        named = f"cylinder: {rng.choice([*order, *order, *order, 9])}, valve: {rng.choice(['intake', 'exhaust'])}"
+        place = named if engine and rng.random() < 0.8 else f"at: {rng.choice([0, 33.3, -120, 359.9999, 360])}"
+        turned = rng.choice(["", "", ", direction: 90"])
+        rows.append(f"    - {{recipe: cam.yaml, {place}, z: {z:.9g}, length: {long}{turned}}}\n")
+        z += long + gap
+    about = f"{rng.randrange(60, 140)}, exhaust: {rng.randrange(60, 140)}, lift: {rng.choice([1, 1, 0.1, 0.5, 0, 50])}"
+    given = f"  engine: {{order: {order}, intake: {about}}}\n" if engine else ""
+    forms = ["timing", "bars", "shaft", *(["cam-wheel", "crank-wheel"] if engine or rng.random() < 0.1 else [])]
+    forms += ["arcs"] if rng.random() < 0.05 else []
+    files = [f"{{svg: {{as: {form}}}}}" for form in rng.sample(forms, rng.randrange(1, 4))]
+    files += rng.sample(["html", "{csv: {as: events}}", "{csv: {as: motion}}", "glb", "stl"], rng.randrange(3))
+    bore = rng.choice(["", "", ", bore: 4"])
+    text = (
+        f"units: {rng.choice(['mm', 'mm', 'mm', 'inch'])}\nrotation: {rng.choice(['cw', 'ccw'])}\ncamshaft:\n"
+        f"  shaft: {{diameter: {rng.choice([6, 12, 80])}, to: {z + 3:.9g}{bore}}}\n  lobes:\n{''.join(rows)}{given}"
+        f"export: {{tolerance: 0.01, files: [{', '.join(dict.fromkeys(files))}]}}\nverify: {{angles: 90}}\n"
+    )
+    made = {"cam.yaml": drawn(rng).text("dxf").encode(), "shaft.yaml": text.encode()}
+    return Attack(f"camshaft {number}", (rng.choice(["export", "check"]), "shaft.yaml"), made, (0, 1, 2), seconds=LONG)
+
+
 # --- files that cost --------------------------------------------------------------------------------------------------
 
 
