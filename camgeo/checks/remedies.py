@@ -292,10 +292,10 @@ def _of_train(recipe: Recipe, figure: str, value: float, bound: float) -> str:
         return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
     if value < bound or figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
         return ""
-    less = f"a smaller {spring}, or less mass or load" if spring else "less mass or load"
+    less = f"a smaller {spring}, less mass or load" if spring else "less mass or load"
     if figure == PRESSURE:  # with the root of force over width
         wider = f"contacts {upward((value / bound) ** 2)} times as wide (part.thickness, less chamfer, a deeper groove)"
-        return f"{wider}, a larger radius, or {less}"
+        return f"{wider}, a larger radius, {less}"
     return f"a longer guide, or {less}" if figure == GUIDE_FORCE else less
 
 

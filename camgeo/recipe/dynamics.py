@@ -129,7 +129,7 @@ MATERIALS = {
 
 OWN_MATERIAL = Table(
     (
-        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST),
+        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST, unit=Kind.PRESSURE),
         Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
         Field(
             "limit",
@@ -137,6 +137,7 @@ OWN_MATERIAL = Table(
             "pressure that it bears, N/mm²: reported, and not judged",
             above=0,
             at_most=MOST,
+            unit=Kind.PRESSURE,
         ),
     )
 )

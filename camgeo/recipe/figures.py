@@ -334,7 +334,7 @@ _CORE: dict[str, Figure] = {
         "greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", OF_FORCES, dear=True
     ),
     PRESSURE: Figure(
-        "greatest pressure of the contacts (Hertz), N/mm²", Kind.NUMBER, "least", OF_MATERIAL, per="N/mm^2", dear=True
+        "greatest pressure of the contacts (Hertz), N/mm²", Kind.PRESSURE, "least", OF_MATERIAL, per="N/mm^2", dear=True
     ),
     GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION, dear=True),
     MEAN_FORCE: Figure(

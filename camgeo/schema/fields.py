@@ -58,6 +58,7 @@ class Kind(Enum):
     FORCE = "a force"
     MOMENT = "a moment"
     RATE = "a spring rate"
+    PRESSURE = "a pressure"
     MASS = "a mass"
     THRUST = "a force along the travel"  # a moment where the follower swings, or what a linkage drives
     GIVING = "a stiffness along the travel"  # likewise

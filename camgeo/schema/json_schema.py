@@ -12,7 +12,7 @@ from camgeo.schema.fields import (
     Table,
     length,
 )
-from camgeo.schema.quantity import ANGLES, FORCES, LENGTHS, MASSES, MOMENTS, RATES
+from camgeo.schema.quantity import ANGLES, FORCES, LENGTHS, MASSES, MOMENTS, PRESSURES, RATES
 from camgeo.schema.scalars import MOST_TEXT
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ _CARRIED: dict[Kind | None, tuple[str, ...]] = {
     Kind.MOMENT: tuple(MOMENTS),
     Kind.THRUST: (*FORCES, *MOMENTS),
     **dict.fromkeys((Kind.RATE, Kind.GIVING), tuple(RATES)),
+    Kind.PRESSURE: tuple(PRESSURES),
     **dict.fromkeys((Kind.MASS, Kind.INERTIA), tuple(MASSES)),
 }
 _NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"

@@ -14,8 +14,11 @@ LBF = 44482216152605  # 1e-13 N: 0.45359237 kg by 9.80665 m/s^2
 FORCES = {"N": 10**13, "lbf": LBF}
 MOMENTS = {"Nm": 10**17, "lbf*in": 254 * LBF, "lbf-in": 254 * LBF}
 RATES = {"N/m": 254 * 10**9, "N/mm": 254 * 10**12, "lbf/in": LBF}
+PSI = LBF  # by 25.4 mm squared
+NEWTONS = 64516 * 10**11  # an N/mm^2 in the same
+PRESSURES = {"N/mm^2": NEWTONS, "N/mm²": NEWTONS, "MPa": NEWTONS, "GPa": 1000 * NEWTONS, "psi": PSI, "ksi": 1000 * PSI}
 MASSES = {"kg": 10**8, "lb": 45359237}
-"""The units that forces, moments, rates of springs and masses may carry, as whole multiples of one."""
+"""The units that forces, moments, rates of springs, pressures and masses may carry, as whole multiples of one."""
 
 _QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³*-]*(?:\^[0-9])?)"
 _WITHIN = rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES, *FORCES, 'Nm', *MASSES))})\b"
@@ -28,6 +31,7 @@ _TAKEN = {
     "N": (FORCES, "N", "a force"),
     "N m": (MOMENTS, "Nm", "a moment"),
     "N/m": (RATES, "N/m", "a spring rate"),
+    "N/mm^2": (PRESSURES, "N/mm^2", "a pressure"),
     "kg": (MASSES, "kg", "a mass"),
 }  # with the own one's name, and what carries them
 
@@ -77,8 +81,8 @@ def read_quantity(text: str, own: str) -> float:
     """Read a number, with a unit or without, as one in the field's `own` unit; raises Complaint.
 
     A unit turns the number as written, a decimal or a fraction, into the own unit and rounds it once: `0.75 in` where
-    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m` or `kg`;
-    other fields take none.
+    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m`,
+    `N/mm^2` or `kg`; other fields take none.
     """
     number, unit = parted(text)
     value = read_number(number)

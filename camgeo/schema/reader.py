@@ -40,6 +40,7 @@ _SI = {
     Kind.FORCE: ("N", "N"),
     Kind.MOMENT: ("N m", "N m"),
     Kind.RATE: ("N/m", "N/m"),
+    Kind.PRESSURE: ("N/mm^2", "N/mm^2"),
     Kind.MASS: ("kg", "kg"),
     Kind.THRUST: ("N", "N m"),
     Kind.GIVING: ("N/m", "N m/rad"),

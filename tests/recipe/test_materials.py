@@ -77,7 +77,7 @@ def test_the_page_tells_the_share() -> None:
     from camgeo.report.page.tables import forces
 
     shown = forces(report(f"{OWN}, limit: 1200}}"))
-    assert "that pressure over the 1200 N/mm² that the material bears" in shown
+    assert "that pressure over the 1200 N/mm^2 that the material bears" in shown
     assert "material bears" not in forces(report(f"{OWN}}}"))
 
 
@@ -95,7 +95,7 @@ def test_names_have_no_limit() -> None:
             "material",
             "give steel, nodular-iron, grey-iron, bronze, aluminium, pom or pa66, or {E: 2",
         ),
-        ("material: {nu: 0.3}", "material.E", "missing; give a number above 0: Young's modulus, N/mm²"),
+        ("material: {nu: 0.3}", "material.E", "missing; give a number above 0 in N/mm^2: Young's modulus, N/mm²"),
         ("material: {E: 0, nu: 0.3}", "material.E", "not above 0"),
         ("material: {E: 206000, nu: 0.6}", "material.nu", "above 0.5"),
         ("material: {E: 206000, nu: 0.3, limt: 9}", "material.limt", "unknown key; did you mean limit?"),
@@ -258,3 +258,27 @@ def test_a_lobe_is_as_wide_as_on_its_shaft(tmp_path: Path) -> None:
     report = camgeo.check(shaft)
     values = {one["surface"]: one["value"] for one in report["checks"] if one["name"] == "limit:contact-pressure"}
     assert list(values.values()) == pytest.approx([644.4371 * math.sqrt(10.0 / long) for long in (5.0, 20.0)], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("stated", "mega"),
+    [
+        ("600 MPa", 600.0),
+        ("600 N/mm^2", 600.0),
+        ("600 N/mm²", 600.0),
+        ("0.6 GPa", 600.0),
+        ("1000 psi", 6.894757293168361),
+    ],
+)
+def test_pressures_carry_their_units(stated: str, mega: float) -> None:
+    """1 psi is 0.45359237 kg by 9.80665 m/s^2 over a square inch."""
+    own = f"material: {{E: 206 GPa, nu: 0.3, limit: {stated}}}"
+    text = CAM.replace("MATERIAL", own) + f"limits: {{contact-pressure: {{at_most: {stated}}}}}\n"
+    recipe = read(text.encode(), Path("cam.yaml"))
+    assert recipe.dynamics is not None
+    assert recipe.dynamics.material == Material(206_000.0, 0.3, pytest.approx(mega, rel=1e-15))
+    assert recipe.limits[0].at_most == pytest.approx(mega, rel=1e-15)
+    with pytest.raises(
+        RecipeErrors, match=r"'lbf' is no unit of a pressure, .* give N/mm\^2, N/mm², MPa, GPa, psi or ksi"
+    ):
+        read(text.replace(f"at_most: {stated}", "at_most: 3 lbf").encode(), Path("cam.yaml"))

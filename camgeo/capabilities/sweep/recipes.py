@@ -75,9 +75,10 @@ def told(ask: Ask, figures: collections.abc.Mapping[str, float]) -> str:
 
 
 def _about(ask: Ask, best: Best) -> str:
-    """Where a design comes from and what its figures are, then the recipe's own note as far as there is room."""
+    """Where a design comes from and the figure that ranks it, then the recipe's own note as far as there is room."""
     origin = f"polished from design {best.index}" if best.polished else f"design {best.index}"
-    text = f"{origin} of {ask.plan.count} of the sweep of {ask.recipe.name}: {told(ask, best.figures)}"
+    ranking = {name: value for name, value in best.figures.items() if name == ask.sweep.rank}
+    text = f"{origin} of {ask.plan.count} of the sweep of {ask.recipe.name}: {told(ask, ranking)}"
     if ask.recipe.about:
         text += f". {ask.recipe.about}"
     return text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 3] + "..."
