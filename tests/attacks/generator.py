@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, recipes, wider
+from attacks import calls, files, recipes, shafts, wider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,6 +35,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     calls.called,
     wider.searched,
     wider.on_a_shaft,
+    shafts.flush,
 )
 """Ways to attack, in turn."""
 
