@@ -213,7 +213,7 @@ def saved_again(rng: Random, raw: bytes, _: Cam) -> Spoilt:
     """The same contour as another program may write it."""
     document, outline = _opened(raw)
     rows = list(outline.get_points("xyb"))
-    way = rng.choice(["start", "backwards", "lines and arcs", "inches", "block"])
+    way = rng.choice(["start", "backwards", "lines and arcs", "inches", "block", "frame", "no header"])
     mm = 1.0
     if way == "start":
         at = rng.randrange(len(rows))
@@ -228,6 +228,13 @@ def saved_again(rng: Random, raw: bytes, _: Cam) -> Spoilt:
         for entity in document.modelspace():
             entity.scale_uniform(1.0 / 25.4) if hasattr(entity, "scale_uniform") else None
         document.header["$INSUNITS"], mm = 1, 25.4
+    elif way == "frame":
+        document.layout("Layout1").add_circle((0.0, 0.0), 5.0, dxfattribs={"layer": "CUT"})
+    elif way == "no header":
+        saved = _saved(document)
+        head = saved.index(b"HEADER")
+        cut = saved[: saved.rindex(b"  0", 0, head)] + saved[saved.index(b"ENDSEC", head) + len(b"ENDSEC\n") :]
+        return Spoilt("dxf no header", cut, FAILS)
     else:
         block = document.blocks.new("PART")
         for entity in list(document.modelspace().query("*[layer=='CUT' | layer=='BORE']")):
@@ -270,7 +277,9 @@ def _stl(rows: np.ndarray) -> bytes:
 def stl_changed(rng: Random, raw: bytes, cam: Cam) -> Spoilt:
     rows = _triangles(raw)
     corners = rows["corners"]
-    way = rng.choice(["column", "corner", "removed", "flipped", "inside out", "scaled", "inches", "shuffled", "turned"])
+    way = rng.choice(
+        ["column", "corner", "removed", "flipped", "inside out", "scaled", "inches", "shuffled", "turned", "noise"]
+    )
     at = rng.randrange(len(rows))
     by = rng.uniform(4.0, 300.0) * cam.tolerance
     statuses = FAILS
@@ -293,6 +302,11 @@ def stl_changed(rng: Random, raw: bytes, cam: Cam) -> Spoilt:
         corners /= np.float32(25.4)
     elif way == "turned":
         corners[..., :] = corners[..., [2, 0, 1]].copy()
+    elif way == "noise":
+        places, numbers = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        places[:, 2] += np.float32(1e-9) * np.array([rng.uniform(-1, 1) for _ in places], dtype=np.float32)
+        corners[:] = places[numbers].reshape(corners.shape)
+        statuses = PASSES
     else:
         rows = rows[rng.sample(range(len(rows)), len(rows))]
         statuses = PASSES

@@ -67,7 +67,7 @@ def test_what_makes_the_exact_one_fit(placed: Callable[[np.ndarray], np.ndarray]
 @given(st.floats(-179.0, 179.0), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
 @settings(max_examples=examples(10), deadline=None)
 def test_any_turn_and_shift(degrees: float, x: float, y: float) -> None:
-    said = words(turned(support_points(500), degrees) + [x, y])
+    said = words(turned(support_points(500), degrees) + np.array([x, y]))
     for name, value, accuracy in (("turned by ", degrees, 0.03), ("moved by (", x, 0.03), (", ", y, 0.03)):
         if abs(value) > 0.1 and name in said:
             told = said.rpartition(name)[2].split(" ")[0].strip("(),")
