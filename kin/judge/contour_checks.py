@@ -14,6 +14,7 @@ from kin.follower.motion_error import ALLOWANCE, ContactError, Judged, MotionErr
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, limit_of, stroke_of, unlimited
 from kin.judge.verdict import SurfaceVerdict
+from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from kin.judge.intent import Limits, LinkageIntent, SurfaceIntent
     from kin.numeric.arrays import Array
     from kin.read.nesting import Chain
+
+
+PLACED = np.linspace(0.0, TURN, 720, endpoint=False)  # parameters at which a contour that is wrong is looked for
 
 
 class Fine(NamedTuple):
@@ -86,9 +90,9 @@ def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float
     """A check on a contour that fails, with the place at which the exact one would fit it."""
     if check.ok or not envelope.regular:
         return check
-    from kin.judge.misplaced import placement  # what is right does without
+    from kin.contour.placement import placement  # what is right does without
 
-    elsewhere = placement(contour, envelope, tolerance)
+    elsewhere = placement(contour, envelope.points(PLACED), tolerance)
     return replace(check, detail=f"{check.detail}; {elsewhere}") if elsewhere else check
 
 

@@ -14,8 +14,8 @@ from support.cases import examples
 from support.intent import part_of
 
 from kin.contour.contour import Contour
+from kin.contour.placement import placement
 from kin.judge.intent import Limits
-from kin.judge.misplaced import placement
 from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
 
@@ -38,7 +38,11 @@ def larger(points: np.ndarray, by: float) -> np.ndarray:
 
 
 def words(points: np.ndarray) -> str:
-    return placement(Contour.from_vertices(points), YOKE.envelope, TOLERANCE)
+    return placement(
+        Contour.from_vertices(points),
+        YOKE.envelope.points(np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)),
+        TOLERANCE,
+    )
 
 
 @pytest.mark.parametrize(

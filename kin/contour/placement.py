@@ -19,10 +19,9 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
-    from kin.follower.envelope import Envelope
     from kin.numeric.arrays import Array
 
-POINTS = 720  # of the exact contour, and directions
+POINTS = 720  # directions in which distances are compared
 LOOKS = 8  # on each piece of the file's
 MOST_PIECES = 20_000  # beyond, nothing is looked for
 STARTS = 6  # turns from which the fit goes on
@@ -32,14 +31,14 @@ FACTORS = (1.0, 25.4, 1.0 / 25.4, 10.0, 0.1, 1000.0, 1e-3)
 SAME_SIZE = 0.1  # share by which an area may differ from that of one of these
 
 
-def placement(contour: Contour, envelope: Envelope, tolerance: float) -> str:
+def placement(contour: Contour, exact: Array, tolerance: float) -> str:
     """How the exact contour has to be placed to fit a file's contour within some tolerances, mm, in words.
 
-    Empty where no turn, shift, mirror image, change of unit or offset makes it fit, or none is needed.
+    `exact` are some hundred points of it (n, 2), in order. Empty where no turn, shift, mirror image, change of unit or
+    offset makes it fit, or none is needed.
     """
     if len(contour) > MOST_PIECES or not contour.area > 0.0:
         return ""
-    exact = envelope.points(np.arange(POINTS) * TURN / POINTS)
     if float(cross(exact, np.roll(exact, -1, axis=0)).sum()) < 0.0:
         exact = exact[::-1]
     large = np.sqrt(contour.area / _area(exact))
