@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.drawing.drawing import Drawing
-    from kin.read.files import AnySolid
+    from kin.read.formats import AnySolid
 
     AnyPath: TypeAlias = str | PathLike[str]
 
@@ -380,10 +380,10 @@ def _solid(path: Path) -> AnySolid:
 
 def _is_solid(path: Path) -> bool:
     """Whether a file is a solid, not a drawing; raises CallError for one that is neither."""
-    from kin.read.files import DRAWINGS, SOLIDS, SUFFIXES
+    from kin.read.formats import FORMATS, suffixes
 
-    kind = SUFFIXES.get(path.suffix.lower())
-    if kind not in SOLIDS | DRAWINGS:
-        known = ", ".join(suffix for suffix, of_kind in SUFFIXES.items() if of_kind in SOLIDS | DRAWINGS)
-        raise CallError(f"{path.name}: a contour is read from one of {known}")
-    return kind in SOLIDS
+    known = {suffix: FORMATS[name].contents for suffix, name in suffixes().items()}
+    readable = [suffix for suffix, contents in known.items() if contents in {"drawing", "solid"}]
+    if path.suffix.lower() not in readable:
+        raise CallError(f"{path.name}: a contour is read from one of {', '.join(readable)}")
+    return known[path.suffix.lower()] == "solid"

@@ -12,8 +12,8 @@ from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, t
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.output import pipeline
-from camgeo.recipe.export import KINDS
 from camgeo.recipe.recipe import Recipe
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def verify(
     where a file states another unit than `units`, SurroundingsError where one of those libraries is missing. A file
     that cannot be read raises nothing: that is a check that fails.
     """
-    from kin.read.files import DRAWINGS, SUFFIXES
+    from kin.read.formats import suffixes
 
     recipe = order_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
@@ -110,13 +110,15 @@ def verify(
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
     again = [path for path in dict.fromkeys(found) if found.count(path) > 1]
     faults += [f"{escaped(str(path))}: it is given {found.count(path)} times; give each file once" for path in again]
-    known = ", ".join(SUFFIXES)
-    faults += [f"{escaped(str(path))}: none of {known}" for path in found if path.suffix.lower() not in SUFFIXES]
+    known = suffixes()
+    faults += [
+        f"{escaped(str(path))}: none of {', '.join(known)}" for path in found if path.suffix.lower() not in known
+    ]
     if within is not None and not 0.0 < within <= MOST:
         faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {within!r}")
     if wide is not None and not 0.0 < wide <= MOST:
         faults.append(f"a gap is a length above 0 and at most the tolerance, not {wide!r}")
-    if wide is not None and not any(SUFFIXES.get(path.suffix.lower()) in DRAWINGS for path in paths):
+    if wide is not None and not any(_is_drawing(path) for path in paths):
         faults.append("a gap is one between ends in a drawing: leave it out, as none of the files is one")
     if units is not None and units not in UNIT_MM:
         faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
@@ -146,19 +148,27 @@ def _told(report: Report) -> Report:
 
 
 def _unlisted(kind: str) -> str:
-    if kind not in KINDS:
-        return f"a kind of file is one of {', '.join(KINDS)}, not {spelled(kind)}"
+    if kind not in FORMATS:
+        return f"a kind of file is one of {', '.join(FORMATS)}, not {spelled(kind)}"
     return f"export.files lists no {kind}"
+
+
+def _is_drawing(path: Path) -> bool:
+    from kin.read.formats import FORMATS as READ
+    from kin.read.formats import suffixes
+
+    name = suffixes().get(path.suffix.lower())
+    return name is not None and READ[name].contents == "drawing"
 
 
 def _no_file(path: Path) -> str:
     """Say why a path leads to no file, or to one larger than is read; empty where it does."""
-    from kin.read.files import SUFFIXES
+    from kin.read.formats import suffixes
     from kin.read.size import oversize
 
     try:
         if path.is_file():
-            kind = SUFFIXES.get(path.suffix.lower())
+            kind = suffixes().get(path.suffix.lower())
             return "" if kind is None else oversize(path, kind)
         if path.is_dir():
             return "a folder; name the files in it"

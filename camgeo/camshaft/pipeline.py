@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 from camgeo.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
+from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import MissingExtraError, RegionError
+from camgeo.files.mesh import Item
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.pipeline import REPORT, Outcome
+from camgeo.recipe.camshaft import SHAFT_FILES
+from camgeo.registry.formats import numbers_of
 from camgeo.report.document import Findings, document, encoded
+from camgeo.schema.fields import either
 from camgeo.synthesis.intent import intended, permitted
 from kin.numeric.records import dataclass, field, replace
 
@@ -28,9 +32,7 @@ if TYPE_CHECKING:
     from kin.judge.camshaft import CamshaftIntent
     from kin.judge.check import Check
 
-UNIT_OF = {"glb": 1000.0}  # mm
 COLOUR = "#d08a3c"
-STEPS = 8  # of a turn, as of one cam
 
 
 @dataclass(frozen=True)
@@ -90,21 +92,22 @@ def judged(
     """Report on solids of any origin, held against a camshaft's lobes; raises as `camgeo.output.pipeline.judged`."""
     from camgeo.recipe.export import FileRequest
     from kin.judge.camshaft import verify_camshaft
-    from kin.read.files import SOLIDS, kind_of
+    from kin.read.formats import FORMATS, format_of
 
     clock = Clock()
     lobes = placed(recipe, clock)
     checks, files = lobe_checks(recipe, lobes), []
     for path in paths:
-        kind = kind_of(path)
-        if kind not in SOLIDS:
-            raise recipe.error(
-                "camshaft", f"a camshaft is judged by its solid, not by {path.name}", None, "give its stl, 3mf or step"
-            )
+        record = format_of(path)
+        kind = record.name
+        if record.contents != "solid":
+            solids = tuple(name for name, other in FORMATS.items() if other.contents == "solid")
+            remedy = f"give its {either(solids)}"
+            raise recipe.error("camshaft", f"a camshaft is judged by its solid, not by {path.name}", None, remedy)
         request = recipe.request_of(path.name) or FileRequest(kind)
         within = (request.tolerance or recipe.export.tolerance) if tolerance is None else tolerance
         stated = units
-        if stated is None and kind == "stl" and request.units == "inch":
+        if stated is None and not record.units and request.units == "inch":
             stated = 25.4
         with clock.stage("judge"):
             verdict = verify_camshaft(path, _intent(recipe, lobes, within), recipe.verify.angles, stated)
@@ -124,11 +127,11 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
     lobes = placed(recipe, clock)
     checks = lobe_checks(recipe, lobes)
     files: list[FileResult] = []
-    pages = [request for request in requests if request.kind == "html"]
+    pages = [request for request in requests if request.format.summary]
     if all(lobe.contour is not None for lobe in lobes) and all(check.ok or check.name != "shaft" for check in checks):
         job = _Job(recipe, lobes, clock)
         for request in requests:
-            if request.kind == "html":
+            if request.format.summary:
                 continue
             path = folder / request.filename(recipe.name, recipe.export.files)
             file, more = _made(job, request, path)
@@ -177,18 +180,18 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
         raise recipe.error("camshaft", f"within the tolerance, {error}") from error
     except MissingExtraError as error:
         raise SurroundingsError(str(error), recipe.path) from error
-    if request.kind == "glb":
-        return FileResult(path, request, units=UNIT_OF["glb"]), ()
+    if not request.format.contour:
+        return FileResult(path, request, units=UNIT_MM["m"]), ()
     with job.clock.stage(f"judge {request.kind}"):
         intent = _intent(recipe, job.lobes, tolerance)
-        verdict = verify_camshaft(path, intent, recipe.verify.angles, mm if request.kind == "stl" else None)
+        verdict = verify_camshaft(path, intent, recipe.verify.angles, None if request.format.units else mm)
     return FileResult.of(path, request, tolerance, verdict, (pieces, bound)), verdict.checks
 
 
 def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
     """Write a solid; the bound of its lobes' contours, mm, and the pieces that they are made of."""
-    recipe, tolerance, mm = job.recipe, job.tolerance(request), job.unit(request)
-    if request.kind == "step":
+    recipe, tolerance, mm, record = job.recipe, job.tolerance(request), job.unit(request), request.format
+    if record.numbers is None:
         from camgeo.camshaft.body import camshaft_outlines, circle
         from camgeo.formats.step import write_stack
 
@@ -198,28 +201,17 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
             more = write_stack(path, stretches, bore, units=request.units or "mm", name=recipe.name, about=recipe.about)
         return bound.widened(more), pieces
     from camgeo.camshaft.body import camshaft_mesh
-    from camgeo.files.precision import DECIMALS, SINGLE
 
-    precision = (DECIMALS if request.kind == "3mf" else SINGLE).in_units(mm)
+    numbers = numbers_of(record, mm)
     with job.clock.stage(f"mesh {request.kind}"):
-        mesh, bound, pieces = camshaft_mesh(recipe, job.lobes, job.fits_of, tolerance=tolerance, precision=precision)
+        mesh, bound, pieces = camshaft_mesh(recipe, job.lobes, job.fits_of, tolerance=tolerance, precision=numbers)
     with job.clock.stage(f"write {request.kind}"):
-        if request.kind == "stl":
-            from camgeo.formats.stl import write_stl
-
-            write_stl(path, mesh, mm=mm, about=recipe.name)
-        elif request.kind == "3mf":
-            from camgeo.formats.three_mf import Item, write_3mf
-
-            write_3mf(path, [Item("camshaft", mesh)], title=recipe.name, mm=mm, about=recipe.about)
+        if record.write is not None:
+            record.write(path, [Item("camshaft", mesh)], recipe.name, mm, recipe.about)
         else:
-            import numpy as np
+            from camgeo.formats.glb import Actor, steady_turn, write_glb
 
-            from camgeo.formats.glb import Actor, write_glb
-
-            pose = np.zeros((STEPS + 1, 3))
-            pose[:, 2] = (1.0 if recipe.rotation == "ccw" else -1.0) * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
-            write_glb(path, [Actor("camshaft", mesh, pose, COLOUR)], title=recipe.name)
+            write_glb(path, [Actor("camshaft", mesh, steady_turn(recipe.rotation), COLOUR)], title=recipe.name)
     return bound, pieces
 
 
@@ -257,7 +249,11 @@ def _findings(
 
     contours = {lobe.lobe.name: measures(lobe.contour) for lobe in lobes if lobe.contour is not None}
     kinds = {request.kind for request in recipe.export.files}
-    skipped = tuple((kind, "not asked for") for kind in ("stl", "3mf", "step") if kind not in kinds)
+    skipped = tuple(
+        (kind, "not asked for")
+        for kind, record in SHAFT_FILES.items()
+        if record.solid and record.contour and kind not in kinds
+    )
     return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, "of each lobe", contours=contours)
 
 

@@ -12,7 +12,6 @@ from functools import cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
-from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
 from camgeo.recipe.figures import (
     BACKLASH,
     BACKLASH_LEFT,
@@ -156,46 +155,46 @@ def _walled(scene: Scene) -> bool:
 
 
 def _contour(_: Scene, file: FileRequest) -> bool:
-    return file.kind not in NO_CONTOUR
+    return file.format.contour
 
 
 def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
-    return file.ground or _contour(scene, file)
+    return file.form.ground or _contour(scene, file)
 
 
 def _drawing(_: Scene, file: FileRequest) -> bool:
-    return file.kind not in NO_CONTOUR | SOLIDS
+    return file.format.contour and not file.format.solid
 
 
 def _solid(scene: Scene, file: FileRequest) -> bool:
-    return _contour(scene, file) and file.kind in SOLIDS
+    return _contour(scene, file) and file.format.solid
 
 
 def _program(_: Scene, file: FileRequest) -> bool:
-    return file.kind == "gcode"
+    return file.format.program
 
 
 def _pocketed(scene: Scene, file: FileRequest) -> bool:
     """Of a program that mills between two surfaces that one touch runs on."""
     follower = scene.follower
-    return file.kind == "gcode" and follower.arrangement.contacts < len(follower.contacts)
+    return file.format.program and follower.arrangement.contacts < len(follower.contacts)
 
 
 def _reached(scene: Scene, file: FileRequest) -> bool:
     asked = scene.recipe.manufacture
-    drawn = file.kind == "dxf" and file.compensation is None and asked is not None and asked.layer
-    return drawn or file.kind == "gcode"
+    drawn = file.format.path and file.compensation is None and asked is not None and asked.layer
+    return drawn or file.format.program
 
 
 def _ringed(scene: Scene, file: FileRequest) -> bool:
-    return scene.recipe.part.outer is not None and _contour(scene, file) and file.kind != "gcode"
+    return scene.recipe.part.outer is not None and _contour(scene, file) and not file.format.program
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:
     part, asked = scene.recipe.part, scene.recipe.manufacture
-    if part.bore is None or file.kind in NO_CONTOUR:
+    if part.bore is None or not file.format.contour:
         return False
-    if file.kind != "gcode":
+    if not file.format.program:
         return True
     if asked is None or not asked.holes or part.sides or part.keyway or part.flat or part.hub:
         return False
@@ -205,10 +204,10 @@ def _bored(scene: Scene, file: FileRequest) -> bool:
 def _drilled(scene: Scene, file: FileRequest) -> bool:
     """Of a program: where lightening holes find their place is not known beforehand."""
     part, asked = scene.recipe.part, scene.recipe.manufacture
-    if file.kind in NO_CONTOUR:
+    if not file.format.contour:
         return False
     holes = [one for one in (part.bolts, part.dowel) if one is not None]
-    if file.kind != "gcode":
+    if not file.format.program:
         return bool(holes) or part.lightening is not None
     hub = 0.0 if part.hub is None else part.hub.diameter
     least = None if asked is None or not asked.holes else asked.cutter + 2.0 * LEAST_ROOM
@@ -221,7 +220,7 @@ def _with(name: str) -> OfFile:
 
 
 def _marked(scene: Scene, file: FileRequest) -> bool:
-    return _contour(scene, file) and file.kind != "gcode" and scene.recipe.part.mark is not None
+    return _contour(scene, file) and not file.format.program and scene.recipe.part.mark is not None
 
 
 def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
@@ -240,11 +239,11 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
     return _dwells(scene) and _driven(scene, file)
 
 
-def _seen_by(*kinds: str) -> OfFile:
-    """Whether other libraries are asked about files of these kinds; a 3MF of all bodies is not the cam's alone."""
+def _seen_by(library: str) -> OfFile:
+    """Whether a library is asked about a file; one of all bodies is not the cam's alone."""
 
     def seen(scene: Scene, file: FileRequest) -> bool:
-        return scene.second_opinion and file.kind in kinds and not (file.kind == "3mf" and file.parts == "all")
+        return scene.second_opinion and library in file.format.second and not file.united
 
     return seen
 
@@ -266,7 +265,7 @@ def _loose(scene: Scene) -> bool:
 
 def run_with(scene: Scene, file: FileRequest) -> bool:
     """Whether dynamics are found with a file: of a linkage the intended output alone drives."""
-    return not scene.linked and file.kind not in NO_PART and file.compensation is None
+    return not scene.linked and file.format.part and file.compensation is None
 
 
 # --- why a check is not made ------------------------------------------------------------------------------------------
@@ -465,8 +464,8 @@ LEAST_BACKLASH = Declared(
 # --- a second opinion on files ----------------------------------------------------------------------------------------
 
 _ANEW = remedies.exported_anew
-_FACED, _MESHES = _seen_by("dxf", "svg", "stl", "3mf", "step"), _seen_by("stl", "3mf")
-AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_seen_by("dxf"), remedy=_ANEW)
+_FACED, _MESHES = _seen_by("shapely"), _seen_by("trimesh")
+AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_seen_by("ezdxf"), remedy=_ANEW)
 CONTOUR_VALID = Declared("shapely:valid", ("faults",), of_file=_FACED, remedy=_ANEW)
 CONTOUR_AREA = Declared("shapely:area", ("mm^2",), of_file=_FACED, field="export.tolerance", remedy=_ANEW)
 CONTOUR_DISTANCE = Declared(

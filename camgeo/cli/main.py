@@ -16,8 +16,8 @@ from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
-from camgeo.recipe.export import KINDS
 from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     _add_recipes(export)
     add_out(export)
     export.add_argument(
-        "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
+        "--only", action="append", default=[], choices=tuple(FORMATS), help="only files of this kind; repeatable"
     )
     export.add_argument(
         "--watch", action="store_true", help="export again each time the recipe is saved; a page reloads itself"
@@ -221,7 +221,7 @@ def _watch(arguments: argparse.Namespace) -> int:
             complain(str(errors))
             return None, str(errors)
         files[:] = [path, *recipe.parts]
-        asked = [request for request in recipe.export.files if request.kind != "html"]
+        asked = [request for request in recipe.export.files if not request.format.summary]
         page = FileRequest("html")
         recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
         found = result(_at(recipe, arguments.tolerance), Task(out, only))

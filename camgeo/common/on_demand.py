@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TypeVar
 
 T = TypeVar("T")
 
 
 class OnDemand(Mapping[str, T]):
-    """Names that are known from the start, and their values by `make`, each of which is called once."""
+    """Names that are known from the start, and their values by `make`, each of which is called once.
 
-    def __init__(self, names: tuple[str, ...], make: Callable[[str], T]) -> None:
+    Where the names are those of a mapping that grows or shrinks, so does the table.
+    """
+
+    def __init__(self, names: Collection[str], make: Callable[[str], T]) -> None:
         self._names = names
         self._make = make
         self._values: dict[str, T] = {}
 
     def __getitem__(self, name: str) -> T:
         """The value of a name; raises KeyError for one that there is not."""
+        if name not in self._names:
+            raise KeyError(name)
         if name not in self._values:
-            if name not in self._names:
-                raise KeyError(name)
             self._values[name] = self._make(name)
         return self._values[name]
 

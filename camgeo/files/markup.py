@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from xml.sax.saxutils import escape
-
 
 def number(value: float) -> str:
     """The shortest text that gives back the same double."""
@@ -12,5 +10,7 @@ def number(value: float) -> str:
 
 def one_line(text: str) -> str:
     """One line that XML takes, in an attribute too."""
+    from xml.sax.saxutils import escape  # the formats of a recipe are read, most of them not written
+
     plain = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return escape(plain, {'"': "&quot;"})

@@ -36,6 +36,15 @@ class Mesh:
         return float(np.sum(self.points[self.triangles[:, 0]] * self.area_vectors)) / 6.0
 
 
+@dataclass(frozen=True, eq=False)
+class Item:
+    """A named mesh, and where it stands: (4, 3), the images of the three axes and of the origin; None as it is."""
+
+    name: str
+    mesh: Mesh
+    place: Array | None = None
+
+
 @dataclass(frozen=True)
 class MeshFacts:
     """What a solid's mesh holds and how far it is from what was meant.

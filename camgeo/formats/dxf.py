@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.pieces import BSpline, Outline, Polygon
+from camgeo.formats.options import OF_DRAWING
+from camgeo.registry.formats import Form, Format
+from camgeo.schema.fields import Field, Kind, Table
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
@@ -28,6 +31,10 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+    from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1027"}
@@ -285,3 +292,116 @@ def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]
 def _comment(text: str) -> str:
     """Return the text as one line that any reader takes."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:_COMMENT]
+
+
+# --- its files --------------------------------------------------------------------------------------------------------
+
+COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
+
+
+def make_dxf(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one drawing; raises as `camgeo.output.dispatch.make` does."""
+    from camgeo.output.drawing import make_drawing
+
+    return make_drawing(job, request, path, _draw)
+
+
+def _draw(
+    job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
+) -> Sequence[Check]:
+    recipe = job.recipe.told_for(request)
+    checks, tool = _tool_path(job, request)
+    with job.clock.stage("write dxf"):
+        write_dxf(
+            path,
+            [*outlines, *tool],
+            remarks=remarks,
+            reference=_reference(job, job.tolerance(request)),
+            mm=recipe.mm,
+            version=request.version or "R2010",
+            name=recipe.name,
+            about=recipe.about,
+        )
+    return checks
+
+
+def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerOutline]]:
+    """The path of the cutter's centre where it is to be shown, and whether the cutter reaches everything."""
+    asked = job.recipe.manufacture
+    if asked is None or not asked.layer or request.compensation is not None:
+        return [], []
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.machining.milling import path_arcs, reach_checks
+
+    with job.clock.stage("cutter path"):
+        reached = reach_checks(job.recipe, job.design)
+        paths = [path_arcs(job.recipe, path, job.tolerance(request)) for _, path in reached if path is not None]
+    drawn = [arcs.mirrored() if job.recipe.rotation == "ccw" else arcs for arcs in paths]
+    return [check for check, _ in reached], [LayerOutline("TOOLPATH", arcs) for arcs in drawn]
+
+
+def _reference(job: Job, tolerance: float) -> list[Reference]:
+    """Centre, base or prime circle, the pitch curve, and paths of points of links: to look at, not to cut."""
+    from camgeo.fit.arcs import fit_arcs
+    from camgeo.synthesis.part.walls import Looks, distance_inside
+
+    recipe, exact = job.recipe, job.design.exact
+    pitches = {id(surface.base): surface for surface, _ in job.design.contours}.values()
+    found: list[Reference] = [Point("shaft", (0.0, 0.0))]
+    if recipe.part.hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
+    for surface in pitches:
+        for name, radius in exact.circles(surface.name):
+            if radius is not None:
+                found.append(Circle(name, (0.0, 0.0), radius))
+                continue
+            least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
+            if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
+                found.append(Circle(name, (0.0, 0.0), least))
+            if surface.radius:
+                pitch = fit_arcs(surface.base, COARSE)
+                found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+    if recipe.linkage is not None and recipe.linkage.traces:
+        from camgeo.synthesis.traces import trace_lines
+
+        found += [Line(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
+    return found
+
+
+def _check(file: Values, _: Values, reader: Reader) -> None:
+    if file.get("as") == "spline" and file.get("version") == "R12":
+        remedy = "give arcs or polyline, or a later version"
+        reader.fault_at(f"{file['path']}.dxf.as", "R12 has no splines", "'spline'", remedy)
+
+
+FORMAT = Format(
+    name="dxf",
+    options=Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline"),
+            ),
+            Field(
+                "version",
+                Kind.CHOICE,
+                "version of the format; R12 has no splines",
+                default="R2010",
+                choices=("R12", "R2000", "R2010", "R2013"),
+            ),
+            *OF_DRAWING,
+        ),
+    ),
+    forms={
+        name: Form(name=name, surfaces=2, discs=2, pieces=pieces, listed=("as", "version"))
+        for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))
+    },
+    check=_check,
+    by_disc=True,
+    path=True,
+    second=frozenset({"ezdxf", "shapely"}),
+    make=make_dxf,
+)

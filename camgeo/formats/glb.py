@@ -7,10 +7,16 @@ angle about z becomes one about its y. Normals are left out: a viewer then shade
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.common.units import UNIT_MM
+from camgeo.formats.meshes import foresee_mesh
+from camgeo.formats.options import PARTS, TOLERANCE
+from camgeo.registry.formats import Format
+from camgeo.schema.fields import Table
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,6 +26,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.files.mesh import Mesh
+    from camgeo.files.precision import Precision
+    from camgeo.output.job import Job, Made
+    from camgeo.output.parts import Part
+    from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
 PERIOD = 4.0  # seconds
@@ -144,3 +154,61 @@ def _chunk(kind: bytes, data: bytes, filler: bytes) -> bytes:
 
 def _word(number: int) -> bytes:
     return number.to_bytes(4, "little")
+
+
+# --- its files --------------------------------------------------------------------------------------------------------
+
+COLOURS = "#d08a3c", "#5b8aa6"  # of the first disc, and of one above it
+STEPS = 8  # of a turn: between two a viewer turns steadily, as the shaft does
+
+
+def steady_turn(rotation: str) -> Array:
+    """Give the pose (STEPS + 1, 3) of what turns with the shaft, at equal steps of a turn."""
+    sense = 1.0 if rotation == "ccw" else -1.0
+    pose = np.zeros((STEPS + 1, 3))
+    pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
+    return pose
+
+
+def make_view(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit and write the cam to look at, turning once; raises as `camgeo.output.dispatch.make` does."""
+    from camgeo.output.job import looked_at
+    from camgeo.output.solid import cam_meshes
+
+    discs, pose = cam_meshes(job, request), steady_turn(job.recipe.rotation)
+    with job.clock.stage("write glb"):
+        actors = [Actor(one.name, one.standing, pose, COLOURS[k % 2]) for k, one in enumerate(discs)]
+        write_glb(path, actors, title=job.recipe.name)
+    return looked_at(path, request, UNIT_MM["m"])
+
+
+def _moving(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    from camgeo.output.job import looked_at
+
+    write_glb(
+        path,
+        [Actor(one.body.name, one.raised_mesh, one.body.pose, one.body.colour) for one in parts],
+        title=job.recipe.name,
+    )
+    return looked_at(path, request, UNIT_MM["m"])
+
+
+def _single() -> Precision:
+    from camgeo.files.precision import SINGLE
+
+    return SINGLE
+
+
+FORMAT = Format(
+    name="glb",
+    options=Table((PARTS, TOLERANCE)),
+    contour=False,
+    part=False,
+    solid=True,
+    silence="a GLB is to look at",
+    make=make_view,
+    foresee=foresee_mesh,
+    numbers=_single,
+    bodies=_moving,
+    first="assembly",
+)

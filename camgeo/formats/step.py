@@ -16,6 +16,9 @@ from camgeo.files.curves import misfit
 from camgeo.files.precision import converted
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
+from camgeo.formats.options import OF_SOLID
+from camgeo.registry.formats import Form, Format
+from camgeo.schema.fields import Field, Kind, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.solid import Solid
     from camgeo.fit.pieces import Outline
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
 
 TIME = "2000-01-01T00:00:00"  # in place of the time of writing
 # The kernel's settings are its own for the whole process: set while a file is written, and set back.
@@ -185,3 +191,70 @@ def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
             wide = ord(letter) > 0xFFFF
             parts.append(f"\\X{4 if wide else 2}\\{ord(letter):0{8 if wide else 4}X}\\X0\\")
     return TCollection_HAsciiString("".join(parts))
+
+
+# --- its files --------------------------------------------------------------------------------------------------------
+
+
+def make_step(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
+    from camgeo.output.part_geometry import contours_of, rim_of, solid_of
+
+    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    with job.refusals(request):
+        need_kernel()
+        form = request.as_ or "arcs"
+        discs = job.design.discs
+        names = [disc.name if len(discs) > 1 else "" for disc in discs]
+        drawn = [
+            one.outlines_written(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
+        ]
+        with job.clock.stage("write step"):
+            if recipe.part.thickness is None:
+                raise recipe.error("part.thickness", "a solid needs a thickness")
+            bodies = [
+                StepBody([*rim_of(one.body), *contours_of(one.design, contours)], solid_of(one.body), name, disc.z)
+                for one, contours, name, disc in zip(job.single, drawn, names, discs, strict=True)
+            ]
+            bound = write_step(
+                path,
+                bodies,
+                tolerance=tolerance,
+                units=recipe.units,
+                name=recipe.name,
+                about=recipe.about,
+            )
+    judged = job.judged if len(discs) == 1 else job.judged_together
+    return judged(request, path, bound, sum(outline.count for contours in drawn for outline in contours))
+
+
+def _check(file: Values, _: Values, reader: Reader) -> None:
+    if file.get("as", "arcs") != "arcs" and "part.chamfer" in reader.marks:
+        remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
+        where = f"{file['path']}.step.as"
+        reader.fault_at(where, "the chamfer of a spline is not a spline", f"'{file['as']}'", remedy)
+
+
+FORMAT = Format(
+    name="step",
+    options=Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of: cylinders and planes, or the surface that a spline sweeps",
+                default="arcs",
+                choices=("arcs", "spline"),
+            ),
+            *OF_SOLID,
+        ),
+    ),
+    forms={
+        name: Form(name=name, surfaces=2, discs=2, pieces=pieces)
+        for name, pieces in (("arcs", "arcs"), ("spline", "spans"))
+    },
+    check=_check,
+    solid=True,
+    second=frozenset({"shapely"}),
+    make=make_step,
+)

@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.units import INCH
+from camgeo.formats.meshes import mesh_format
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.files.mesh import Mesh
+    from camgeo.files.mesh import Item, Mesh
+    from camgeo.files.precision import Precision
 
 _HEADER = 80  # bytes; must not begin with "solid", by which readers tell the text form
 RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -33,3 +36,17 @@ def write_stl(path: Path, mesh: Mesh, *, mm: float = 1.0, about: str = "") -> No
         stream.write(header)
         stream.write(len(records).to_bytes(4, "little"))
         stream.write(records.data)
+
+
+def _written(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
+    (item,) = items
+    write_stl(path, item.mesh, mm=mm, about=title)
+
+
+def _single() -> Precision:
+    from camgeo.files.precision import SINGLE
+
+    return SINGLE
+
+
+FORMAT = mesh_format("stl", numbers=_single, write=_written, units=False)

@@ -20,6 +20,9 @@ from camgeo.curve.ring import ArcChain, radius_of, steps_along
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
 from camgeo.formats.dxf import UNITS
+from camgeo.formats.options import OF_DRAWING
+from camgeo.registry.formats import Form, Format
+from camgeo.schema.fields import Field, Kind, Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
 _PAGE_UNIT = {"mm": "mm", "inch": "in"}
@@ -142,3 +148,46 @@ def _circle(layer: str, centre: tuple[float, float], radius: float, mm: float) -
 
 def _numbers(values: Array) -> str:
     return " ".join(map(number, values.tolist()))
+
+
+# --- its files --------------------------------------------------------------------------------------------------------
+
+
+def make_svg(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one drawing; raises as `camgeo.output.dispatch.make` does."""
+    from camgeo.output.drawing import make_drawing
+
+    return make_drawing(job, request, path, _draw)
+
+
+def _draw(
+    job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
+) -> Sequence[Check]:
+    recipe = job.recipe.told_for(request)
+    with job.clock.stage("write svg"):
+        write_svg(path, outlines, remarks=remarks, mm=recipe.mm, name=recipe.name, about=recipe.about)
+    return ()
+
+
+FORMAT = Format(
+    name="svg",
+    options=Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline"),
+            ),
+            *OF_DRAWING,
+        ),
+    ),
+    forms={
+        name: Form(name=name, surfaces=2, discs=2, pieces=pieces, listed=("as",))
+        for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))
+    },
+    by_disc=True,
+    second=frozenset({"shapely"}),
+    make=make_svg,
+)

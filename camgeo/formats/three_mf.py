@@ -7,21 +7,23 @@ The archive has no dates and a fixed order, so that the same meshes give the sam
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 
 from camgeo.common.units import INCH
 from camgeo.files.markup import number, one_line
-from camgeo.files.precision import DECIMALS
-from kin.numeric.records import dataclass
+from camgeo.formats.meshes import EDGES, OPTIONS, SECOND, foresee_mesh, make_mesh
+from camgeo.registry.formats import Format
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from camgeo.files.mesh import Mesh
-    from kin.numeric.arrays import Array
+    from camgeo.files.mesh import Item, Mesh
+    from camgeo.files.precision import Precision
+    from camgeo.output.job import Job, Made
+    from camgeo.output.parts import Part
+    from camgeo.recipe.export import FileRequest
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -41,20 +43,13 @@ _LEVEL = 6
 _UNITS = {1.0: "millimeter", INCH: "inch"}
 
 
-@dataclass(frozen=True, eq=False)
-class Item:
-    """A named mesh, and where it is built: (4, 3), the images of the three axes and of the origin; None as it is."""
-
-    name: str
-    mesh: Mesh
-    place: Array | None = None
-
-
 def write_3mf(path: Path, items: Sequence[Item], *, title: str, mm: float = 1.0, about: str = "") -> None:
     """Write meshes, mm, each under its name and in its place, in a unit of `mm` mm, 1 or 25.4.
 
     Raises KeyError for another unit, OSError as the file system does.
     """
+    from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
     lines = [
         f'{_XML}<model unit="{_UNITS[mm]}" xml:lang="en-US" xmlns="{_CORE}">',
         f'<metadata name="Title">{one_line(title)}</metadata>',
@@ -75,6 +70,8 @@ def write_3mf(path: Path, items: Sequence[Item], *, title: str, mm: float = 1.0,
 
 
 def _mesh(mesh: Mesh, mm: float) -> Iterable[str]:
+    from camgeo.files.precision import DECIMALS
+
     points = mesh.points if mm == 1.0 else DECIMALS.nearest(mesh.points / mm)  # which the quotient has missed
     yield "<vertices>"
     x, y, z = (map(number, column) for column in points.T.tolist())
@@ -91,3 +88,34 @@ def _built(k: int, item: Item, mm: float) -> str:
         return f'<item objectid="{k}"/>'
     place = [*np.ravel(item.place[:3]).tolist(), *(item.place[3] / mm).tolist()]
     return f'<item objectid="{k}" transform="{" ".join(map(number, place))}"/>'
+
+
+def _written(path: Path, items: Sequence[Item], title: str, mm: float, about: str) -> None:
+    write_3mf(path, items, title=title, mm=mm, about=about)
+
+
+def _decimals() -> Precision:
+    from camgeo.files.precision import DECIMALS
+
+    return DECIMALS
+
+
+def _together(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    from camgeo.output.parts import together
+
+    return together(job, request, path, parts)
+
+
+FORMAT = Format(
+    name="3mf",
+    options=OPTIONS,
+    forms=EDGES,
+    solid=True,
+    second=SECOND,
+    make=make_mesh,
+    foresee=foresee_mesh,
+    numbers=_decimals,
+    write=_written,
+    bodies=_together,
+    first="parts",
+)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.export import NO_PART
 from kin.judge.verdict import OfSurfaces
 from kin.numeric.records import dataclass
 
@@ -52,4 +51,4 @@ class FileResult(OfSurfaces):
     @property
     def shows_cam(self) -> bool:
         """Whether the file has the nominal cam's contour, and not another body's or none."""
-        return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
+        return self.body == "cam" and self.request.format.part and self.request.compensation is None

@@ -14,7 +14,6 @@ from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.figures import of_design
 from camgeo.measures.units import of_displacements
-from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
@@ -232,7 +231,7 @@ def _cutter(recipe: Recipe, design: Design) -> Remark | None:
     made = recipe.manufacture
     if made is None or not design.contours or "roller" not in recipe.cam.arrangement.offers:
         return None
-    if made.layer or any(request.kind == "gcode" for request in recipe.export.files):
+    if made.layer or any(request.format.program for request in recipe.export.files):
         return None
     radius, at = min(hollow_radius(surface.side, contour) for surface, contour in design.contours)
     if radius >= made.radius:
@@ -300,7 +299,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
     length = stroke * arm
     if length <= STILL * size_of(design):
         return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
-    files = [request for request in recipe.export.files if request.kind not in NO_CONTOUR]
+    files = [request for request in recipe.export.files if request.format.contour]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
     found = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]
     error = recipe.verify.motion_error

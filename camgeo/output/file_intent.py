@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curve import CurveError
-from camgeo.synthesis.intent import closures_between, intended
+from camgeo.registry.formats import FORMATS
+from camgeo.synthesis.intent import closures_between
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -43,21 +44,4 @@ def shaft_of_file(
 
 def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
     """What kin is given of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several."""
-    if kind == "csv":
-        from camgeo.machining.grinding import grinding_intent
-
-        return replace(intended(recipe, design), grinding=grinding_intent(recipe, design))
-    if kind != "gcode":
-        return intended(recipe, design)
-    if recipe.manufacture is None:
-        raise recipe.error("manufacture", "missing", None, "give manufacture: a program is judged by its cutter")
-    if recipe.part.thickness is None:
-        raise recipe.error("part.thickness", "missing", None, "give part.thickness: a program is judged by its depth")
-    if not design.contours:
-        raise recipe.error("cam", "a check of the exact contour fails, so nothing can be milled")
-    from camgeo.machining.milling import milling_intent
-
-    try:
-        return milling_intent(recipe, design)
-    except CurveError as error:
-        raise recipe.error("manufacture.cutter", str(error)) from error
+    return FORMATS[kind].intent(recipe, design)

@@ -172,7 +172,7 @@ class Job:
         recipe, tolerance = self.recipe, self.tolerance(request)
         told = recipe.told_for(request)
         meant = intent_of_file(told, self.design, request.kind)
-        units = told.mm if request.kind == "stl" else None  # which an STL cannot state
+        units = None if request.format.units else told.mm
         with self.clock.stage(f"judge {request.kind}"):
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
@@ -214,3 +214,8 @@ class Job:
         less = self.recipe.cam.advice.less_swing(self.recipe.mm)
         why = f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {less} would satisfy it"
         return replace(check, detail=f"{check.detail}: {why}")
+
+
+def looked_at(path: Path, request: FileRequest, units: float) -> Made:
+    """Give a file that is to look at, or a table, which nothing judges; `units` is that of its numbers, mm."""
+    return Made((FileResult(path, request, units=units),))

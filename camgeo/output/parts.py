@@ -1,4 +1,4 @@
-"""Solids of every body of a mechanism, the cam among them: an STL each, or all in one 3MF or GLB."""
+"""Solids of every body of a mechanism, the cam among them: a file each, or all in one."""
 
 from __future__ import annotations
 
@@ -9,20 +9,19 @@ import numpy as np
 
 from camgeo.assembly.interference import slabs
 from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
-from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import RegionError
+from camgeo.files.mesh import Item
 from camgeo.fit.pieces import Bound
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
-from camgeo.output.solid import cam_mesh, precision_of
+from camgeo.output.solid import cam_mesh, numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from camgeo.assembly.body import PrintBody
     from camgeo.files.mesh import Mesh
-    from camgeo.formats.three_mf import Item
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from kin.judge.check import Check
@@ -45,6 +44,11 @@ class Part(NamedTuple):
     pieces: int | None = None
 
     @property
+    def raised_mesh(self) -> Mesh:
+        """Its mesh in the axes of the body, as it moves."""
+        return replace(self.mesh, points=self.mesh.points + np.array([0.0, 0.0, self.raised]))
+
+    @property
     def place(self) -> Array:
         """Where it stands at shaft angle 0."""
         found = standing(self.body.pose[0])
@@ -55,20 +59,17 @@ class Part(NamedTuple):
 def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> Made:
     """Write and judge all bodies, given as for a shaft that turns clockwise; one of them is named "cam".
 
-    STL: one file a body, the cam's at `path`, the others' `<name>-<body>.stl` beside it, lying flat. 3MF: laid out for
-    printing at `path`, and standing in the mechanism in `<name>-assembly.3mf`. GLB: moving, at `path`.
-    Raises RecipeErrors and SurroundingsError as `make` does.
+    What makes the files is `bodies` of the format. Raises RecipeErrors and SurroundingsError as `make` does.
     """
+    write = request.format.bodies
+    if write is None:
+        raise ValueError(f"{request.kind} holds no mechanism")
     drawn = [mirrored(body) for body in bodies] if job.recipe.rotation == "ccw" else list(bodies)
     # the cam's own mesh last, as it is dear: a body that has none is told at once
     meshed = {body.name: _part(job, request, body) for body in sorted(drawn, key=lambda body: body.name == CAM)}
     parts = [meshed[body.name] for body in drawn]
     with job.clock.stage(f"write {request.kind}"):
-        if request.kind == "glb":
-            return _glb(job, request, path, parts)
-        if request.kind == "3mf":
-            return _three_mf(job, request, path, parts)
-        return _stl(job, request, path, parts)
+        return write(job, request, path, parts)
 
 
 def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
@@ -77,49 +78,49 @@ def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
         return Part(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
     with job.refusals(request), job.clock.stage(f"mesh {request.kind}"):
         try:
-            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=precision_of(job, request))
+            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=numbers(job, request))
         except RegionError as error:
             raise job.recipe.error("mechanism", str(error)) from error
     return Part(body, mesh, Bound(off, off))
 
 
-def _stl(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.formats.stl import write_stl
-    from kin.read.mesh.stl import triangles_of
+def one_by_one(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    """Write and judge a file for each body: the cam's at `path`, the others' `<name>-<body>` beside it, lying flat."""
+    from kin.read.files import read_meshes
 
-    mm = job.recipe.told_for(request).mm
+    mm, ending, write = job.recipe.told_for(request).mm, request.format.ending, _writer(request)
     files: list[FileResult] = []
     checks: list[Check] = []
     for part in parts:
         name = part.body.name
         if name == CAM:
-            write_stl(path, part.mesh, mm=mm, about=f"{job.recipe.name}: {name}")
+            write(path, [Item(name, part.mesh)], f"{job.recipe.name}: {name}", mm, "")
             made = _judged_cam(job, request, path, part)
         else:
-            there = path.with_name(f"{job.recipe.name}-{name}.stl")
+            there = path.with_name(f"{job.recipe.name}-{name}.{ending}")
             turn, lift = flat(part.mesh)
-            lying = replace(part.mesh, points=precision_of(job, request).rounded(part.mesh.points @ turn + lift)[0])
-            write_stl(there, lying, mm=mm, about=f"{job.recipe.name}: {name}")
-            corners = triangles_of(there.read_bytes(), there)[0].astype(np.float64) * mm
+            lying = replace(part.mesh, points=numbers(job, request).rounded(part.mesh.points @ turn + lift)[0])
+            write(there, [Item(name, lying)], f"{job.recipe.name}: {name}", mm, "")
+            (built,) = read_meshes(there, mm)
             # the way back is the way there: half a turn, and the lift undone before it
-            made = _judged_body(job, request, there, part, (corners - lift) @ turn)
+            made = _judged_body(job, request, there, part, (built.corners - lift) @ turn)
         files += made.files
         checks += made.checks
     return Made(tuple(files), tuple(checks))
 
 
-def _three_mf(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.formats.three_mf import Item, write_3mf
-    from kin.read.mesh.threemf import read_placed
+def together(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    """Write and judge two files of all bodies: laid out for printing at `path`, standing in `<name>-assembly`."""
+    from kin.read.files import read_meshes
 
-    recipe = job.recipe
+    recipe, mm, write = job.recipe, job.recipe.told_for(request).mm, _writer(request)
     for_printing = laid_out([part.mesh for part in parts])
-    standing_there = path.with_name(f"{recipe.name}-assembly.3mf")
+    standing_there = path.with_name(f"{recipe.name}-assembly.{request.format.ending}")
     made = Made(())
     for there, places in ((path, for_printing), (standing_there, [part.place for part in parts])):
-        items: list[Item] = [Item(p.body.name, p.mesh, place) for p, place in zip(parts, places, strict=True)]
-        write_3mf(there, items, title=recipe.name, mm=recipe.told_for(request).mm, about=recipe.about)
-        built = {one.name: one for one in read_placed(there)}
+        items = [Item(p.body.name, p.mesh, place) for p, place in zip(parts, places, strict=True)]
+        write(there, items, recipe.name, mm, recipe.about)
+        built = {one.name: one for one in read_meshes(there, mm)}
         checks: list[Check] = []
         for part in parts:
             if part.body.name == CAM:
@@ -134,15 +135,10 @@ def _three_mf(job: Job, request: FileRequest, path: Path, parts: Sequence[Part])
     return made
 
 
-def _glb(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.formats.glb import Actor, write_glb
-
-    actors = []
-    for part in parts:
-        mesh = replace(part.mesh, points=part.mesh.points + np.array([0.0, 0.0, part.raised]))
-        actors.append(Actor(part.body.name, mesh, part.body.pose, part.body.colour))
-    write_glb(path, actors, title=job.recipe.name)
-    return Made((FileResult(path, request, units=UNIT_MM["m"]),))
+def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float, str], None]:
+    if request.format.write is None:
+        raise ValueError(f"{request.kind} holds no mesh")
+    return request.format.write
 
 
 def _judged_cam(job: Job, request: FileRequest, path: Path, part: Part) -> Made:

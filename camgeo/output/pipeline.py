@@ -87,7 +87,7 @@ def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> t
     from pathlib import Path
 
     clock = Clock(progress)
-    requests = tuple(request for request in recipe.export.files if request.kind != "html")
+    requests = tuple(request for request in recipe.export.files if not request.format.summary)
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         design, found = _produced(recipe, requests, Path(folder), clock)
         return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
@@ -173,13 +173,13 @@ def _produced(
     design = designed(recipe, clock)
     checks = list(design.checks)
     files: list[FileResult] = []
-    pages = [request for request in requests if request.kind == "html"]  # they tell of all the others
+    pages = [request for request in requests if request.format.summary]  # they tell of all the others
     if design.contours:
         from camgeo.output.dispatch import foresee, make
         from camgeo.output.job import Job
 
         job = Job.of(recipe, design, clock)
-        others = [request for request in requests if request.kind != "html"]
+        others = [request for request in requests if not request.format.summary]
         for request in others:
             foresee(job, request)
         for request in others:

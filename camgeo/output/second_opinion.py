@@ -52,12 +52,6 @@ if TYPE_CHECKING:
 MOST_NAMED = 5  # faults named in a message
 MOST_TRIANGLES = 200_000  # trimesh and manifold3d take seconds beyond
 SHARE = 0.1  # of the tolerance, within which exact contour and file are made polygons
-OTHER_KINDS = {
-    "gcode": "no library of these reads a milling program",
-    "csv": "a table has no contour",
-    "glb": "a GLB is to look at",
-    "html": "a page is to look at",
-}
 NOTHING = "there is nothing to measure, or to hold it against"
 UNMADE = "a check of the exact contour fails"
 LIBRARIES = ("shapely", "trimesh", "scipy.sparse", "networkx", "lxml", "manifold3d")
@@ -113,8 +107,8 @@ def second_opinion_on(
     opinion = Opinion()
     for file in files:
         name = file.path.name
-        why = OTHER_KINDS.get(file.request.kind, "")
-        if file.body != "cam" or (file.request.kind == "3mf" and file.request.parts == "all"):
+        why = file.request.format.silence
+        if file.body != "cam" or file.request.united:
             why = "it holds other bodies than the cam"
         elif name in unread:
             why = "the file cannot be read"
@@ -271,13 +265,9 @@ def _held(name: str, holds: bool, why: str) -> Check:
 
 def _triangles(file: FileResult) -> int:
     """Count a mesh's triangles by kin's reader, which is quick."""
-    if file.request.kind == "stl":
-        from kin.read.mesh.stl import triangles_of
+    from kin.read.files import read_meshes
 
-        return len(triangles_of(file.path.read_bytes(), file.path)[0])
-    from kin.read.mesh.threemf import read_placed
-
-    return sum(len(one.corners) for one in read_placed(file.path))
+    return sum(len(one.corners) for one in read_meshes(file.path))
 
 
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types

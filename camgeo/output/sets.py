@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.export import BY_DISC, FileRequest
+from camgeo.registry.formats import FORMATS
 from kin.numeric.records import dataclass, field
 from kin.read.files import kind_of
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
-    from kin.read.files import Kind
 
 
 @dataclass(frozen=True)
 class Held:
     """What files are held to: the request that they may be of, and the tolerance, mm."""
 
-    kind: Kind
+    kind: str
     asked: FileRequest | None
     tolerance: float
 
@@ -52,7 +52,7 @@ def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> l
         within = ((asked and asked.tolerance) or recipe.export.tolerance) if tolerance is None else tolerance
         held = Held(kind, asked, within)
         stem, disc = _disc_of(recipe, path, asked, count)
-        if count == 1 or (disc is None and kind not in BY_DISC):
+        if count == 1 or (disc is None and not FORMATS[kind].by_disc):
             sets.append(FileSet(held, stem, [(place, path, 0 if count == 1 else None)]))
             continue
         open_sets = [one for one in sets if one.held == held and None not in one.discs and len(one.files) < count]

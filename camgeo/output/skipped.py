@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, Scene
-from camgeo.recipe.export import KINDS
 from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
@@ -40,14 +40,14 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
     asked = {request.kind for request in recipe.export.files}
     wanted = {request.kind for request in requests}
     found: list[Skipped] = []
-    for kind in KINDS:
+    for kind in FORMATS:
         if kind not in asked:
             found.append((kind, "the recipe's export.files does not list it"))
         elif kind not in wanted:
             found.append((kind, "left out by --only"))
     if not design.contours:
         found.append(("files", "a check of the exact contour fails"))
-    elif "gcode" in wanted and recipe.manufacture is not None:
+    elif recipe.manufacture is not None and any(FORMATS[kind].program for kind in wanted):
         from camgeo.machining.milling import unmilled
 
         left = dict.fromkeys(each for single in design.single for each in unmilled(recipe, single))
@@ -67,6 +67,6 @@ def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
     if design.driven.turns:
         return []
     files = recipe.export.files
-    asked = ["csv"] if any(request.kind == "csv" for request in files) else []
+    asked = list(dict.fromkeys(request.kind for request in files if request.format.turning))
     asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
     return [(what, STANDS) for what in asked]

@@ -1,4 +1,4 @@
-"""Solids of the cam: a polygon extruded with what is cut out of it; STL and 3MF."""
+"""Solids of the cam as meshes: a polygon extruded with what is cut out of it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.files.mesh import Item
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.output.part_geometry import contours_of, openings_of, part_mesh, rim_of
+from camgeo.registry.formats import numbers_of
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -22,35 +24,29 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-def make_stl(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge one disc."""
-    from camgeo.formats.stl import write_stl
-
-    mesh, facts = cam_mesh(job, request)
-    with job.clock.stage("write stl"):
-        write_stl(path, mesh, mm=job.recipe.told_for(request).mm, about=job.recipe.name)
-    return job.judged(request, path, facts.bound, facts.vertices)
-
-
-def make_3mf(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge all discs, each in its place."""
-    from camgeo.formats.three_mf import Item, write_3mf
-
+def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge the discs of a file, each a mesh in its place."""
+    write, kind = request.format.write, request.kind
+    if write is None:
+        raise ValueError(f"{kind} holds no mesh")
     meshed = cam_meshes(job, request)
-    items = [Item(name, mesh, place) for name, mesh, _, place in meshed]
-    with job.clock.stage("write 3mf"):
-        write_3mf(path, items, title=job.recipe.name, mm=job.recipe.told_for(request).mm, about=job.recipe.about)
+    items = [Item(one.name, one.mesh, one.place) for one in meshed]
+    with job.clock.stage(f"write {kind}"):
+        write(path, items, job.recipe.name, job.recipe.told_for(request).mm, job.recipe.about)
     bound = reduce(Bound.wider, (one.facts.bound for one in meshed))
     judged = job.judged if len(meshed) == 1 else job.judged_together
     return judged(request, path, bound, sum(one.facts.vertices for one in meshed))
 
 
-def precision_of(job: Job, request: FileRequest) -> Precision:
-    """The numbers that a request's file holds."""
-    from camgeo.files.precision import DECIMALS, SINGLE
+def foresee(job: Job, request: FileRequest) -> None:
+    """Refuse a tolerance that the numbers of the file cannot hold; raises RecipeErrors."""
+    for single in job.single:
+        aim(single, request)
 
-    numbers = DECIMALS if request.kind == "3mf" else SINGLE
-    return numbers.in_units(job.recipe.told_for(request).mm)
+
+def numbers(job: Job, request: FileRequest) -> Precision:
+    """Give the numbers that a request's file holds."""
+    return numbers_of(request.format, job.recipe.told_for(request).mm)
 
 
 def aim(job: Job, request: FileRequest) -> float:
@@ -62,7 +58,7 @@ def aim(job: Job, request: FileRequest) -> float:
     size = max(float(np.abs(contour.sample(contour.cells.low).point).max()) for contour in contours)
     # between two samples the contour reaches a little farther
     try:
-        fine = precision_of(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
+        fine = numbers(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
     except ToleranceError as error:
         raise job.refused(request, error) from error
     return fine * job.body.fineness
@@ -99,7 +95,7 @@ def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
 
     Raises RecipeErrors and SurroundingsError as `make` does.
     """
-    recipe, tolerance, precision = job.recipe, job.tolerance(request), precision_of(job, request)
+    recipe, tolerance, precision = job.recipe, job.tolerance(request), numbers(job, request)
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "a solid needs a thickness")
     fine = aim(job, request)

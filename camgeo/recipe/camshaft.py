@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import read_path
 from camgeo.recipe.document import Document
-from camgeo.recipe.export import FILES, build_export, export_of
+from camgeo.recipe.export import build_export, export_of
 from camgeo.recipe.keys import CORE, UNITS, recipe_table
 from camgeo.recipe.part import LEAST_SIZE
 from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.errors import RecipeErrors, suggestion
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length, mapping
 from camgeo.schema.json_schema import table_schema
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.formats import Format
     from camgeo.schema.reader import Values
     from camgeo.schema.yaml_source import Node, Source
 
@@ -212,21 +214,38 @@ CAMSHAFT = Field(
 )
 
 
-def _plain(kind: str) -> Table:
-    return Table(tuple(item for item in FILES[kind].fields if item.name in {"units", "tolerance"}))
+def _plain(name: str) -> Format:
+    """Give the record of a format whose options are unit and tolerance alone."""
+    record = FORMATS[name]
+    kept = tuple(item for item in record.options.fields if item.name in {"units", "tolerance"})
+    return replace(record, options=Table(kept))
 
 
 DIAGRAMS = ("timing", "bars", "cam-wheel", "crank-wheel", "shaft")
-SHAFT_FILES = {
-    **{kind: _plain(kind) for kind in ("stl", "3mf", "step", "glb")},
-    "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "events")),)),
-    "svg": Table((Field("as", Kind.CHOICE, "what is drawn", default="timing", choices=DIAGRAMS),)),
-    "html": Table(()),
-    "dxf": Table(()),  # to say what to do instead
-    "gcode": Table(()),
-}
 OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
-OF_A_LOBE = frozenset({"dxf", "gcode"})
+
+
+def _own(name: str, *words: str) -> Format:
+    """Give the record of a format whose forms are a camshaft's own."""
+    fields = (
+        Field(
+            "as",
+            Kind.CHOICE,
+            "which table it is" if name == "csv" else "what is drawn",
+            default=words[0],
+            choices=words,
+        ),
+    )
+    return replace(FORMATS[name], options=Table(fields if words else ()))
+
+
+OF_A_LOBE = ("dxf", "gcode")  # listed to say what to do instead
+SHAFT_FILES = {
+    **{name: _plain(name) for name in FORMATS if FORMATS[name].solid},
+    "csv": _own("csv", "motion", "events"),
+    "svg": _own("svg", *DIAGRAMS),
+    **{name: replace(FORMATS[name], options=Table(())) for name in ("html", *OF_A_LOBE)},
+}
 SHAFT = Table(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),

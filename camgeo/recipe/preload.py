@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
-from camgeo.recipe.export import NO_CONTOUR, TOLERANCE
+from camgeo.recipe.export import TOLERANCE
+from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
@@ -50,7 +51,7 @@ def _check_tolerances(values: Values, reader: Reader, interference: float) -> No
     export = values.get("export", {})
     for file in export.get("files", [{"kind": "dxf", "path": ""}]):
         tolerance = file.get("tolerance", export.get("tolerance", TOLERANCE))
-        if file["kind"] in NO_CONTOUR or SIDES * tolerance < interference:
+        if not FORMATS[file["kind"]].contour or SIDES * tolerance < interference:
             continue
         paths = (f"{file['path']}.{file['kind']}.tolerance", "export.tolerance", f"{PATH}.interference")
         path = next(path for path in paths if path in reader.marks)

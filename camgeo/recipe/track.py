@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.registry.formats import FORMATS
+
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
 OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
 """Keys of a part that a ring cannot have."""
 SAME = 1e-12  # share by which a cutter may be wider than the groove through rounding
-DEEP = frozenset({"stl", "3mf", "step", "glb"})
-"""Files in which a groove has its depth."""
 
 
 def check_track(values: Values, reader: Reader) -> None:
@@ -74,9 +74,10 @@ def _check_groove(values: Values, reader: Reader) -> None:
             if name in file:
                 remedy = "leave it out; cam.track.groove.clearance is the play of the roller"
                 reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
-        if kind in DEEP | {"gcode"} and "depth" not in groove:
+        record = FORMATS[kind]
+        if (record.solid or record.program) and "depth" not in groove:
             reader.fault_at(path, f"{kind} needs the depth of the groove", None, f"give {depth}, or leave {kind} out")
-        elif kind in DEEP and "part.outer" not in reader.marks:
+        elif record.solid and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"
             reader.fault_at(path, f"{kind} of a groove needs its blank", None, remedy)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units, pounds
-from camgeo.recipe.export import NO_CONTOUR
+from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import is_strict, sign, title, unit_text, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
@@ -154,15 +154,13 @@ def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
     if file.units is not None:
         named = (name for name, mm in UNIT_MM.items() if math.isclose(mm, file.units, rel_tol=1e-6))
         entry["units"] = next(named, f"{file.units:.9g} mm")
-    if file.request.kind in NO_CONTOUR and not file.surfaces:
+    if not file.request.format.contour and not file.surfaces:
         return entry
     mm = recipe.mm
     if file.body != "cam":
         entry["body"] = file.body
-    if file.request.kind == "dxf":
-        entry |= {"as": file.request.as_, "version": file.request.version}
-    elif file.request.kind == "svg" or file.request.ground:
-        entry["as"] = file.request.as_
+    told = {"as": file.request.as_, "version": file.request.version}
+    entry |= {key: told[key] for key in file.request.form.listed}
     if file.request.compensation is not None:
         entry["compensation"] = file.request.compensation.entry(mm)
     entry |= {
@@ -311,10 +309,8 @@ def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
 
 def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
-    if file["kind"] in {"stl", "3mf"}:
-        return "edges"
-    words = {"arcs": "arcs", "polyline": "edges", "spline": "spans"}
-    return words.get(file.get("as") or "", "pieces")
+    form = FORMATS[file["kind"]].forms.get(file.get("as") or "")
+    return "pieces" if form is None else form.pieces
 
 
 def table(report: dict[str, Any]) -> str:

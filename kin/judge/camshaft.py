@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.judge.intent import Limits, SurfaceIntent
     from kin.numeric.arrays import Array
-    from kin.read.files import AnySolid
+    from kin.read.formats import AnySolid
     from kin.read.nesting import Chain
 
 COARSE = 720  # shaft angles at which a lobe's phase is first looked for

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kin.judge.holes import Hole
     from kin.numeric.arrays import Array, Indices, Mask
-    from kin.read.files import AnySolid
+    from kin.read.formats import AnySolid
 
 GAUSS = 48  # nodes for each smooth part of a cross hole
 AT_CHAMFER = (0.25, 0.75)  # of a layer that shrinks: where it is looked at

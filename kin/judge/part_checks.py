@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent
     from kin.judge.layers import Layer
     from kin.judge.surfaces import Parted
-    from kin.read.files import AnySolid
+    from kin.read.formats import AnySolid
 
 ORDER = ("bore", "holes", "mark", "thickness", "hub", "chamfer", "set-screw")
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
-    from kin.read.files import Kind
 
 
 @dataclass(frozen=True)
@@ -118,7 +117,7 @@ class Verdict(OfSurfaces):
     uneven    by how much a solid's other sections differ from its surfaces, mm, where only rounding is behind it
     """
 
-    kind: Kind
+    kind: str
     checks: tuple[Check, ...]
     surfaces: tuple[SurfaceVerdict, ...] = ()
     closures: tuple[ClosureVerdict, ...] = ()

@@ -24,7 +24,8 @@ from kin.numeric.errors import CamgeoError
 from kin.numeric.places import place_text
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
-from kin.read.files import SOLIDS, kind_of, read_bodies, read_drawing, read_solid
+from kin.read.files import read_bodies, read_drawing, read_solid
+from kin.read.formats import format_of
 from kin.read.nesting import Chain, scaled
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.judge.intent import Limits, PartIntent, ShaftIntent
     from kin.read.drawing.drawing import Drawing
-    from kin.read.files import AnySolid
+    from kin.read.formats import AnySolid, Contents
 
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 SIZE_SHARE = (
@@ -63,8 +64,7 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
     another unit than `units`, and ValueError for another suffix or no angles.
     """
-    kind = kind_of(path)
-    read = {"gcode": _of_program, "csv": _of_table}.get(kind, _of_solid if kind in SOLIDS else _of_drawing)
+    read = READERS[format_of(path).contents]
     return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
 
 
@@ -75,18 +75,18 @@ def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits)
 
 def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], angles: int, limits: Limits) -> Verdict:
     """Judge the surfaces of every part that is read from a file, and what is left between those of one part."""
-    kind = kind_of(path)
+    kind = format_of(path)
     if angles < 1:
         raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
         files = read()
     except ReadError as error:
-        if kind in SOLIDS:
+        if kind.contents == "solid":
             unread = "readable" if error.reason in NOT_READ else "watertight"
         else:
             unread = "closed" if error.reason in NOT_CLOSED else "readable"
-        return Verdict(kind, (about(failed(unread, error.message), path.name),))
+        return Verdict(kind.name, (about(failed(unread, error.message), path.name),))
     checks, surfaces, closures = list[Check](), list[SurfaceVerdict](), list[ClosureVerdict]()
     for part, file in files:
         checks += file.checks
@@ -111,7 +111,7 @@ def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], ang
     named = tuple(about(check, path.name) for check in checks)
     bodies = tuple(tuple(chain.contour for chain in file.chains) for _, file in files)
     units, uneven = files[0][1].units, max(file.uneven for _, file in files)
-    return Verdict(kind, named, tuple(surfaces), tuple(closures), units, bodies, uneven)
+    return Verdict(kind.name, named, tuple(surfaces), tuple(closures), units, bodies, uneven)
 
 
 class _Read(NamedTuple):
@@ -395,3 +395,12 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
     checked = at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
     return less_sure(checked, solid.uneven)
+
+
+READERS: dict[Contents, Callable[[Path, PartIntent, Limits, float | None], _Read]] = {
+    "drawing": _of_drawing,
+    "solid": _of_solid,
+    "program": _of_program,
+    "table": _of_table,
+}
+"""What reads a file of one part, by its contents."""

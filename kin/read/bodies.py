@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-__all__ = ["MOST_BODIES", "Sought", "beside", "missing"]
+__all__ = ["MOST_BODIES", "Placed", "Sought", "beside", "missing"]
 
 MOST_BODIES = 5  # that are named in a message
+RIGID = 1e-9  # a place turns and shifts only if its axes are square and of length 1 within this
 
 
 def no_rows(columns: int) -> Array:
@@ -43,6 +44,25 @@ class Slivered:
         rows = self.slivers
         there = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
         return float(rows[there, 3].max(initial=0.0))
+
+
+class Placed(NamedTuple):
+    """A mesh in a file: its triangles (t, 3, 3), mm, in axes of its own, and its place on the plate.
+
+    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows; `mm` is the length of the file's
+    unit.
+    """
+
+    name: str
+    corners: Array
+    place: Array
+    mm: float = 1.0
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the place turns and shifts the object and does nothing else to it."""
+        turn = self.place[:3]
+        return bool((np.abs(turn @ turn.T - np.eye(3)) <= RIGID).all() and np.linalg.det(turn) > 0.0)
 
 
 class Sought(NamedTuple):

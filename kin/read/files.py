@@ -1,39 +1,25 @@
-"""Contours read back from files, told apart by their suffix: drawings, DXF or SVG of any origin; solids of a part."""
+"""Contours read back from files, told apart by their suffix: drawings and solids of a part, whoever wrote them."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING
 
 from kin.read.errors import ReadError
+from kin.read.formats import FORMATS, format_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.read.bodies import Sought
+    from kin.read.bodies import Placed, Sought
     from kin.read.drawing.drawing import Drawing
-    from kin.read.mesh.stl import Solid
-    from kin.read.step.step import StepSolid
-
-Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode", "csv"]
-KINDS: tuple[Kind, ...] = get_args(Kind)
-DRAWINGS = frozenset({"dxf", "svg"})
-SOLIDS = frozenset({"stl", "3mf", "step"})
-OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}
-"""Suffixes that are not the kind's own."""
-SUFFIXES: dict[str, Kind] = {f".{kind}": kind for kind in KINDS} | OTHERS
-"""Every suffix, and the kind of file that it means."""
-AnySolid: TypeAlias = "Solid | StepSolid"
+    from kin.read.formats import AnySolid
 
 
-def kind_of(path: Path | str) -> Kind:
-    """Tell a file's kind by its suffix; raises ValueError for one that is none of KINDS."""
-    path = Path(path)
-    found = SUFFIXES.get(path.suffix.lower())
-    if found is None:
-        raise ValueError(f"{path.name}: none of {', '.join(SUFFIXES)}")
-    return found
+def kind_of(path: Path | str) -> str:
+    """Tell a file's format by its suffix; raises ValueError for one that is none."""
+    return format_of(Path(path)).name
 
 
 def read_drawing(
@@ -45,37 +31,45 @@ def read_drawing(
     bridged: float = 0.0,
     unstated: float = 1.0,
 ) -> Drawing:
-    """Read a DXF or SVG; raises as `read_dxf` does."""
-    if kind_of(path) == "svg":
-        from kin.read.drawing.svg import read_svg
-
-        return read_svg(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
-    from kin.read.drawing.dxf import read_dxf
-
-    return read_dxf(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+    """Read a drawing; raises as `read_dxf` does, ValueError for a file that is none."""
+    path = Path(path)
+    read = format_of(path).drawing
+    if read is None:
+        raise ValueError(f"{path.name} is no drawing")
+    return read(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
 
 
 def read_solid(
     path: Path | str, heights: Sequence[float] = (), units: float | None = None, deepest: int = 1
 ) -> AnySolid:
-    """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do.
+    """Read a solid; raises as `read_stl`, `read_3mf` and `read_step` do, ValueError for a file that is none.
 
-    `units`, mm, is that of an STL, which states none and is read in mm without.
+    `units`, mm, is that of a file that states none, which is read in mm without.
     """
-    if kind_of(path) == "step":
-        from kin.read.step.step import read_step
+    path = Path(path)
+    record = format_of(path)
+    if record.solid is None:
+        raise ValueError(f"{path.name} is no solid")
+    if record.units or units is None or units == 1.0:
+        return record.solid(path, heights, deepest)
+    return _in_units(record.solid(path, [z / units for z in heights], deepest), heights, units)
 
-        return read_step(path, heights, deepest)
-    if kind_of(path) == "3mf":
-        from kin.read.mesh.threemf import read_3mf
 
-        return read_3mf(path, heights, deepest)
-    from kin.read.mesh.stl import Section, read_stl
+def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
+    """Read the triangles of each body, mm; raises as `read_solid` does, ValueError for a file without meshes."""
+    path = Path(path)
+    record = format_of(path)
+    if record.meshes is None:
+        raise ValueError(f"{path.name} holds no mesh")
+    scale = 1.0 if record.units or units is None else units
+    return [one._replace(corners=one.corners * scale) for one in record.meshes(path)]
+
+
+def _in_units(found: AnySolid, heights: Sequence[float], units: float) -> AnySolid:
+    """The solid of a file in a unit, mm; its sections by their heights as they were asked for."""
+    from kin.read.mesh.stl import Section
     from kin.read.nesting import scaled
 
-    if units is None or units == 1.0:
-        return read_stl(path, heights, deepest)
-    found = read_stl(path, [z / units for z in heights], deepest)
     sections = zip(heights, found.sections, strict=False)
     return replace(
         found,
@@ -93,25 +87,20 @@ def read_solid(
 
 
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
-    """Read several solids from one 3MF or STEP, the lowest first; raises as `read_3mf` and `read_step` do.
+    """Read several solids from one file, the lowest first; raises as `read_3mf` and `read_step` do.
 
     Heights are those above each one's own level, mm, and so they are in what is returned. ReadError for a file of
-    another kind, which does not hold several.
+    a format that does not hold several.
     """
-    if kind_of(path) not in {"step", "3mf"}:
-        message = f"a 3MF or STEP holds {len(sought)} discs, a drawing, an STL or a program one of them: judge these"
-        raise ReadError("unsupported", message, Path(path))
+    path = Path(path)
+    read = format_of(path).bodies
+    if read is None:
+        several = " or ".join(name.upper() for name, record in FORMATS.items() if record.bodies is not None)
+        message = f"a {several} holds {len(sought)} discs, any other file one of them: judge these"
+        raise ReadError("unsupported", message, path)
     above = list(zip(sought, levels, strict=True))
     shifted = [one._replace(heights=[level + z for z in one.heights]) for one, level in above]
-    found: list[AnySolid] = []
-    if kind_of(path) == "step":
-        from kin.read.step.step import read_step_bodies
-
-        found += read_step_bodies(path, shifted)
-    else:
-        from kin.read.mesh.threemf import read_3mf_bodies
-
-        found += read_3mf_bodies(path, shifted)
+    found = read(path, shifted)
     return [_lowered(solid, one.heights, level) for solid, (one, level) in zip(found, above, strict=True)]
 
 

@@ -1,31 +1,23 @@
-"""How much of a file is read: of each kind so many bytes that any is read in 2 GB of memory, and in seconds."""
+"""How much of a file is read: of each format so many bytes, and so many pieces."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from kin.read.errors import ReadError
+from kin.read.formats import FORMATS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["MOST_BYTES", "MOST_PIECES", "contents", "demand_few_pieces", "oversize"]
+__all__ = ["MOST_PIECES", "contents", "demand_few_pieces", "oversize"]
 
-MOST_BYTES = {
-    "dxf": 64_000_000,
-    "svg": 48_000_000,
-    "stl": 256_000_000,
-    "3mf": 64_000_000,
-    "step": 16_000_000,
-    "gcode": 32_000_000,
-    "csv": 16_000_000,
-}
 MOST_PIECES = 1_000_000  # of the contours of a drawing: a polygon within 1e-9 mm may have more than half of that
 
 
 def oversize(path: Path, kind: str) -> str:
     """Say that a file is larger than is read of its kind; empty where it is not. Raises OSError as `stat` does."""
-    size, most = path.stat().st_size, MOST_BYTES[kind]
+    size, most = path.stat().st_size, FORMATS[kind].most
     return "" if size <= most else f"{size / 1e6:.4g} MB, and of a {kind} up to {most / 1e6:.4g} MB are read"
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from attacks.outcome import Attack
-from camgeo.recipe.export import KINDS
 from camgeo.recipe.starter import STARTERS
+from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
     from random import Random
@@ -55,7 +55,7 @@ OPTIONS: dict[str, list[list[str]]] = {
     "sweep": [["--help"]],
 }
 GIVEN = {
-    "--only": [*KINDS, "dwg", ""],
+    "--only": [*FORMATS, "dwg", ""],
     "--out": ["out", "folder", "cam.yaml", "", "/dev/null/out", "a/b/c", "."],
     "--tolerance": LENGTHS,
     "--gap": LENGTHS,

@@ -10,9 +10,8 @@ from support.parts import recipe_of
 
 from camgeo.cli.main import main
 from camgeo.files.mesh import Mesh
-from camgeo.formats.glb import PERIOD, Actor, write_glb
+from camgeo.formats.glb import PERIOD, Actor, make_view, write_glb
 from camgeo.output.job import Job
-from camgeo.output.view import make_view
 from camgeo.recipe.export import FileRequest
 from camgeo.synthesis.design import designed
 

@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from camgeo.machining.inspection import inspection_table
+from camgeo.formats.tables.inspection import inspection_table
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed

@@ -13,8 +13,9 @@ from support.kernel import kernel
 
 import camgeo
 from camgeo.cli.main import main
-from camgeo.output.dispatch import CAPACITIES, demand_taught
+from camgeo.output.dispatch import demand_capacity
 from camgeo.recipe.loading import read
+from camgeo.registry.formats import FORMATS
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
 from camgeo.testing import assert_contour, assert_motion
@@ -363,7 +364,9 @@ def test_forms_that_hold_no_pair_refuse_by_name():
     recipe = read(RECIPE.encode(), Path("pair.yaml"))
     design = designed(recipe)
     needs = {"grinding": ("manufacture: {wheel: 300}\n", ""), "lift": ("", ", roller: 25")}
-    for kind, form in sorted(form for form, most in CAPACITIES.items() if most.discs == 1):
+    for kind, form in sorted(
+        (kind, name) for kind, record in FORMATS.items() for name, form in record.forms.items() if form.discs == 1
+    ):
         more, key = needs.get(form, ("", ""))
         text = more + RECIPE.replace("glb", f"{{{kind}: {{as: {form}{key}}}}}")
         if form == "trace":  # of a linkage, which a pair does not drive
@@ -372,4 +375,4 @@ def test_forms_that_hold_no_pair_refuse_by_name():
             continue
         changed = read(text.encode(), Path("pair.yaml"))
         with pytest.raises(camgeo.RecipeErrors, match=f"{kind} as {form} does not hold a cam of 2 discs"):
-            demand_taught(changed, design, changed.export.files[-1])
+            demand_capacity(changed, design, changed.export.files[-1])

@@ -9,8 +9,7 @@ from support.groove import CAM, grooved
 from support.heavy import ezdxf
 
 from camgeo.output import pipeline
-from camgeo.output.dispatch import CAPACITIES
-from camgeo.recipe.export import FILES
+from camgeo.registry.formats import FORMATS
 from camgeo.report import document
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -20,26 +19,30 @@ if TYPE_CHECKING:
 
 PART = "part: {thickness: 8, bore: 10, outer: 160}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
-FORMS = sorted(CAPACITIES, key=str)
+MOST = {
+    (kind, name or None): form.surfaces
+    for kind, record in FORMATS.items()
+    if not record.summary
+    for name, form in record.forms.items()
+}
+FORMS = sorted(MOST, key=str)
 READ = {  # tables of one surface that are refused of a groove as its recipe is read
     ("csv", "grinding"): ("{csv: {as: grinding}}", "a wheel grinds the outside of a disc"),
     ("csv", "lift"): ("{csv: {as: lift, roller: 25}}", "a wheel grinds the outside of a disc"),
     ("csv", "trace"): ("{csv: {as: trace}}", "needs linkage.trace"),
 }
-ALONE = [form for form in FORMS if CAPACITIES[form].surfaces == 1 and form not in READ]
+ALONE = [form for form in FORMS if MOST[form] == 1 and form not in READ]
 
 
 def written(kind: str, how: str | None) -> str:
     return kind if how is None else f"{{{kind}: {{as: {how}}}}}"
 
 
-def test_every_form_of_a_file_is_in_the_table() -> None:
-    """But for the page, which shows all other files."""
-    offered = set()
-    for kind, table in FILES.items():
-        choices = next((field.choices for field in table.fields if field.name == "as"), None) or (None,)
-        offered |= {(kind, how) for how in choices}
-    assert set(CAPACITIES) == offered - {("html", None)}
+def test_every_form_that_a_recipe_may_ask_for_has_a_record() -> None:
+    for record in FORMATS.values():
+        choices = next((field.choices for field in record.options.fields if field.name == "as"), ("",))
+        assert set(record.forms) == set(choices)
+        assert all(form.name == name for name, form in record.forms.items())
 
 
 @pytest.mark.parametrize(("kind", "how"), ALONE)
@@ -56,7 +59,7 @@ def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | Non
 
 @pytest.mark.parametrize("form", READ, ids=str)
 def test_a_table_that_no_groove_has(form: tuple[str, str]) -> None:
-    assert CAPACITIES[form].surfaces == 1
+    assert MOST[form] == 1
     file, problem = READ[form]
     with pytest.raises(RecipeErrors) as caught:
         grooved(f"{CAM}\n{PART}\nmanufacture: {{wheel: 300}}\nexport: {{files: [{file}]}}\n")
@@ -71,7 +74,7 @@ def test_a_form_that_is_taught_more_is_named(tmp_path: Path) -> None:
         pipeline.export(recipe, tmp_path / "out")
 
 
-HELD = [form for form in FORMS if CAPACITIES[form].surfaces > 1 and form[0] in {"dxf", "svg"}]
+HELD = [form for form in FORMS if MOST[form] > 1 and form[0] in {"dxf", "svg"}]
 LIMITED = "limits: {contour-error: {at_most: 0.002}, size: {at_most: 200}}"
 
 

@@ -13,12 +13,13 @@ from kin.contour import intersections
 from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.read.errors import ReadError
-from kin.read.files import SUFFIXES, kind_of, read_drawing, read_solid
+from kin.read.files import kind_of, read_drawing, read_solid
+from kin.read.formats import FORMATS, suffixes
 from kin.read.gcode import read_gcode
 from kin.read.mesh import threemf
 from kin.read.mesh.mesh import Mesh
 from kin.read.nesting import MOST_CONTOURS, nested
-from kin.read.size import MOST_BYTES, contents
+from kin.read.size import contents
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="-50 -50 100 100">'
 
@@ -114,16 +115,16 @@ def test_pieces_drawn_over_one_another(tmp_path):
         read_drawing(path)
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", suffixes())
 def test_a_file_is_refused_by_its_size_before_it_is_read(tmp_path, monkeypatch, capsys, suffix):
     """Two files with nothing on disk, a byte too large and 3 GiB."""
     monkeypatch.chdir(tmp_path)
-    path, kind = tmp_path / f"cam{suffix}", SUFFIXES[suffix]
+    path, kind = tmp_path / f"cam{suffix}", suffixes()[suffix]
     recipe = tmp_path / "cam.yaml"
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\n")
     others = {"dxf": read_drawing, "svg": read_drawing, "gcode": read_gcode, "csv": lambda path: contents(path, "csv")}
     read = others.get(kind_of(path), read_solid)
-    for size, told in ((MOST_BYTES[kind] + 1, "MB are read"), (3 << 30, "3221 MB, and of a")):
+    for size, told in ((FORMATS[kind].most + 1, "MB are read"), (3 << 30, "3221 MB, and of a")):
         with path.open("wb") as stream:
             stream.truncate(size)
         with pytest.raises(ReadError, match=told):

@@ -16,13 +16,13 @@ from support.parts import failures, files_of, recipe_of
 
 from camgeo import testing
 from camgeo.cli.main import main
-from camgeo.files.mesh import Mesh
+from camgeo.files.mesh import Item, Mesh
 from camgeo.files.precision import DECIMALS
 from camgeo.files.prism import extruded
 from camgeo.files.triangulate import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
-from camgeo.formats.three_mf import Item, write_3mf
+from camgeo.formats.three_mf import write_3mf
 from camgeo.output.pipeline import judged
 from camgeo.schema.errors import RecipeErrors
 from kin.read.errors import ReadError

@@ -16,7 +16,6 @@ from support.places import SHIPPED as SHIPPED_FILES
 from support.starters import OF_CAMS
 
 from camgeo.recipe.cam import CAMS
-from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
@@ -24,6 +23,7 @@ from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.loading import read
 from camgeo.recipe.starter import starter
 from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.edit import without
 from camgeo.schema.errors import RecipeErrors
 
@@ -116,12 +116,12 @@ def _keys(table: Table) -> set[str]:
 
 
 TABLES = [*CAMS.values(), *LINKAGES.values(), *DYADS.values(), *map(bounds, FIGURES.values())]
-KEYS = sorted({"kind", *FILES, *FIGURES, *_keys(recipe_table()), *(key for table in TABLES for key in _keys(table))})
+KEYS = sorted({"kind", *FORMATS, *FIGURES, *_keys(recipe_table()), *(key for table in TABLES for key in _keys(table))})
 TEXTS = [
     *CAMS,
     *LINKAGES,
     *DYADS,
-    *FILES,
+    *FORMATS,
     *FIGURES,
     *("crossed", "coupler", "previous", "relative", "grid", "sobol", "true"),
     *("inch", "ccw", "arcs", "spline", "R12", "trim", "convex", "cycloidal", "4/3", "25 + cos(3*t)", "8*sin(pi*x)"),

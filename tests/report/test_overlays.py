@@ -10,7 +10,7 @@ import pytest
 from support.pages import SHAFT, along, origin, overlaid
 from support.places import RECIPES
 
-from camgeo.recipe.export import OVERLAYS
+from camgeo.formats.html import OVERLAYS
 from camgeo.recipe.loading import load_text
 from camgeo.report.page import overlays
 from camgeo.report.page.content import content

@@ -8,11 +8,11 @@ from pathlib import Path
 from camgeo.cams.disc import FOLLOWERS
 from camgeo.capabilities.sweep.keys import RANGE
 from camgeo.recipe.cam import CAMS
-from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.fields import Kind
 
 ROOT = Path(__file__).parents[2]
@@ -111,7 +111,7 @@ def tables():
         for kind, one in kinds.items():
             found[f"{noun} {kind}"] = one
             found.update(below(one, f"{noun} {kind}"))
-    found.update({f"file {kind}": file for kind, file in FILES.items()})
+    found.update({f"file {kind}": record.options for kind, record in FORMATS.items()})
     of_cams = motions(found)
     found = {name: one for name, one in found.items() if not name.startswith(tuple(of_cams))}
     motion = of_cams["cam disc.motion"]  # the others have the same keys or fewer, which a test holds

@@ -11,13 +11,13 @@ import zipfile
 import zlib
 from array import array
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, NamedTuple
+from typing import IO, TYPE_CHECKING
 from xml.parsers import expat
 
 import numpy as np
 
 from kin.numeric.records import dataclass, field, replace
-from kin.read.bodies import Sought, missing
+from kin.read.bodies import RIGID, Placed, Sought, missing
 from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
 from kin.read.size import oversize
@@ -46,27 +46,7 @@ MOST_COMPONENTS = 1 << 14
 DEEPEST = 16  # of components within components
 BLOCK = 1 << 16
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
-RIGID = 1e-9  # a place turns and shifts only if its axes are square and of length 1 within this
 PART = "cam"
-
-
-class Placed(NamedTuple):
-    """An object that is built: its triangles (t, 3, 3), mm, in axes of its own, and its place on the plate.
-
-    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows; `mm` is the length of the file's
-    unit.
-    """
-
-    name: str
-    corners: Array
-    place: Array
-    mm: float = 1.0
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the place turns and shifts the object and does nothing else to it."""
-        turn = self.place[:3]
-        return bool((np.abs(turn @ turn.T - np.eye(3)) <= RIGID).all() and np.linalg.det(turn) > 0.0)
 
 
 def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:

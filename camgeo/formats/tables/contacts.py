@@ -1,4 +1,4 @@
-"""Tables of the exact cam: what the motion table has and the contacts beside it, and the contour over its polar angle.
+"""The table of contacts: what the motion table has and the contacts of the exact cam beside it.
 
 Places are those of the drawing, mirrored where the drawing is.
 """
@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.measures import polar_radius, touched
+from camgeo.formats.tables.motion import motion_columns
+from camgeo.formats.tables.tabled import tabled
+from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from camgeo.curve.curve import Curve
+    from camgeo.formats.tables.tabled import Columns
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
@@ -30,6 +34,8 @@ def contact_table(
     in degrees, above 0 where the cam pushes the follower out, and the place of contact. nan where a trimmed cam is not
     touched. At a break the radius is the one that follows, at the end of the turn the one that precedes.
     """
+    from camgeo.curve.measures import touched
+
     names, rows = motion
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be touched")
@@ -59,14 +65,8 @@ def contact_table(
     return tuple(columns), np.column_stack(list(columns.values()))
 
 
-def polar_table(recipe: Recipe, contour: Curve) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, 2): polar angle, in equal steps, and the contour's distance from the shaft.
+def _columns(job: Job, request: FileRequest) -> Columns:
+    return contact_table(job.recipe.told_for(request), job.design, motion_columns(job, request))
 
-    Raises StarError where a ray from the shaft may cross the contour more than once or not at all.
-    """
-    count = recipe.verify.angles
-    angles = np.linspace(0.0, TURN, count + 1)[:-1]
-    radius = polar_radius(contour, -angles if recipe.rotation == "ccw" else angles) / recipe.mm
-    unit = "in" if recipe.units == "inch" else "mm"
-    rows = np.column_stack([np.linspace(0.0, 360.0, count + 1), np.append(radius, radius[0])])
-    return ("polar_deg", f"radius_{unit}"), rows
+
+FORM = Form(name="contacts", surfaces=2, discs=2, make=tabled("contacts", _columns, gaps=True))  # nan: not touched

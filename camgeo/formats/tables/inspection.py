@@ -10,12 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.measures import touched
+from camgeo.formats.tables.tabled import tabled
+from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
+    from camgeo.formats.tables.tabled import Columns
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
@@ -62,6 +66,8 @@ def _contact(
     columns |= {f"{name}nx": x, f"{name}ny": y, f"{name}normal_deg": _degrees(x, y)}
     if recipe.manufacture is not None:
         columns |= _cartesian(recipe, point + recipe.manufacture.radius * normal, f"{name}cutter_", unit)
+    from camgeo.curve.measures import touched
+
     away = ~touched(contour, parameter)
     return {key: np.where(away, np.nan, column) for key, column in columns.items()} if away.any() else columns
 
@@ -87,3 +93,10 @@ def _degrees(x: Array, y: Array) -> Array:
     """Directions in degrees, from 0 to less than 360 (n,)."""
     angle = np.mod(np.degrees(np.arctan2(y, x)), 360.0)
     return np.where(angle < 360.0, angle, 0.0)
+
+
+def _columns(job: Job, request: FileRequest) -> Columns:
+    return inspection_table(job.recipe.told_for(request), job.design)
+
+
+FORM = Form(name="inspection", surfaces=2, make=tabled("inspection", _columns, gaps=True))  # nan: not touched

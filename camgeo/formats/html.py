@@ -1,0 +1,74 @@
+"""The page on all other files of a run, and the constructions that it shows over a mechanism; HTML."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.registry.formats import Format
+from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.fields import Field, Form, Kind, Table, either
+from camgeo.schema.yaml_source import Scalar, described, join
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
+
+OVERLAYS = {
+    "instant-centres": "plate",
+    "chord-polygon": "swings",
+    "isoptic": "swings",
+    "pedal": "swings",
+    "evolute": "",
+}
+"""What a page can show over a mechanism, and what of its cam's offers that needs; a linkage leaves the evolute."""
+
+
+def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
+    """Read the names of overlays, those that the cam's family has, each once."""
+    linked = bool(reader.kinds["linkage"])
+    there = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    names: list[str] = []
+    for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
+        word = item.text if isinstance(item, Scalar) else ""
+        if word in names:
+            reader.fault(item.mark, join(path, i), "the same overlay twice", shown(word), "leave one out")
+        elif word in there:
+            names.append(word)
+        elif word in OVERLAYS:
+            of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
+            remedy = f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", shown(word), remedy)
+        else:
+            remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
+            reader.fault(item.mark, join(path, i), "no overlay", described(item), remedy)
+    return tuple(names)
+
+
+_OVERLAYS = Field(
+    "overlays",
+    Kind.OWN,
+    "constructions shown over the mechanism, which turn with it, as far as its family has them",
+    default="none",
+    form=Form(
+        "a list of overlays",
+        f"a list of {either(tuple(OVERLAYS), 'and')}",
+        _read_overlays,
+        lambda _: {
+            "type": "array",
+            "items": {"enum": list(OVERLAYS)},
+            "minItems": 1,
+            "maxItems": len(OVERLAYS),
+            "uniqueItems": True,
+        },
+    ),
+)
+
+
+FORMAT = Format(
+    name="html",
+    options=Table((_OVERLAYS,)),
+    contour=False,
+    part=False,
+    summary=True,
+    silence="a page is to look at",
+)

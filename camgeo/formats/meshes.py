@@ -1,0 +1,73 @@
+"""What formats of meshes share: options, forms, and what makes their files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.options import OF_SOLID, PARTS
+from camgeo.registry.formats import Form, Format
+from camgeo.schema.fields import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from camgeo.files.mesh import Item
+    from camgeo.files.precision import Precision
+    from camgeo.output.job import Job, Made
+    from camgeo.output.parts import Part
+    from camgeo.recipe.export import FileRequest
+
+OPTIONS = Table((PARTS, *OF_SOLID))
+EDGES = {"": Form(surfaces=2, discs=2, pieces="edges")}
+SECOND = frozenset({"shapely", "trimesh"})
+
+
+def mesh_format(
+    name: str,
+    *,
+    numbers: Callable[[], Precision],
+    write: Callable[[Path, Sequence[Item], str, float, str], None],
+    units: bool,
+) -> Format:
+    """Make the record of a format whose files hold one mesh each: of a disc, or of a body of a mechanism.
+
+    numbers  gives the numbers that a file holds
+    write    writes one mesh, whose points are such numbers: (path, [mesh], title, mm of the unit, about)
+    units    whether a file states its unit
+    """
+    return Format(
+        name=name,
+        options=OPTIONS,
+        forms=EDGES,
+        solid=True,
+        by_disc=True,
+        units=units,
+        second=SECOND,
+        make=make_mesh,
+        foresee=foresee_mesh,
+        numbers=numbers,
+        write=write,
+        bodies=_one_by_one,
+        first="cam",
+    )
+
+
+def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge the meshes of a file; raises as `camgeo.output.dispatch.make` does."""
+    from camgeo.output.solid import make_mesh as make
+
+    return make(job, request, path)
+
+
+def foresee_mesh(job: Job, request: FileRequest) -> None:
+    """Refuse a tolerance that the numbers of the format cannot hold; raises RecipeErrors."""
+    from camgeo.output.solid import foresee
+
+    foresee(job, request)
+
+
+def _one_by_one(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    from camgeo.output.parts import one_by_one
+
+    return one_by_one(job, request, path, parts)

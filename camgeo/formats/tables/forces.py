@@ -1,0 +1,35 @@
+"""The table of forces over the shaft angle: of a rigid follower, and under a linkage."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.tables.tabled import tabled
+from camgeo.registry.formats import Form
+
+if TYPE_CHECKING:
+    from camgeo.formats.tables.tabled import Columns
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+
+
+def _check(file: Values, values: Values, reader: Reader) -> None:
+    train = values.get("dynamics", {})
+    if not train or "stiffness" in train:
+        remedy = "give dynamics without stiffness, or leave this out"
+        reader.fault_at(file["path"], "a table of forces needs a train whose forces are found", None, remedy)
+
+
+def _columns(job: Job, request: FileRequest) -> Columns:
+    from camgeo.measures.force_figures import forces_table
+    from camgeo.measures.running_forces import running_of
+
+    running = running_of(job.recipe, job.design)
+    if running is None:
+        raise ValueError(f"{job.recipe.name}: there are no forces")
+    return forces_table(running, job.recipe.verify.angles, job.recipe.told_for(request).units)
+
+
+# nan: a stem that jams has no force
+FORM = Form(name="forces", surfaces=2, discs=2, check=_check, make=tabled("forces", _columns, gaps=True))

@@ -1,0 +1,52 @@
+"""What the tables by which a lobe is ground share: rows by a step, and the metal that their wheel leaves, judged."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.registry.formats import Form
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+
+WHOLE = 1e-9  # rad by which steps may miss a turn
+
+
+def ground_form(name: str, check: Callable[[Values, Values, Reader], None]) -> Form:
+    """Make the record of a table by which a lobe is ground; `check` notes what it lacks besides."""
+
+    def checked(file: Values, values: Values, reader: Reader) -> None:
+        check(file, values, reader)
+        _check(file, values, reader)
+
+    return Form(name=name, listed=("as",), ground=True, check=checked, make=make_ground)
+
+
+def _check(file: Values, values: Values, reader: Reader) -> None:
+    path = f"{file['path']}.csv"
+    if "step" in file:
+        count = round(TURN / file["step"])
+        if abs(count * file["step"] - TURN) > WHOLE:
+            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
+            reader.fault_at(f"{path}.step", "360 degrees are no whole number of it", None, remedy)
+    if values.get("cam", {}).get("track", "external") != "external":
+        reader.fault_at(f"{path}.as", "a wheel grinds the outside of a disc", None, "leave the table or track out")
+
+
+def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
+    """Write a table, read it back and judge the metal that its wheel leaves."""
+    from camgeo.fit.bound import Bound
+    from camgeo.formats.csv import write_table
+    from camgeo.machining.grinding import ground_table
+
+    recipe = job.recipe.told_for(request)
+    with job.clock.stage("grinding"), job.refusals(request):
+        made = ground_table(recipe, job.design, request, job.tolerance(request), job.field(request))
+        write_table(path, made.columns, made.rows, head=made.head)
+    return job.judged(request, path, Bound(made.error, made.error), len(made.rows) - 1)

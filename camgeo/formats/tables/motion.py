@@ -1,0 +1,28 @@
+"""The motion table: positions and derivatives of the follower, or of a linkage's links, over the shaft angle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.tables.tabled import tabled
+from camgeo.registry.formats import Form
+
+if TYPE_CHECKING:
+    from camgeo.formats.tables.tabled import Columns
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+
+
+def motion_columns(job: Job, request: FileRequest) -> Columns:
+    """Give column names and rows (angles + 1, k) over equal steps of the shaft, in the unit of the file."""
+    told = job.recipe.told_for(request)
+    if job.design.driven is not None:
+        from camgeo.synthesis import linkage
+
+        return linkage.motion_table(told, job.design.driven.mechanism)
+    from camgeo.synthesis.motion_table import motion_table
+
+    return motion_table(told, job.design.motion)
+
+
+FORM = Form(name="motion", surfaces=2, discs=2, make=tabled("table", motion_columns))

@@ -1,0 +1,34 @@
+"""Tables over the shaft angle, or of the contour: written as they are, which nothing judges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.csv import write_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import TypeAlias
+
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
+
+    Columns: TypeAlias = tuple[tuple[str, ...], Array]
+
+
+def tabled(
+    stage: str, columns: Callable[[Job, FileRequest], Columns], *, gaps: bool = False
+) -> Callable[[Job, FileRequest, Path], Made]:
+    """Make the function that writes a table of these columns in a stage of the run; `gaps` as of `write_table`."""
+
+    def make(job: Job, request: FileRequest, path: Path) -> Made:
+        from camgeo.output.job import looked_at
+
+        with job.clock.stage(stage):
+            names, rows = columns(job, request)
+            write_table(path, names, rows, gaps=gaps)
+        return looked_at(path, request, job.recipe.told_for(request).mm)
+
+    return make

@@ -1,0 +1,182 @@
+"""Formats of files as the core sees them: the record of each, and which there are.
+
+A format is a module of `camgeo/formats`, whose `FORMAT` is all that is known of it. `MODULES` names the modules; one is
+imported when a recipe or a file is of its format. The types below stand above this module, for which alone imports for
+types run upwards. Functions import what they need when they are called: a record is read with the recipe.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from camgeo.common.on_demand import OnDemand
+from camgeo.schema.fields import Table
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.files.mesh import Item
+    from camgeo.files.precision import Precision
+    from camgeo.output.job import Job, Made
+    from camgeo.output.parts import Part
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.synthesis.design import Design
+    from kin.judge.intent import PartIntent
+
+
+def no_fault(_file: Values, _values: Values, _reader: Reader, /) -> None:
+    """Note nothing."""
+
+
+def foresee_nothing(_job: Job, _request: FileRequest, /) -> None:
+    """Refuse nothing."""
+
+
+def as_designed(recipe: Recipe, design: Design, /) -> PartIntent:
+    """Give the intent of the part as it is designed."""
+    from camgeo.synthesis.intent import intended
+
+    return intended(recipe, design)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Form:
+    """One form of a format, by its word after the key `as`.
+
+    surfaces  greatest number of surfaces that it holds of a cam of one disc; a cam of more is refused
+    discs     the same of discs on one shaft
+    pieces    what a piece of its contour is called in reports
+    listed    options that a report tells: attributes of the request by their keys
+    ground    whether it is a table by which a lobe is ground, whose contour is judged
+    check     notes what a recipe that asks for it lacks: (values of the file, values of the recipe, reader)
+    make      writes and judges it, where the format has no one way for all its forms
+    """
+
+    name: str = ""
+    surfaces: int = 1
+    discs: int = 1
+    pieces: str = "pieces"
+    listed: tuple[str, ...] = ()
+    ground: bool = False
+    check: Callable[[Values, Values, Reader], None] = no_fault
+    make: Callable[[Job, FileRequest, Path], Made] | None = None
+
+
+WHOLE: Mapping[str, Form] = MappingProxyType({"": Form(surfaces=2, discs=2)})
+"""Forms of a format that has one alone, which holds every cam."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Format:
+    """Everything that is known of a format.
+
+    Of the recipe:
+
+    name      its word in recipes, reports and on the command line
+    suffix    ending of its files' names without the dot, where that is not the name
+    options   keys of one file
+    forms     by their words after the key `as`; by the empty word for a format without that key
+    check     notes the faults between its options and others: (values of the file, values of the recipe, reader)
+
+    Of its files:
+
+    contour   whether a file holds a contour, which is judged
+    part      whether it shows the part itself: a program shows the path of a cutter
+    solid     whether it is a solid, which needs a thickness
+    by_disc   whether each disc on a shaft has a file of its own; else one file has all
+    units     whether a file states its unit
+    summary   whether it reports on all other files of a run, and is made last
+    turning   whether it is made only of a mechanism that turns right round
+    path      whether it shows the path of the cutter where `manufacture.layer` asks for that
+    second    libraries that are asked for a second opinion on it
+    silence   why none is asked
+
+    What makes them:
+
+    make      fits, writes, reads back and judges one file at a path
+    foresee   refuses what is certain to be refused, before anything is fitted
+    intent    what kin judges its files by
+    numbers   gives the numbers that a mesh holds
+    write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
+    bodies    writes and judges every body of a mechanism, the first file at a path
+    first     ending of the name of that file
+    """
+
+    name: str
+    suffix: str = ""
+    options: Table = Table(())
+    forms: Mapping[str, Form] = WHOLE
+    check: Callable[[Values, Values, Reader], None] = no_fault
+    contour: bool = True
+    part: bool = True
+    solid: bool = False
+    by_disc: bool = False
+    units: bool = True
+    summary: bool = False
+    turning: bool = False
+    path: bool = False
+    second: frozenset[str] = frozenset()
+    silence: str = ""
+    make: Callable[[Job, FileRequest, Path], Made] | None = None
+    foresee: Callable[[Job, FileRequest], None] = foresee_nothing
+    intent: Callable[[Recipe, Design], PartIntent] = as_designed
+    numbers: Callable[[], Precision] | None = None
+    write: Callable[[Path, Sequence[Item], str, float, str], None] | None = None
+    bodies: Callable[[Job, FileRequest, Path, Sequence[Part]], Made] | None = None
+    first: str = ""
+
+    @property
+    def ending(self) -> str:
+        """Ending of its files' names, without the dot."""
+        return self.suffix or self.name
+
+    @property
+    def program(self) -> bool:
+        """Whether it is a program of a machine, whose contour is what the cutter leaves."""
+        return self.contour and not self.part
+
+    @property
+    def chosen(self) -> Values:
+        """Form and version of a file whose options do not say."""
+        return {item.name: item.default for item in self.options.fields if item.name in {"as", "version"}}
+
+    def form(self, word: str | None) -> Form:
+        """Form by its word, for None that which is chosen by default; of an unknown word one that holds one surface."""
+        name = word or self.chosen.get("as", "")
+        return self.forms.get(name) or Form(name=name)
+
+
+MODULES = {
+    "dxf": "camgeo.formats.dxf",
+    "svg": "camgeo.formats.svg",
+    "stl": "camgeo.formats.stl",
+    "3mf": "camgeo.formats.three_mf",
+    "step": "camgeo.formats.step",
+    "glb": "camgeo.formats.glb",
+    "csv": "camgeo.formats.csv",
+    "html": "camgeo.formats.html",
+    "gcode": "camgeo.formats.gcode",
+}
+"""Module of each format by its word, in the order in which formats are listed."""
+
+
+def _record(name: str) -> Format:
+    record: Format = import_module(MODULES[name]).FORMAT
+    return record
+
+
+FORMATS: Mapping[str, Format] = OnDemand(MODULES, _record)
+"""Record of each format by its word."""
+
+
+def numbers_of(record: Format, mm: float) -> Precision:
+    """Give the numbers that a mesh holds in a unit of `mm` mm; raises ValueError for a format without meshes."""
+    if record.numbers is None:
+        raise ValueError(f"{record.name} holds no mesh")
+    return record.numbers().in_units(mm)

@@ -1,0 +1,189 @@
+"""Formats of files that are read: an entry each, with all that is known of it.
+
+A format is an entry of `FORMATS` and its reader, which shares nothing with any writer. Readers import what they need
+from here; here they are imported when a file is read, and for types alone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from kin.numeric.arrays import Array
+    from kin.read.bodies import Placed, Sought
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.mesh.prism import Corners
+    from kin.read.mesh.stl import Form, Solid
+    from kin.read.step.step import StepSolid
+
+    AnySolid: TypeAlias = Solid | StepSolid
+
+Contents: TypeAlias = Literal["drawing", "solid", "program", "table"]
+
+
+class DrawingReader(Protocol):
+    """Reads a drawing as `read_dxf` does."""
+
+    def __call__(
+        self, path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
+    ) -> Drawing: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Format:
+    """What is known of a format.
+
+    name      its word
+    contents  what a file holds: a drawing, a solid, a program for a machine or a table; the judge goes by that
+    most      greatest size of a file that is read, bytes: any is read in 2 GB of memory, and in seconds
+    suffixes  endings of files' names; the first is that of its word
+    units     whether a file states its unit
+    drawing   reads a drawing as `read_dxf` does
+    solid     reads one part: (path, heights, deepest), see `read_stl`
+    bodies    reads several parts of one file, the lowest first: (path, what is sought of each)
+    meshes    reads the triangles of each body, mm in a file that states its unit, and else as they stand there
+    """
+
+    name: str
+    contents: Contents
+    most: int
+    suffixes: tuple[str, ...]
+    units: bool = True
+    drawing: DrawingReader | None = None
+    solid: Callable[[Path, Sequence[float], int], AnySolid] | None = None
+    bodies: Callable[[Path, Sequence[Sought]], Sequence[AnySolid]] | None = None
+    meshes: Callable[[Path], Sequence[Placed]] | None = None
+
+
+def mesh(
+    name: str,
+    most: int,
+    suffixes: tuple[str, ...],
+    triangles: Callable[[bytes, Path], tuple[Corners, Form]],
+    *,
+    units: bool,
+) -> Format:
+    """Make the entry of a format that holds one mesh: `triangles` (t, 3, 3) of the bytes of a file, and its form."""
+
+    def read(path: Path) -> tuple[Corners, Form]:
+        from kin.read.size import contents
+
+        return triangles(contents(path, name), path)
+
+    def solid(path: Path, heights: Sequence[float], deepest: int) -> Solid:
+        from kin.read.mesh.stl import solid_of
+
+        return solid_of(*read(path), heights, path, deepest)
+
+    def meshes(path: Path) -> Sequence[Placed]:
+        from kin.read.bodies import Placed
+
+        corners: Array = read(path)[0].astype(np.float64)
+        return (Placed("", corners, np.eye(4, 3)),)
+
+    return Format(name=name, contents="solid", most=most, suffixes=suffixes, units=units, solid=solid, meshes=meshes)
+
+
+def _dxf(
+    path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
+) -> Drawing:
+    from kin.read.drawing.dxf import read_dxf
+
+    return read_dxf(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+
+
+def _svg(
+    path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
+) -> Drawing:
+    from kin.read.drawing.svg import read_svg
+
+    return read_svg(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+
+
+def _stl(raw: bytes, path: Path) -> tuple[Corners, Form]:
+    from kin.read.mesh.stl import triangles_of
+
+    return triangles_of(raw, path)
+
+
+def _three_mf(path: Path, heights: Sequence[float], deepest: int) -> Solid:
+    from kin.read.mesh.threemf import read_3mf
+
+    return read_3mf(path, heights, deepest)
+
+
+def _bodies_of_three_mf(path: Path, sought: Sequence[Sought]) -> Sequence[AnySolid]:
+    from kin.read.mesh.threemf import read_3mf_bodies
+
+    return read_3mf_bodies(path, sought)
+
+
+def _meshes_of_three_mf(path: Path) -> Sequence[Placed]:
+    from kin.read.mesh.threemf import read_placed
+
+    return read_placed(path)
+
+
+def _step(path: Path, heights: Sequence[float], deepest: int) -> StepSolid:
+    from kin.read.step.step import read_step
+
+    return read_step(path, heights, deepest)
+
+
+def _bodies_of_step(path: Path, sought: Sequence[Sought]) -> Sequence[AnySolid]:
+    from kin.read.step.step import read_step_bodies
+
+    return read_step_bodies(path, sought)
+
+
+FORMATS: dict[str, Format] = {
+    record.name: record
+    for record in (
+        Format(name="dxf", contents="drawing", most=64_000_000, suffixes=(".dxf",), drawing=_dxf),
+        Format(name="svg", contents="drawing", most=48_000_000, suffixes=(".svg",), drawing=_svg),
+        mesh("stl", 256_000_000, (".stl",), _stl, units=False),
+        Format(
+            name="3mf",
+            contents="solid",
+            most=64_000_000,
+            suffixes=(".3mf",),
+            solid=_three_mf,
+            bodies=_bodies_of_three_mf,
+            meshes=_meshes_of_three_mf,
+        ),
+        Format(
+            name="step",
+            contents="solid",
+            most=16_000_000,
+            suffixes=(".step", ".stp"),
+            solid=_step,
+            bodies=_bodies_of_step,
+        ),
+        Format(name="gcode", contents="program", most=32_000_000, suffixes=(".gcode", ".ngc", ".nc", ".tap")),
+        Format(name="csv", contents="table", most=16_000_000, suffixes=(".csv",)),
+    )
+}
+"""Entry of each format by its word, in the order in which formats are listed."""
+
+
+def suffixes() -> dict[str, str]:
+    """Give the format of each suffix, first those of the words."""
+    pairs = [(suffix, record.name) for record in FORMATS.values() for suffix in record.suffixes[:1]]
+    pairs += [(suffix, record.name) for record in FORMATS.values() for suffix in record.suffixes[1:]]
+    return dict(pairs)
+
+
+def format_of(path: Path) -> Format:
+    """Find a file's format by its suffix; raises ValueError for one that is of none."""
+    known = suffixes()
+    name = known.get(path.suffix.lower())
+    if name is None:
+        raise ValueError(f"{path.name}: none of {', '.join(known)}")
+    return FORMATS[name]
