@@ -119,6 +119,7 @@ def _nine_decimals(values: Array) -> Array:
     return held
 
 
+DOUBLE = Precision("a PLY", "double precision", lambda values: values, lambda size: float(np.spacing(size)))
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
 # the product above is rounded too, which shows beyond 4.5 km
 DECIMALS = Precision(

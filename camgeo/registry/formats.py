@@ -156,6 +156,7 @@ MODULES = {
     "dxf": "camgeo.formats.dxf",
     "svg": "camgeo.formats.svg",
     "stl": "camgeo.formats.stl",
+    "ply": "camgeo.formats.ply",
     "3mf": "camgeo.formats.three_mf",
     "step": "camgeo.formats.step",
     "glb": "camgeo.formats.glb",

@@ -113,6 +113,12 @@ def _stl(raw: bytes, path: Path) -> tuple[Corners, Form]:
     return triangles_of(raw, path)
 
 
+def _ply(raw: bytes, path: Path) -> tuple[Corners, Form]:
+    from kin.read.mesh.ply import triangles_of
+
+    return triangles_of(raw, path)
+
+
 def _three_mf(path: Path, heights: Sequence[float], deepest: int) -> Solid:
     from kin.read.mesh.threemf import read_3mf
 
@@ -149,6 +155,7 @@ FORMATS: dict[str, Format] = {
         Format(name="dxf", contents="drawing", most=64_000_000, suffixes=(".dxf",), drawing=_dxf),
         Format(name="svg", contents="drawing", most=48_000_000, suffixes=(".svg",), drawing=_svg),
         mesh("stl", 256_000_000, (".stl",), _stl, units=False),
+        mesh("ply", 256_000_000, (".ply",), _ply, units=False),
         Format(
             name="3mf",
             contents="solid",

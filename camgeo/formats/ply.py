@@ -1,0 +1,54 @@
+"""Meshes as binary PLY in double precision, in millimetres unless told otherwise; the format states no unit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.common.units import INCH
+from camgeo.formats.meshes import mesh_format
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.files.mesh import Item
+    from camgeo.files.precision import Precision
+
+_COMMENT = 200  # characters
+_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+
+
+def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
+    """Write one mesh, mm, whose points are numbers of a unit of `mm` mm; raises OSError as the file system does."""
+    (item,) = items
+    mesh, numbers = item.mesh, _numbers()
+    points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # which the quotient has missed
+    faces = np.empty(len(mesh.triangles), dtype=_FACE)
+    faces["count"], faces["corners"] = 3, mesh.triangles
+    told = f"camgeo: in {'inches' if mm == INCH else 'mm'}, z upwards. {' '.join(title.split())}"
+    header = (
+        "ply",
+        "format binary_little_endian 1.0",
+        f"comment {told[:_COMMENT]}",
+        f"element vertex {len(points)}",
+        *(f"property double {axis}" for axis in "xyz"),
+        f"element face {len(faces)}",
+        "property list uchar int vertex_indices",
+        "end_header",
+        "",
+    )
+    with path.open("wb") as stream:
+        stream.write("\n".join(header).encode("ascii", "replace"))
+        stream.write(points.astype("<f8").tobytes())
+        stream.write(faces.tobytes())
+
+
+def _numbers() -> Precision:
+    from camgeo.files.precision import DOUBLE
+
+    return DOUBLE
+
+
+FORMAT = mesh_format("ply", numbers=_numbers, write=write_ply, units=False)
