@@ -21,7 +21,7 @@ HEAVY = {
 }
 LINTED = importlib.util.find_spec("importlinter") is not None
 PLANTED = {
-    "the core knows no capability": ("camgeo/output/table.py", "from camgeo.capabilities.sweep import keys"),
+    "the core knows no capability": ("camgeo/output/skipped.py", "from camgeo.capabilities.sweep import keys"),
     "kin judges without camgeo": ("kin/judge/verify.py", "from camgeo.version import __version__"),
     "Layers of kin": ("kin/numeric/angles.py", "from kin.law import contacts"),
     "in a circle": ("kin/judge/check.py", "from kin.judge import verdict"),

@@ -413,9 +413,9 @@ CHAMFER = Declared(
 SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="part.set_screw")
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
-HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.ground)
+HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)
 NORMALS = Declared("normals", ("mm",), of_file=lambda _, file: file.as_ == "grinding", field="export.tolerance")
-STATED_ERROR = Declared("stated-error", ("mm",), of_file=lambda _, file: file.ground)
+STATED_ERROR = Declared("stated-error", ("mm",), of_file=lambda _, file: file.form.ground)
 MOTION = Declared(
     "motion",
     ("mm", "deg"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.on_demand import OnDemand
+from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import Field, Kind, Table, length
@@ -64,7 +65,6 @@ MODULES = {
     for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "forces")
 }
 """Module of each table by its word."""
-COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one with finer ones is too large to read
 OF_GROUND = ("step", "tolerance", "roller")
 """Options of tables by which a lobe is ground alone."""
 

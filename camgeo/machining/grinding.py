@@ -22,7 +22,7 @@ from camgeo.curve.measures import StarError, nearest, polar_parameters
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.formats.csv import DIGITS as PLACES
 from camgeo.machining.cutter import cutter_path
-from camgeo.recipe.export import COARSEST, FINEST
+from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.synthesis.checks import hollow_radius
 from kin.judge.grinding import Grinding
 

@@ -89,6 +89,7 @@ class Compensation:
 
 
 MOST_RPM = 1_000_000
+COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one with finer ones is too large to read
 
 
 MANUFACTURE = Table(

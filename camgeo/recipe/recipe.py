@@ -189,8 +189,8 @@ class Recipe(Order):
 
     def unstated(self, path: Path) -> float | None:
         """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
-        request = self.request_of(path.name) if path.suffix == ".stl" else None
-        return None if request is None else self.told_for(request).mm
+        request = self.request_of(path.name)
+        return None if request is None or request.format.units else self.told_for(request).mm
 
 
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.on_demand import OnDemand
 from camgeo.schema.fields import Table
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -111,7 +111,7 @@ class Format:
     name: str
     suffix: str = ""
     options: Table = Table(())
-    forms: Mapping[str, Form] = WHOLE
+    forms: Mapping[str, Form] = field(default_factory=lambda: WHOLE)
     check: Callable[[Values, Values, Reader], None] = no_fault
     contour: bool = True
     part: bool = True

@@ -1,0 +1,122 @@
+"""Records of formats: a made-up one is asked for, written, read and judged; one that is taken out is unknown."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import camgeo
+from camgeo.formats import csv
+from camgeo.formats.meshes import mesh_format
+from camgeo.formats.tables import polar
+from camgeo.registry import formats
+from camgeo.registry.formats import FORMATS, MODULES
+from camgeo.schema.errors import RecipeErrors
+from kin.numeric.records import replace
+from kin.read import formats as read
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.files.mesh import Item
+
+CAM = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 12}\nmanufacture: {wheel: 400}\n"
+MANY = ["dxf", "svg", "stl", "ply", "3mf", "glb", "csv", "html"]
+
+
+def recipe(files: str) -> camgeo.Recipe:
+    return camgeo.load(f"{CAM}export: {{tolerance: 0.01, files: [{files}]}}\nverify: {{angles: 36}}\n")
+
+
+def test_every_record_has_an_entry_where_its_files_are_read() -> None:
+    judged = {
+        name for name, record in FORMATS.items() if record.contour or any(f.ground for f in record.forms.values())
+    }
+    assert judged == set(read.FORMATS)
+    assert [record.name for record in FORMATS.values()] == list(MODULES)
+    for name in judged:
+        record, entry = FORMATS[name], read.FORMATS[name]
+        assert f".{record.ending}" in entry.suffixes
+        assert record.units == entry.units
+        assert record.solid == (entry.contents == "solid")
+        assert record.program == (entry.contents == "program")
+        assert bool(record.second) != bool(record.silence)
+
+
+@pytest.mark.parametrize("name", MANY)
+def test_without_a_format_all_others_are_made(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(MODULES, name)
+    others = [other for other in MANY if other != name]
+    with pytest.raises(RecipeErrors) as caught:
+        recipe(name)
+    assert f"export.files[0]: unknown file format, given '{name}'; give " in str(caught.value)
+    assert f"{name}," not in str(caught.value).partition("; give ")[2]
+    report = camgeo.export(recipe(", ".join(others)), tmp_path)
+    assert report.ok
+    assert {file.kind for file in report.files} == set(others)
+
+
+@pytest.mark.parametrize("name", ["motion", "polar", "inspection", "grinding"])
+def test_without_a_table_its_word_is_unknown(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = tuple(other for other in csv.MODULES if other != name)
+    table = csv.FORMAT.options
+    fields = tuple(replace(item, choices=kept) if item.name == "as" else item for item in table.fields)
+    changed = replace(csv.FORMAT, options=replace(table, fields=fields), forms={k: csv.FORMS[k] for k in kept})
+    monkeypatch.setattr(csv, "FORMAT", changed)
+    monkeypatch.setattr(FORMATS, "_values", {})
+    with pytest.raises(RecipeErrors, match=f"not one of the choices, given '{name}'"):
+        recipe(f"{{csv: {{as: {name}}}}}")
+    assert camgeo.export(recipe("{csv: {as: contacts}}, dxf"), tmp_path).ok
+
+
+def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Triangles as plain numbers: a record with a writer, an entry with a reader, and nothing else."""
+
+    def write(path: Path, items: Sequence[Item], _title: str, mm: float, _about: str) -> None:
+        (item,) = items
+        np.savetxt(path, (item.mesh.points[item.mesh.triangles] / mm).reshape(-1, 9), fmt="%.17g")
+
+    def triangles(raw: bytes, _path: Path):
+        return np.array(raw.split(), dtype=np.float64).reshape(-1, 3, 3), "text"
+
+    module = ModuleType("made_up")
+    module.FORMAT = mesh_format("raw", numbers=FORMATS["ply"].numbers, write=write, units=False)
+    monkeypatch.setitem(sys.modules, "made_up", module)
+    monkeypatch.setitem(MODULES, "raw", "made_up")
+    monkeypatch.setitem(read.FORMATS, "raw", read.mesh("raw", 10**8, (".raw", ".tri"), triangles, units=False))
+    asked = recipe("raw, {raw: {kerf: 0.2}}, {raw: {units: inch}}, dxf")
+    report = camgeo.export(asked, tmp_path)
+    assert report.ok
+    paths = [file.path for file in report.files]
+    assert [path.suffix for path in paths] == [".raw", ".raw", ".raw", ".dxf"]
+    assert camgeo.verify(asked, *paths).ok
+    other = paths[0].with_suffix(".tri")
+    other.write_bytes(paths[0].read_bytes())
+    assert camgeo.verify(asked, other, units="mm").ok
+    lines = paths[0].read_text().splitlines()
+    other.write_text("\n".join(lines[1:]))
+    assert not camgeo.verify(asked, other, units="mm").ok
+
+
+def test_a_made_up_table_is_one_of_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = ModuleType("made_up_table")
+    module.FORM = replace(polar.FORM, name="round")
+    monkeypatch.setitem(sys.modules, "made_up_table", module)
+    monkeypatch.setitem(csv.MODULES, "round", "made_up_table")
+    table = csv.FORMAT.options
+    choices = tuple(csv.MODULES)
+    fields = tuple(replace(item, choices=choices) if item.name == "as" else item for item in table.fields)
+    monkeypatch.setattr(csv, "FORMAT", replace(csv.FORMAT, options=replace(table, fields=fields)))
+    monkeypatch.setattr(FORMATS, "_values", {})
+    report = camgeo.export(recipe("{csv: {as: round}}"), tmp_path)
+    assert report.files[0].path.read_text().startswith("polar_deg,radius_mm\n")
+
+
+def test_a_format_that_makes_nothing_says_so() -> None:
+    with pytest.raises(ValueError, match="page holds no mesh"):
+        formats.numbers_of(replace(FORMATS["html"], name="page"), 1.0)
