@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.camshaft.events import CRANK
 from camgeo.camshaft.lobes import lifts, valves
-from camgeo.formats.csv import write_table
+from camgeo.files.table import write_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

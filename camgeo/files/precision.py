@@ -1,7 +1,7 @@
 """The numbers a format holds: how far a vertex moves when it is written, and what that leaves to the fit.
 
 An STL holds single-precision numbers, so that at 50 mm a vertex moves by up to 2.7e-6 mm. A 3MF holds decimals, of
-which nine are written: 7.1e-10 mm. Programs that save it again mostly do so in single precision; where the tolerance
+which nine are written: 7.1e-10 mm, a PLY doubles. Programs that save it again mostly do so in single precision; where the tolerance
 allows it, that is kept back too.
 """
 
@@ -119,9 +119,11 @@ def _nine_decimals(values: Array) -> Array:
     return held
 
 
-DOUBLE = Precision("a PLY", "double precision", lambda values: values, lambda size: float(np.spacing(size)))
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
 # the product above is rounded too, which shows beyond 4.5 km
 DECIMALS = Precision(
     "a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)), again=SINGLE
+)
+DOUBLE = Precision(
+    "a PLY", "double precision", lambda values: values, lambda size: float(np.spacing(size)), again=SINGLE
 )

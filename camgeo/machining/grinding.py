@@ -20,7 +20,7 @@ from camgeo.curve.curve import Curve, CurveError
 from camgeo.curve.extremes import divided
 from camgeo.curve.measures import StarError, nearest, polar_parameters
 from camgeo.curve.undercut.causes import UndercutError
-from camgeo.formats.csv import DIGITS as PLACES
+from camgeo.files.table import DIGITS as PLACES
 from camgeo.machining.cutter import cutter_path
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.synthesis.checks import hollow_radius

@@ -113,7 +113,7 @@ def judged(
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
     from kin.judge.together import DiscFile, verify_set
-    from kin.read.files import DRAWINGS
+    from kin.read.formats import FORMATS
 
     clock = Clock()
     if second_opinion:
@@ -125,7 +125,7 @@ def judged(
     skipped: list[Skipped] = []
     for given in sets_of(recipe, paths, tolerance):
         kind, asked, within = given.held.kind, given.held.asked, given.held.tolerance
-        if gap is not None and gap > within and kind in DRAWINGS:
+        if gap is not None and gap > within and FORMATS[kind].contents == "drawing":
             message = (
                 f"a gap of {gap / recipe.mm:.9g} {recipe.units} is more than the tolerance, {within / recipe.mm:.9g}"
             )

@@ -33,7 +33,8 @@ class DrawingReader(Protocol):
 
     def __call__(
         self, path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
-    ) -> Drawing: ...
+    ) -> Drawing:
+        """Give the drawing of a file."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,17 +92,13 @@ def mesh(
     return Format(name=name, contents="solid", most=most, suffixes=suffixes, units=units, solid=solid, meshes=meshes)
 
 
-def _dxf(
-    path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
-) -> Drawing:
+def _dxf(path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float) -> Drawing:
     from kin.read.drawing.dxf import read_dxf
 
     return read_dxf(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
 
 
-def _svg(
-    path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
-) -> Drawing:
+def _svg(path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float) -> Drawing:
     from kin.read.drawing.svg import read_svg
 
     return read_svg(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)

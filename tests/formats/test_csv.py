@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camgeo.formats.csv import write_table
+from camgeo.files.table import write_table
 
 
 def test_header_lines_and_zeros(tmp_path):

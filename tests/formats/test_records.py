@@ -85,7 +85,7 @@ def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monk
         return np.array(raw.split(), dtype=np.float64).reshape(-1, 3, 3), "text"
 
     module = ModuleType("made_up")
-    module.FORMAT = mesh_format("raw", numbers=FORMATS["ply"].numbers, write=write, units=False)
+    vars(module)["FORMAT"] = mesh_format("raw", numbers=FORMATS["ply"].numbers, write=write, units=False)
     monkeypatch.setitem(sys.modules, "made_up", module)
     monkeypatch.setitem(MODULES, "raw", "made_up")
     monkeypatch.setitem(read.FORMATS, "raw", read.mesh("raw", 10**8, (".raw", ".tri"), triangles, units=False))
@@ -105,7 +105,7 @@ def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_made_up_table_is_one_of_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = ModuleType("made_up_table")
-    module.FORM = replace(polar.FORM, name="round")
+    vars(module)["FORM"] = replace(polar.FORM, name="round")
     monkeypatch.setitem(sys.modules, "made_up_table", module)
     monkeypatch.setitem(csv.MODULES, "round", "made_up_table")
     table = csv.FORMAT.options

@@ -13,15 +13,15 @@ from support.cases import examples
 from camgeo.cli.main import main
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.formats.csv import write_table
+from camgeo.files.table import write_table
 from camgeo.machining.grinding import greatest_bend
 from camgeo.output import pipeline
-from camgeo.recipe.export import FINEST
 from camgeo.recipe.loading import load, load_text
+from camgeo.recipe.machining import FINEST
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.judge.grinding import MOST_ROWS, bend
-from kin.read.size import MOST_BYTES
+from kin.read.formats import FORMATS
 
 FLAT = """
 cam:
@@ -257,7 +257,7 @@ def test_the_finest_table_can_be_read_back(tmp_path) -> None:
     """The longest rows of the finest step a table may have, all digits of each number and an exponent."""
     rows = np.column_stack([np.arange(360.0 / FINEST + 1.0) * FINEST, *[np.full(360_001, 0.000123456789012)] * 2])
     write_table(tmp_path / "t.csv", ("c_deg", "x_in", "normal_deg"), rows, head=("wheel",) * 4)
-    assert (tmp_path / "t.csv").stat().st_size < MOST_BYTES["csv"]
+    assert (tmp_path / "t.csv").stat().st_size < FORMATS["csv"].most
     assert len(rows) <= MOST_ROWS
 
 

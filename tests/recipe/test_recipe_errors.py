@@ -26,7 +26,7 @@ BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10}
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
-FORMATS = "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
+FORMATS = "give dxf, svg, stl, ply, 3mf, step, glb, csv, html or gcode"
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -70,12 +70,12 @@ tolerance: 4
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
             "cams/a.yaml:11:63: export.files[3]: unknown file format, given 'stp'; "
-            "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
+            "give dxf, svg, stl, ply, 3mf, step, glb, csv, html or gcode"
         ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
             "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, "
-            "or under the file dxf, svg, stl, 3mf, step, glb, csv or gcode"
+            "or under the file dxf, svg, stl, ply, 3mf, step, glb, csv or gcode"
         ),
     ]
 

@@ -41,8 +41,8 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
     """Write a table, read it back and judge the metal that its wheel leaves."""
+    from camgeo.files.table import write_table
     from camgeo.fit.bound import Bound
-    from camgeo.formats.csv import write_table
     from camgeo.machining.grinding import ground_table
 
     recipe = job.recipe.told_for(request)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.csv import write_table
+from camgeo.files.table import write_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
