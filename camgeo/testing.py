@@ -3,7 +3,7 @@
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
 cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors, a wrong
 type TypeError, a value that makes no sense CallError. Paths are
-those of .dxf, .svg, .stl, .3mf or .step files, told apart so. Lengths are in mm where a function takes no recipe, else
+those of drawings and solids, told apart so. Lengths are in mm where a function takes no recipe, else
 in the recipe's units, as in its report.
 """
 
@@ -134,13 +134,16 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
 
 @_ending_here
 def assert_watertight(path: AnyPath) -> float:
-    """Assert that an STL, 3MF or STEP is closed, its faces looking outward, none of them without area or there twice.
+    """Assert that a solid is closed, its faces looking outward, none of them without area or there twice.
 
     Returns the enclosed volume, mm^3.
     """
     path = path_of("path", path)
     if not _is_solid(path):
-        raise CallError(f"{path.name}: not a .stl, .3mf or .step file")
+        from kin.read.formats import FORMATS
+
+        solids = [record.suffixes[0] for record in FORMATS.values() if record.contents == "solid"]
+        raise CallError(f"{path.name}: not a {', '.join(solids[:-1])} or {solids[-1]} file")
     solid = _solid(path)
     _no_faults(path, [*(f"{fault}, none allowed" for fault in solid.faults), *_crossings(solid.contour)])
     return solid.volume

@@ -288,7 +288,7 @@ def test_assertions_keep_the_rule_too(tmp_path: Path) -> None:
         (lambda: testing.assert_closed(path, gap="1"), TypeError, "gap must be a number, not str"),
         (lambda: testing.assert_closed(path, gap=math.nan), camgeo.CallError, "gap is a number of 0 or above, not nan"),
         (lambda: testing.assert_closed("a\0.dxf"), camgeo.CallError, "path is no path: a\\x00.dxf has a null"),
-        (lambda: testing.assert_watertight(path), camgeo.CallError, "a.dxf: not a .stl, .3mf or .step file"),
+        (lambda: testing.assert_watertight(path), camgeo.CallError, "a.dxf: not a .stl, .ply, .3mf or .step file"),
         (lambda: testing.assert_recipe(None), TypeError, "recipe must be a Recipe or the path of one, not NoneType"),
         (
             lambda: testing.assert_motion(recipe, path, angles=0),

@@ -150,7 +150,7 @@ def test_export_is_not_judged_and_the_same_twice(tmp_path, capsys):
         found.append((tmp_path / folder / "disc" / "disc.glb").read_bytes())
     assert found[0] == found[1]
     assert main(["verify", str(recipe), str(tmp_path / "one" / "disc" / "disc.glb")]) == 2
-    assert "none of .dxf, .svg, .stl, .3mf" in capsys.readouterr().err
+    assert "none of .dxf, .svg, .stl, .ply, .3mf" in capsys.readouterr().err
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {files: [glb]}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     assert "glb needs a thickness" in capsys.readouterr().err

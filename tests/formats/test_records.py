@@ -20,13 +20,24 @@ from kin.numeric.records import replace
 from kin.read import formats as read
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from camgeo.files.mesh import Item
 
 CAM = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 12}\nmanufacture: {wheel: 400}\n"
 MANY = ["dxf", "svg", "stl", "ply", "3mf", "glb", "csv", "html"]
+
+
+@pytest.fixture(autouse=True)
+def in_order() -> Iterator[None]:
+    """Put back what a test takes out in its place: monkeypatch adds it behind all others."""
+    tables: list[dict] = [MODULES, csv.MODULES, read.FORMATS]
+    kept = [dict(table) for table in tables]
+    yield
+    for table, entries in zip(tables, kept, strict=True):
+        table.clear()
+        table.update(entries)
 
 
 def recipe(files: str) -> camgeo.Recipe:
@@ -49,8 +60,8 @@ def test_every_record_has_an_entry_where_its_files_are_read() -> None:
 
 
 @pytest.mark.parametrize("name", MANY)
-def test_without_a_format_all_others_are_made(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(MODULES, name)
+def test_without_a_format_all_others_are_made(name: str, tmp_path: Path) -> None:
+    del MODULES[name]
     others = [other for other in MANY if other != name]
     with pytest.raises(RecipeErrors) as caught:
         recipe(name)
@@ -87,8 +98,8 @@ def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monk
     module = ModuleType("made_up")
     vars(module)["FORMAT"] = mesh_format("raw", numbers=FORMATS["ply"].numbers, write=write, units=False)
     monkeypatch.setitem(sys.modules, "made_up", module)
-    monkeypatch.setitem(MODULES, "raw", "made_up")
-    monkeypatch.setitem(read.FORMATS, "raw", read.mesh("raw", 10**8, (".raw", ".tri"), triangles, units=False))
+    MODULES["raw"] = "made_up"
+    read.FORMATS["raw"] = read.mesh("raw", 10**8, (".raw", ".tri"), triangles, units=False)
     asked = recipe("raw, {raw: {kerf: 0.2}}, {raw: {units: inch}}, dxf")
     report = camgeo.export(asked, tmp_path)
     assert report.ok
@@ -107,7 +118,7 @@ def test_a_made_up_table_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monke
     module = ModuleType("made_up_table")
     vars(module)["FORM"] = replace(polar.FORM, name="round")
     monkeypatch.setitem(sys.modules, "made_up_table", module)
-    monkeypatch.setitem(csv.MODULES, "round", "made_up_table")
+    csv.MODULES["round"] = "made_up_table"
     table = csv.FORMAT.options
     choices = tuple(csv.MODULES)
     fields = tuple(replace(item, choices=choices) if item.name == "as" else item for item in table.fields)
