@@ -1,8 +1,8 @@
 """The numbers a format holds: how far a vertex moves when it is written, and what that leaves to the fit.
 
 An STL holds single-precision numbers, so that at 50 mm a vertex moves by up to 2.7e-6 mm. A 3MF holds decimals, of
-which nine are written: 7.1e-10 mm, a PLY doubles. Programs that save it again mostly do so in single precision; where the tolerance
-allows it, that is kept back too.
+which nine are written: 7.1e-10 mm. A PLY holds doubles. Programs that save a file again mostly do so in single
+precision; where the tolerance allows it, that is kept back too.
 """
 
 from __future__ import annotations
