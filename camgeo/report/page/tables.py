@@ -9,6 +9,7 @@ from urllib.parse import quote
 from camgeo.checks.declared import declaration
 from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.units import in_pounds
+from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import sign, title
 from camgeo.report.document import measured, pieces_word, value_text
 
@@ -288,8 +289,12 @@ def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
 
 def skipped(report: dict[str, Any]) -> str:
     """Return what was left out and why; of the page itself there is nothing to say."""
-    items = [item for item in report["skipped"] if item["what"] != "html"]
+    items = [item for item in report["skipped"] if not _is_page(item["what"])]
     return "".join(f"<li><b>{escape(item['what'])}</b>: {escape(item['why'])}</li>" for item in items)
+
+
+def _is_page(word: str) -> bool:
+    return word in FORMATS and FORMATS[word].summary
 
 
 def facts(report: dict[str, Any]) -> str:
