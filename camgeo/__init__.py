@@ -8,7 +8,7 @@ from camgeo.version import __version__
 
 TYPE_CHECKING = False  # as typing has it; importing that takes longer than all the rest
 if TYPE_CHECKING:
-    from camgeo.api.camshaft import CamshaftDesign
+    from camgeo import capabilities
     from camgeo.api.check import Check, Figure, Figures
     from camgeo.api.design import Design
     from camgeo.api.designing import design
@@ -18,57 +18,49 @@ if TYPE_CHECKING:
     from camgeo.api.loading import load
     from camgeo.api.report import File, Remark, Report
     from camgeo.api.run import check, export, verify
-    from camgeo.capabilities.sweep.library import Candidate, Search, search
+    from camgeo.capabilities import *  # noqa: F403 - their folder says which names these are
     from camgeo.fit.nodes import ToleranceError
-    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
-__all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file without running it
-    "__version__",
-    "Arc",
-    "BusyError",
-    "CallError",
-    "CamgeoError",
-    "CamshaftDesign",
-    "CamshaftRecipe",
-    "Candidate",
-    "Check",
-    "Design",
-    "Edges",
-    "Figure",
-    "Figures",
-    "File",
-    "Law",
-    "Line",
-    "Recipe",
-    "RecipeErrors",
-    "Remark",
-    "Report",
-    "Search",
-    "Spline",
-    "SurroundingsError",
-    "ToleranceError",
-    "UnitsError",
-    "check",
-    "design",
-    "export",
-    "laws",
-    "load",
-    "search",
-    "verify",
-]
+    __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file without running it
+        "__version__",
+        "Arc",
+        "BusyError",
+        "CallError",
+        "CamgeoError",
+        "Check",
+        "Design",
+        "Edges",
+        "Figure",
+        "Figures",
+        "File",
+        "Law",
+        "Line",
+        "Recipe",
+        "RecipeErrors",
+        "Remark",
+        "Report",
+        "Spline",
+        "SurroundingsError",
+        "ToleranceError",
+        "UnitsError",
+        "check",
+        "design",
+        "export",
+        "laws",
+        "load",
+        "verify",
+    ]
+    __all__ += capabilities.__all__
 
 if not TYPE_CHECKING:  # a type checker then knows the names above, and no others
-    _HOMES = {
+    _CORE = {
         "Arc": "camgeo.api.edges",
         "BusyError": "camgeo.api.errors",
         "CallError": "camgeo.api.errors",
         "CamgeoError": "camgeo.api.errors",
-        "CamshaftDesign": "camgeo.api.camshaft",
-        "CamshaftRecipe": "camgeo.recipe.camshaft",
-        "Candidate": "camgeo.capabilities.sweep.library",
         "Check": "camgeo.api.check",
         "Design": "camgeo.api.design",
         "Edges": "camgeo.api.edges",
@@ -81,7 +73,6 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "RecipeErrors": "camgeo.schema.errors",
         "Remark": "camgeo.api.report",
         "Report": "camgeo.api.report",
-        "Search": "camgeo.capabilities.sweep.library",
         "Spline": "camgeo.api.edges",
         "SurroundingsError": "camgeo.api.errors",
         "ToleranceError": "camgeo.fit.nodes",
@@ -91,21 +82,28 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "export": "camgeo.api.run",
         "laws": "camgeo.api.laws",
         "load": "camgeo.api.loading",
-        "search": "camgeo.capabilities.sweep.library",
         "verify": "camgeo.api.run",
     }
 
+    def _homes() -> dict[str, str]:
+        """Module of each name: the core's, and those that the labels of capabilities add."""
+        from camgeo.registry.registry import names
+
+        return {**_CORE, **names()}
+
     def __getattr__(name: str) -> object:
         """Import a name of the library when it is first asked for."""
-        if name not in _HOMES:
+        if name == "__all__":
+            return sorted(["__version__", *_homes()])
+        home = _CORE.get(name) or _homes().get(name)
+        if home is None:
             raise AttributeError(f"module 'camgeo' has no attribute {name!r}")
         from importlib import import_module
 
-        found = getattr(import_module(_HOMES[name]), name)
-        globals()[name] = found
-        return found
+        value = getattr(import_module(home), name)
+        globals()[name] = value
+        return value
 
-
-def __dir__() -> list[str]:
-    """Name what there is, imported or not."""
-    return sorted({*globals(), *__all__})
+    def __dir__() -> list[str]:
+        """Name what there is, imported or not."""
+        return sorted({*globals(), "__version__", *_homes()})

@@ -18,19 +18,20 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from camgeo.registry import registry
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
     from camgeo.checks.remedies import Entry
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.expected_checks import Foreseen
 
 INI = "camgeo_recipes"
-SECOND = "camgeo_second_opinion"
+OPTION = "camgeo_{}"  # ini line of an option of a capability
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
 TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # of xdist's ways those that leave a recipe to one process
 
@@ -43,8 +44,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type="args",
         default=[],
     )
-    text = "have ezdxf, shapely, trimesh and manifold3d look at the files of camgeo's recipes too"
-    parser.addini(SECOND, text, type="bool", default=False)
+    for name, text in registry.options().items():
+        parser.addini(OPTION.format(name), f"of camgeo's recipes: {text}", type="bool", default=False)
     group = parser.getgroup("camgeo")
     group.addoption("--camgeo-out", metavar="DIR", help="keep the files and reports of all recipes that run under DIR")
 
@@ -82,9 +83,10 @@ class Recipes:
                 f"--camgeo-out: under --dist {dist} several processes would write one recipe's files; "
                 "give --dist loadfile"
             )
+        options = {name: True for name in registry.options() if self.config.getini(OPTION.format(name))}
         for path in self._found():
             shown = _relative(path, self.config.invocation_params.dir)
-            self.runs[path.resolve()] = RecipeRun(path, shown, self.out, self.config.getini(SECOND))
+            self.runs[path.resolve()] = RecipeRun(path, shown, self.out, options)
         sources = type(self.config).ArgsSource
         whole = self.config.invocation_params.dir == self.config.rootpath
         if whole and self.config.args_source is not sources.ARGS:
@@ -155,8 +157,8 @@ class RecipeRun:
     path: Path
     shown: str
     out: Path | None
-    second_opinion: bool = False
-    recipe: Recipe | CamshaftRecipe | None = None
+    options: dict[str, Any] = field(default_factory=dict)
+    recipe: Order | None = None
     fault: str = ""
     certain: bool = False
     selected: set[str] = field(default_factory=set)
@@ -192,11 +194,10 @@ class RecipeRun:
         )
         try:
             with unsaid():  # each item reports its own check
-                second = self.second_opinion
                 if self.out is None:
-                    report = check(self.recipe, second_opinion=second)
+                    report = check(self.recipe, **self.options)
                 else:
-                    report = export(self.recipe, self.out, second_opinion=second)
+                    report = export(self.recipe, self.out, **self.options)
             self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
             self._refused(errors)
@@ -226,23 +227,20 @@ class RecipeFile(pytest.File):
                         f"{self.run.shown}: its files would go to the folder of {other.shown}, "
                         f"as both are named {recipe.name}; give each its own `name:`"
                     )
-        checks = () if recipe is None else _foreseen(recipe, second_opinion=self.run.second_opinion)
+        checks = () if recipe is None else _foreseen(recipe, self.run.options)
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
             yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
 
 
-def _foreseen(recipe: Recipe | CamshaftRecipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:
-    """Tell the checks to come; none of a camshaft, or where there is no such motion: its own item has them all."""
-    from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.expected_checks import foreseen
-    from kin.law.programme import IntentError
+def _foreseen(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
+    """Tell the checks to come; the item of the recipe itself has those that are not foreseen."""
+    from camgeo.common.errors import CallError
+    from camgeo.registry.root import root_of
 
-    if not isinstance(recipe, Recipe):
-        return ()
     try:
-        return foreseen(recipe, second_opinion=second_opinion)
-    except IntentError:
+        return tuple(root_of(recipe).foresee(recipe.using(*options)))
+    except CallError:  # which the run will tell
         return ()
 
 
@@ -309,13 +307,13 @@ class CheckItem(pytest.Item):
 
     def _missing(self, foreseen: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
-        from camgeo.checks.declared import CHECKS, MOTION, SECOND_OPINIONS
+        from camgeo.checks.declared import CHECKS, MOTION
         from camgeo.recipe.recipe import Recipe
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
 
         recipe = self.run.recipe
-        assert isinstance(recipe, Recipe)  # none is foreseen of a camshaft
+        assert isinstance(recipe, Recipe)  # none is foreseen of another kind
         cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, foreseen.file)]
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
@@ -328,7 +326,7 @@ class CheckItem(pytest.Item):
             )
             pytest.skip(f"{self.run.shown}: {reason}")
         why = next((entry["why"] for entry in report["skipped"] if entry["what"] == str(foreseen)), None)
-        if why is not None and foreseen.name in {row.name for row in SECOND_OPINIONS}:
+        if why is not None and foreseen.name in CHECKS and CHECKS.owner(foreseen.name) in self.run.options:
             pytest.skip(f"{self.run.shown}: {why}")
         _fail(f"{foreseen} is not among the checks that were made")
 

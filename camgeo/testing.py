@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeAlias, TypeVar
 
 from camgeo.api.loading import order_of, recipe_of
 from camgeo.checks.declared import (
@@ -21,7 +21,6 @@ from camgeo.checks.declared import (
     CONTOUR,
     MOTION,
     READABLE,
-    SECOND_OPINIONS,
     UNDERCUT_GLOBAL,
     UNDERCUT_LOCAL,
     WATERTIGHT,
@@ -41,8 +40,7 @@ if TYPE_CHECKING:
     from camgeo.api.loading import OrderSource, RecipeSource
     from camgeo.api.report import Report
     from camgeo.checks.remedies import Entry
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from kin.contour.contour import Contour
     from kin.read.drawing.drawing import Drawing
     from kin.read.formats import AnySolid
@@ -203,18 +201,17 @@ def assert_motion(
     limit: float | None = None,
     tolerance: float | None = None,
     angles: int | None = None,
-    second_opinion: bool = False,
+    **options: bool,
 ) -> Motion:
     """Assert that a file moves the recipe's follower as intended: position by contact, and play where it is held twice.
 
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
-    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `second_opinion` asserts too what ezdxf,
-    shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error, of
-    several surfaces the greatest.
+    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `options` are those of `camgeo.verify`,
+    whose checks are asserted too. Returns the motion error, of several surfaces the greatest.
     """
-    names, more = {MOTION.name, *BACKLASH}, second_opinion
-    rows = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)
+    names = {MOTION.name, *BACKLASH}
+    rows = _judged(recipe, path, names, options, limit=limit, tolerance=tolerance, angles=angles)
     if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     motion = max((row["motion"] for row in rows), key=lambda found: float(found["max"]))
@@ -222,15 +219,13 @@ def assert_motion(
 
 
 @_ending_here
-def assert_contour(
-    recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
-) -> float:
+def assert_contour(recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, **options: bool) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `second_opinion` as in
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `options` as in
     `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
-    rows = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)
+    rows = _judged(recipe, path, {CONTOUR.name}, options, tolerance=tolerance)
     return max(float(row["measured_error"]) for row in rows)
 
 
@@ -238,11 +233,11 @@ def _judged(
     recipe: RecipeSource,
     path: AnyPath,
     names: set[str],
+    options: dict[str, Any],
     *,
     limit: float | None = None,
     tolerance: float | None,
     angles: int | None = None,
-    second_opinion: bool = False,
 ) -> list[Entry]:
     """Judge a file and assert the checks of those names; what the report says of each of its surfaces."""
     from camgeo import verify as judged
@@ -259,12 +254,11 @@ def _judged(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report: Entry = dict(judged(recipe, path, tolerance=tolerance, second_opinion=second_opinion))
+    report: Entry = dict(judged(recipe, path, tolerance=tolerance, **options))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
-    if second_opinion:
-        names = names | {row.name for row in SECOND_OPINIONS}
+    names = names | {name for name in CHECKS if options.get(CHECKS.owner(name), False)}
     asked = [check for check in own if check["name"] in names]
     if not asked:
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
@@ -278,10 +272,10 @@ def _judged(
 
 
 @_ending_here
-def assert_recipe(recipe: OrderSource, *, second_opinion: bool = False) -> Report:
+def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN401 - bool, as those of camgeo.check
     """Assert that a recipe has no faults, and that every check of its exact curves and of its files holds.
 
-    It may be of a cam or of a camshaft. Makes and judges the files in a temporary folder; `second_opinion` as in
+    It may be of any kind. Makes and judges the files in a temporary folder; `options` as in
     `assert_motion`. Returns the report, which as a mapping is what report.json holds.
     """
     from camgeo import check
@@ -289,7 +283,7 @@ def assert_recipe(recipe: OrderSource, *, second_opinion: bool = False) -> Repor
 
     try:
         recipe = order_of(recipe)
-        report = check(recipe, second_opinion=second_opinion)
+        report = check(recipe, **options)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
     told: Entry = dict(report)
@@ -329,7 +323,7 @@ def _length(name: str, value: float) -> float:
 # --- all of them ------------------------------------------------------------------------------------------------------
 
 
-def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Recipe | CamshaftRecipe, what: str) -> None:
+def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Order, what: str) -> None:
     from camgeo.api.report import explained
 
     failed = [explained(check, report, recipe) for check in checks if not check["ok"]]

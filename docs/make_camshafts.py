@@ -7,10 +7,10 @@ from pathlib import Path
 
 from drawing import keep
 
-from camgeo.camshaft.diagrams import diagram
-from camgeo.camshaft.lobes import placed
+from camgeo.capabilities.camshaft.diagrams import diagram
+from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+from camgeo.capabilities.camshaft.lobes import placed
 from camgeo.common.clock import Clock
-from camgeo.recipe.camshaft import CamshaftRecipe
 from camgeo.recipe.loading import load_order
 
 ROOT = Path(__file__).parents[1]

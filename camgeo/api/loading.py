@@ -12,14 +12,13 @@ from camgeo.recipe.loading import load_order, load_order_text
 from camgeo.recipe.recipe import Order, Recipe
 
 if TYPE_CHECKING:
-    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.schema.change import Value
 
     RecipeSource: TypeAlias = Recipe | str | PathLike[str]
-    OrderSource: TypeAlias = RecipeSource | CamshaftRecipe
+    OrderSource: TypeAlias = Order | str | PathLike[str]
 
 Loaded: TypeAlias = "Recipe | Any"
-"""A Recipe, or a CamshaftRecipe: that is Any to a type checker, as what a path leads to is seen when it is read."""
+"""A Recipe, or one of another kind: that is Any to a type checker, as what a path leads to is seen when it is read."""
 NAME = "recipe"  # of what has no file
 
 OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `str`
@@ -29,7 +28,7 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
     A `str` with a line break, or with `: ` as YAML has it, is a text, any other the path of a file. A recipe that is no
-    file and gives no `name` is called recipe. The recipe of a camshaft is a CamshaftRecipe. Raises RecipeErrors, which
+    file and gives no `name` is called recipe. Raises RecipeErrors, which
     has every fault with line, column and remedy, and TypeError for what is none of the three.
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
@@ -42,8 +41,8 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     return load_order(path_of("source", source))
 
 
-def order_of(recipe: OrderSource) -> Recipe | CamshaftRecipe:
-    """Give a recipe of a cam or of a camshaft, read from its file where its path is given; raises as `load` does."""
+def order_of(recipe: OrderSource) -> Order:
+    """Give a recipe of any kind, read from its file where its path is given; raises as `load` does."""
     if isinstance(recipe, (str, PathLike)):
         return load_order(path_of("recipe", recipe))
     is_a("recipe", recipe, Order, "a Recipe or the path of one")

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.check import Figures
     from camgeo.api.designing import Designed
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
 
 JSON: TypeAlias = "bool | int | float | str | list[JSON] | dict[str, JSON] | None"
 
@@ -76,7 +75,7 @@ class Report(Mapping[str, JSON]):
     where files were judged and none kept.
     """
 
-    recipe: Recipe | CamshaftRecipe
+    recipe: Order
     _document: dict[str, Any] = field(repr=False)
     path: Path | None = None
     _paths: tuple[Path, ...] = field(default=(), repr=False)
@@ -116,7 +115,7 @@ class Report(Mapping[str, JSON]):
 
     @cached_property
     def design(self) -> Designed:
-        """The design, made anew from the recipe; of a camshaft a CamshaftDesign."""
+        """The design, made anew from the recipe, as `camgeo.design` gives it."""
         from camgeo.api.designing import design
 
         return design(self.recipe)
@@ -196,16 +195,8 @@ def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
 
 
-def explained(
-    check: dict[str, Any], report: dict[str, Any], recipe: Recipe | CamshaftRecipe, shown: str | None = None
-) -> str:
+def explained(check: dict[str, Any], report: dict[str, Any], recipe: Order, shown: str | None = None) -> str:
     """Tell of a check that fails over several lines; `shown` names the recipe's file in place of its path."""
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.root import root_of
 
-    if isinstance(recipe, Recipe):
-        from camgeo.report.failure import failure
-
-        return failure(check, report, recipe, shown)
-    from camgeo.api.camshaft import failed
-
-    return failed(check, recipe, shown)
+    return root_of(recipe).explain(check, report, recipe, shown)

@@ -11,18 +11,19 @@ from camgeo.api.report import Report
 from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
-from camgeo.output import pipeline
-from camgeo.recipe.recipe import Recipe
+from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
+from camgeo.registry.root import root_of
 from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from os import PathLike
     from pathlib import Path
 
     from camgeo.api.loading import OrderSource
     from camgeo.common.units import Units
+    from camgeo.recipe.recipe import Order
 
 
 def export(
@@ -31,49 +32,37 @@ def export(
     *,
     only: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
-    second_opinion: bool = False,
+    **options: bool,
 ) -> Report:
     """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
 
     Nothing is there but whole sets: files in which a check fails go to `out`/<name>.rejected. `only` names kinds of
-    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. `second_opinion` has
-    ezdxf, shapely, trimesh and manifold3d look at the files too: more checks that can fail. Raises RecipeErrors
-    where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what
-    it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
-    `Report.ok`.
+    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. `options` are those of
+    capabilities, as `camgeo verify --help` lists them: more checks that can fail. Raises RecipeErrors where there is no
+    such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what it should be,
+    CallError for a kind of which the recipe lists no file, TypeError for an option that there is not. A check that
+    fails raises nothing: see `Report.ok`.
     """
     recipe = order_of(recipe)
     called("progress", progress)
-    is_a("second_opinion", second_opinion, bool, "a bool")
+    used = _using("export", recipe, options)
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
     faults = [_unlisted(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
     told = staged(recipe, progress)
-    if isinstance(recipe, Recipe):
-        outcome = pipeline.export(recipe, folder, only=only, progress=told, second_opinion=second_opinion)
-    else:
-        from camgeo.api import camshaft
-
-        outcome = camshaft.made(recipe, folder, only, told, second_opinion=second_opinion)
+    outcome = root_of(used).export(used, folder, only, told)
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(
-    recipe: OrderSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
-) -> Report:
+def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
     recipe = order_of(recipe)
     called("progress", progress)
-    is_a("second_opinion", second_opinion, bool, "a bool")
+    used = _using("check", recipe, options)
     told = staged(recipe, progress)
-    if isinstance(recipe, Recipe):
-        outcome = pipeline.check(recipe, progress=told, second_opinion=second_opinion)
-    else:
-        from camgeo.api import camshaft
-
-        outcome = camshaft.made(recipe, None, (), told, second_opinion=second_opinion)
+    outcome = root_of(used).check(used, told)
     return _told(Report(recipe, outcome.report))
 
 
@@ -84,17 +73,16 @@ def verify(
     tolerance: float | None = None,
     units: Units | None = None,
     gap: float | None = None,
-    second_opinion: bool = False,
+    **options: bool,
 ) -> Report:
     """Judge drawings, solids and milling programs of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
     its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
-    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. `second_opinion`
-    has ezdxf, shapely, trimesh and manifold3d look at the files too: more checks that can fail. Raises RecipeErrors
-    where there is no such cam, CallError for what is no file of a known kind and a gap that is too wide, UnitsError
-    where a file states another unit than `units`, SurroundingsError where one of those libraries is missing. A file
-    that cannot be read raises nothing: that is a check that fails.
+    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. `options` as in
+    `export`. Raises RecipeErrors where there is no such cam, CallError for what is no file of a known kind and a gap
+    that is too wide, UnitsError where a file states another unit than `units`, SurroundingsError where a library is
+    missing. A file that cannot be read raises nothing: that is a check that fails.
     """
     from kin.read.formats import suffixes
 
@@ -104,7 +92,7 @@ def verify(
     wide = None if gap is None else number_of("gap", gap)
     if units is not None:
         is_a("units", units, str, "a str")
-    is_a("second_opinion", second_opinion, bool, "a bool")
+    used = _using("verify", recipe, options)
     told = {path: _no_file(path) for path in paths}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
@@ -127,13 +115,18 @@ def verify(
     within = None if within is None else within * recipe.mm
     wide = None if wide is None else wide * recipe.mm
     unit = None if units is None else UNIT_MM[units]
-    if isinstance(recipe, Recipe):
-        report = pipeline.judged(recipe, paths, tolerance=within, units=unit, gap=wide, second_opinion=second_opinion)
-    else:
-        from camgeo.api import camshaft
-
-        report = camshaft.judged(recipe, paths, within, unit, second_opinion=second_opinion)
+    report = root_of(used).judge(used, paths, within, unit, wide)
     return _told(Report(recipe, report, None, tuple(paths)))
+
+
+def _using(function: str, recipe: Order, options: Mapping[str, bool]) -> Order:
+    """Give the recipe as one that uses the capabilities of these options of a call, where they are True."""
+    known = registry.options()
+    for name, value in options.items():
+        if name not in known:
+            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        is_a(name, value, bool, "a bool")
+    return recipe.using(*(name for name, value in options.items() if value))
 
 
 def _told(report: Report) -> Report:

@@ -47,15 +47,13 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 class Scene:
     """What decides which checks are made: the recipe, and the follower that its motion calls for.
 
-    Of a run further whether its contour is trimmed, whether its linkage turns right round, and whether other libraries
-    are asked for a second opinion.
+    Of a run further whether its contour is trimmed, and whether its linkage turns right round.
     """
 
     recipe: Recipe
     follower: Follower
     trimmed: bool = False
     turns: bool = True
-    second_opinion: bool = False
 
     @property
     def roller(self) -> bool:
@@ -237,15 +235,6 @@ def _driven(scene: Scene, file: FileRequest) -> bool:
 
 def _dwelling(scene: Scene, file: FileRequest) -> bool:
     return _dwells(scene) and _driven(scene, file)
-
-
-def _seen_by(library: str) -> OfFile:
-    """Whether a library is asked about a file; one of all bodies is not the cam's alone."""
-
-    def seen(scene: Scene, file: FileRequest) -> bool:
-        return scene.second_opinion and library in file.format.second and not file.united
-
-    return seen
 
 
 def _sprung(scene: Scene) -> bool:
@@ -461,23 +450,6 @@ LEAST_BACKLASH = Declared(
     strict_at=(0.0,),
 )
 
-# --- a second opinion on files ----------------------------------------------------------------------------------------
-
-_ANEW = remedies.exported_anew
-_FACED, _MESHES = _seen_by("shapely"), _seen_by("trimesh")
-AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_seen_by("ezdxf"), remedy=_ANEW)
-CONTOUR_VALID = Declared("shapely:valid", ("faults",), of_file=_FACED, remedy=_ANEW)
-CONTOUR_AREA = Declared("shapely:area", ("mm^2",), of_file=_FACED, field="export.tolerance", remedy=_ANEW)
-CONTOUR_DISTANCE = Declared(
-    "shapely:distance", ("mm",), of_file=_FACED, field="export.tolerance", remedy=remedies.wider
-)
-MESH_WATERTIGHT = Declared("trimesh:watertight", ("faults",), of_file=_MESHES, remedy=_ANEW)
-MESH_WINDING = Declared("trimesh:winding", ("faults",), of_file=_MESHES, remedy=_ANEW)
-MESH_BODIES = Declared("trimesh:bodies", ("bodies",), of_file=_MESHES, remedy=_ANEW)
-MESH_VOLUME = Declared("trimesh:volume", ("mm^3",), of_file=_MESHES, field="part.thickness", remedy=_ANEW)
-MESH_STATUS = Declared("manifold3d:status", ("faults",), of_file=_MESHES, remedy=_ANEW)
-
-SECOND_OPINIONS = tuple(one for one in tuple(globals().values()) if isinstance(one, Declared) and ":" in one.name)
 _CORE = {one.name: one for one in tuple(globals().values()) if isinstance(one, Declared)}
 CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one for one in capability.checks()})
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""

@@ -153,20 +153,6 @@ def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
     return f"{_tighter(check, report, recipe)}verify.motion_error above {upward(value)}"
 
 
-def exported_anew(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell of the file that the recipe itself makes."""
-    return "the file that `camgeo export` writes from this recipe"
-
-
-def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell of the tolerance that a contour keeps, measured between polygons within a tenth of the file's of it."""
-    anew = exported_anew(check, report, recipe)
-    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
-    if check["value"] is None or tolerance is None:
-        return anew
-    return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
-
-
 def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Tell which motion error would permit a play: the limits of both are proportional where the recipe gives it."""
     given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]

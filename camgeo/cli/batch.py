@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
@@ -16,11 +16,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.report import Report
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from camgeo.schema.errors import RecipeError
-
-    AnyRecipe: TypeAlias = Recipe | CamshaftRecipe
 
 PAYS = 4.0  # processor seconds of remaining work from which more processes pay that import all anew
 FORKED = 1.0  # and those that are forked with all that is imported
@@ -48,7 +45,7 @@ class Result:
     errors: tuple[RecipeError, ...] = ()
 
 
-def results(recipes: Sequence[AnyRecipe], task: Task, jobs: int | None) -> Iterator[Result]:
+def results(recipes: Sequence[Order], task: Task, jobs: int | None) -> Iterator[Result]:
     """Give the result of each recipe in their order; it begins here.
 
     It goes on with `jobs` processes, or with one for each core, where what is left pays for starting them.
@@ -68,7 +65,7 @@ def results(recipes: Sequence[AnyRecipe], task: Task, jobs: int | None) -> Itera
         warm = warm if done else time.process_time()
 
 
-def _at_once(recipes: Sequence[AnyRecipe], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
+def _at_once(recipes: Sequence[Order], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
     """Give the result of each recipe in their order, `count` at once."""
     from concurrent.futures.process import BrokenProcessPool
 
@@ -90,7 +87,7 @@ def _at_once(recipes: Sequence[AnyRecipe], task: Task, count: int, *, fork: bool
             progress.clear()
 
 
-def result(recipe: AnyRecipe, task: Task, progress: Progress | None = None) -> Result:
+def result(recipe: Order, task: Task, progress: Progress | None = None) -> Result:
     """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError

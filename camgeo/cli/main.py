@@ -16,7 +16,7 @@ from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
-from camgeo.registry import registry
+from camgeo.registry import registry, root
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.quantity import read_quantity
 
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
     from camgeo.checks.remedies import Entry
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.recipe.recipe import Order
 
 O = TypeVar("O", bound="Order")
 
@@ -126,15 +125,17 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     text = "join ends of a drawing this near, at most the tolerance; added to the errors of contour and motion"
     verify.add_argument("--gap", type=_length, metavar="G", help=text)
-    text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
-    verify.add_argument("--second-opinion", action="store_true", help=text)
+    for name, text in registry.options().items():
+        verify.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
     wing("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
     wing("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
-    schema.add_argument("order", nargs="?", choices=("cam", "camshaft"), default="cam", help="of which recipe")
+    schema.add_argument(
+        "order", nargs="?", choices=(root.CAM, *root.folders()), default=root.CAM, help="of which recipe"
+    )
     for folder, label in registry.labels().items():
         for name, text in label.commands.items():
             wing(name, text, f"{registry.PACKAGE}.{folder}.command")
@@ -239,9 +240,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _loaded(
-    paths: Sequence[str], tolerance: str | None, only: Sequence[str]
-) -> tuple[list[Recipe | CamshaftRecipe], dict[int, Entry]]:
+def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) -> tuple[list[Order], dict[int, Entry]]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong.
 
     Those others come second, by their place in the call, as a list of reports has them.
@@ -250,7 +249,7 @@ def _loaded(
     from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
-    recipes: list[Recipe | CamshaftRecipe] = []
+    recipes: list[Order] = []
     refused: dict[int, Entry] = {}
     for i, path in enumerate(paths):
         try:
@@ -273,9 +272,7 @@ def _at(recipe: O, tolerance: str | None) -> O:
     return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _told(
-    recipes: Sequence[Recipe | CamshaftRecipe], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace
-) -> int:
+def _told(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
     """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
     from camgeo.cli.recipes import unmade
 
@@ -337,8 +334,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
-        second = arguments.second_opinion
-        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, second_opinion=second))
+        options = {name: getattr(arguments, name) for name in registry.options()}
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, **options))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:
@@ -392,12 +389,10 @@ def _new(arguments: argparse.Namespace) -> int:
 
 def _schema(arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
-    from camgeo.recipe.camshaft import SHAFT
-    from camgeo.recipe.keys import recipe_table
     from camgeo.report.document import encoded
     from camgeo.schema.json_schema import json_schema
 
-    say_json(encoded(json_schema({"cam": recipe_table(), "camshaft": SHAFT}[arguments.order])))
+    say_json(encoded(json_schema(root.root(arguments.order).table())))
     return OK
 
 

@@ -1,6 +1,6 @@
 """Watching a recipe: it is exported anew whenever it is saved, and a page on 127.0.0.1 reloads itself.
 
-A camshaft is exported anew when the recipe of one of its lobes is saved, too.
+What is made of several recipes is exported anew when one of those is saved, too.
 The server knows three addresses: the page, a stream of events, and nothing else. A recipe that is saved half-done shows
 its errors on the terminal and over the page, and the watch goes on.
 """

@@ -85,7 +85,6 @@ FORMAT = Format(
     contour=False,
     part=False,
     turning=True,
-    silence="a table has no contour",
     make=_make,
     intent=_intent,
 )

@@ -402,6 +402,5 @@ FORMAT = Format(
     check=_check,
     by_disc=True,
     path=True,
-    second=frozenset({"ezdxf", "shapely"}),
     make=make_dxf,
 )

@@ -55,7 +55,6 @@ FORMAT = Format(
     check=_check,
     part=False,
     by_disc=True,
-    silence="no library of these reads a milling program",
     make=_make,
     intent=_intent,
 )

@@ -205,7 +205,6 @@ FORMAT = Format(
     contour=False,
     part=False,
     solid=True,
-    silence="a GLB is to look at",
     make=make_view,
     foresee=foresee_mesh,
     numbers=_single,

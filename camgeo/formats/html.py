@@ -70,5 +70,4 @@ FORMAT = Format(
     contour=False,
     part=False,
     summary=True,
-    silence="a page is to look at",
 )

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 OPTIONS = Table((PARTS, *OF_SOLID))
 EDGES = {"": Form(surfaces=2, discs=2, pieces="edges")}
-SECOND = frozenset({"shapely", "trimesh"})
 
 
 def mesh_format(
@@ -43,7 +42,6 @@ def mesh_format(
         solid=True,
         by_disc=True,
         units=units,
-        second=SECOND,
         make=make_mesh,
         foresee=foresee_mesh,
         numbers=numbers,

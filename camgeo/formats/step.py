@@ -255,6 +255,5 @@ FORMAT = Format(
     },
     check=_check,
     solid=True,
-    second=frozenset({"shapely"}),
     make=make_step,
 )

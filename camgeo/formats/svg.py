@@ -188,6 +188,5 @@ FORMAT = Format(
         for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))
     },
     by_disc=True,
-    second=frozenset({"shapely"}),
     make=make_svg,
 )

@@ -12,7 +12,7 @@ import numpy as np
 
 from camgeo.common.units import INCH
 from camgeo.files.markup import number, one_line
-from camgeo.formats.meshes import EDGES, OPTIONS, SECOND, foresee_mesh, make_mesh
+from camgeo.formats.meshes import EDGES, OPTIONS, foresee_mesh, make_mesh
 from camgeo.registry.formats import Format
 
 if TYPE_CHECKING:
@@ -111,7 +111,6 @@ FORMAT = Format(
     options=OPTIONS,
     forms=EDGES,
     solid=True,
-    second=SECOND,
     make=make_mesh,
     foresee=foresee_mesh,
     numbers=_decimals,

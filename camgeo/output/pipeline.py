@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import Results
     from camgeo.report.page.content import Content
     from kin.judge.check import Check
     from kin.judge.intent import ShaftIntent
@@ -49,9 +50,8 @@ def export(
     *,
     only: tuple[str, ...] = (),
     progress: Callable[[str], None] | None = None,
-    second_opinion: bool = False,
 ) -> Outcome:
-    """Write and judge a recipe's files under `out`/<name>; see the module. `second_opinion` asks other libraries too.
+    """Write and judge a recipe's files under `out`/<name>; see the module.
 
     Raises RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk does
     not do what it should. A failed check raises nothing: the set goes to `out`/<name>.rejected.
@@ -61,7 +61,7 @@ def export(
     clock = Clock(progress)
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with RunFolder(out, recipe.name) as run:
-        _, found = _produced(recipe, requests, run.folder, clock, second_opinion=second_opinion)
+        _, found = _produced(recipe, requests, run.folder, clock)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
@@ -70,14 +70,13 @@ def export(
     return Outcome(report, found.ok, folder)
 
 
-def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False) -> Outcome:
+def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
     """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
     import tempfile
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        files = recipe.export.files
-        _, found = _produced(recipe, files, Path(folder), Clock(progress), second_opinion=second_opinion)
+        _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
         return Outcome(document(recipe, found), found.ok, None)
 
 
@@ -100,14 +99,12 @@ def judged(
     tolerance: float | None = None,
     units: float | None = None,
     gap: float | None = None,
-    second_opinion: bool = False,
 ) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
 
     They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
     `units`, mm, is that of files that state none; raises UnitsError where one states another. Ends in drawings within
-    `gap`, mm, are joined; CallError for one above the tolerance of a drawing. `second_opinion` asks other libraries
-    about them too; SurroundingsError without those.
+    `gap`, mm, are joined; CallError for one above the tolerance of a drawing.
     """
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
@@ -116,10 +113,7 @@ def judged(
     from kin.read.formats import FORMATS
 
     clock = Clock()
-    if second_opinion:
-        from camgeo.output.second_opinion import demand_libraries
-
-        demand_libraries(recipe)
+    _demand(recipe)
     design = designed(recipe, clock)
     checks, results = list(design.checks), dict[int, FileResult]()
     skipped: list[Skipped] = []
@@ -144,11 +138,8 @@ def judged(
             checks += verdict.checks
         skipped += _alone(given, meant)
     files = [results[place] for place in sorted(results)]
-    if second_opinion:
-        from camgeo.output.second_opinion import second_opinion_on
-
-        opinion = second_opinion_on(files, recipe, design, checks, clock)
-        checks, skipped = [*checks, *opinion.checks], [*skipped, *opinion.skipped]
+    for result in _looked(recipe, design, files, checks, clock):
+        checks, skipped = [*checks, *result.checks], [*skipped, *result.skipped]
     return document(recipe, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped)))
 
 
@@ -160,16 +151,25 @@ def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
     return [(closure.name, why) for closure in intent.closures if lacking]
 
 
-def _produced(
-    recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock, *, second_opinion: bool = False
-) -> tuple[Design, Findings]:
+def _demand(recipe: Recipe) -> None:
+    """Demand what the capabilities need that the recipe uses; raises SurroundingsError."""
+    for capability in registry.in_order(recipe.uses):
+        capability.demand(recipe)
+
+
+def _looked(
+    recipe: Recipe, design: Design, files: list[FileResult], checks: list[Check], clock: Clock
+) -> list[Results]:
+    """What capabilities say of files beside the judge."""
+    capabilities = registry.in_order(recipe.uses)
+    return [capability.look(recipe, design, files, checks, clock) for capability in capabilities]
+
+
+def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
     """All stages: design, fits, files, verdicts, page."""
     from camgeo.output.skipped import left_out
 
-    if second_opinion:
-        from camgeo.output.second_opinion import demand_libraries
-
-        demand_libraries(recipe)
+    _demand(recipe)
     design = designed(recipe, clock)
     checks = list(design.checks)
     files: list[FileResult] = []
@@ -187,11 +187,8 @@ def _produced(
             files += made.files
             checks += made.checks
     skipped = left_out(recipe, requests, design)
-    if second_opinion:
-        from camgeo.output.second_opinion import second_opinion_on
-
-        opinion = second_opinion_on(files, recipe, design, checks, clock)
-        checks, skipped = [*checks, *opinion.checks], (*skipped, *opinion.skipped)
+    for result in _looked(recipe, design, files, checks, clock):
+        checks, skipped = [*checks, *result.checks], (*skipped, *result.skipped)
     found = _findings(recipe, design, checks, files, clock, skipped=skipped)
     for request in pages:
         path = folder / request.filename(recipe.name, recipe.export.files)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.recipe import file_bytes, is_meant_as_a_camshaft, load_text, of_source, read, without_places
+from camgeo.recipe.recipe import file_bytes, load_text, meant_root, of_source, read, without_places
+from camgeo.registry.root import CAM, root
 from camgeo.schema.yaml_source import read_source
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from camgeo.recipe.camshaft import CamshaftRecipe
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
 
 __all__ = ["load", "load_order", "load_order_text", "load_text", "read"]
 
@@ -23,21 +23,21 @@ def load(path: str | PathLike[str]) -> Recipe:
     return read(file_bytes(path), path)
 
 
-def load_order(path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
-    """Read the recipe of a cam or of a camshaft, whichever the file holds; raises RecipeErrors as `load` does."""
+def load_order(path: str | PathLike[str]) -> Order:
+    """Read a recipe of whichever kind the file holds, see `Root`; raises RecipeErrors as `load` does."""
     return _order(file_bytes(path), path)
 
 
-def load_order_text(text: str, path: str, unplaced: str = "") -> Recipe | CamshaftRecipe:
-    """Read the recipe of a cam or of a camshaft from a text, as `load_text` does; lobes are found from this folder."""
+def load_order_text(text: str, path: str, unplaced: str = "") -> Order:
+    """Read a recipe of any kind from a text, as `load_text` does; files that it names are found from this folder."""
     with without_places(unplaced):
         return replace(_order(text.encode("utf-8", "surrogatepass"), path), unplaced=unplaced)
 
 
-def _order(data: bytes, path: str | PathLike[str]) -> Recipe | CamshaftRecipe:
+def _order(data: bytes, path: str | PathLike[str]) -> Order:
     source = read_source(data, str(path))
-    if is_meant_as_a_camshaft(source):
-        from camgeo.recipe.camshaft import read_camshaft
-
-        return read_camshaft(source, Path(path))
-    return of_source(source, path)
+    key = meant_root(source)
+    if key == CAM:
+        return of_source(source, path)
+    order: Order = root(key).read(source, Path(path))
+    return order

@@ -10,9 +10,10 @@ from __future__ import annotations
 import collections.abc
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeVar, overload
 
 from camgeo.common.arguments import is_a
+from camgeo.common.errors import CallError
 from camgeo.recipe.assembly import MechanismAsked
 from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
@@ -24,6 +25,8 @@ from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part
 from camgeo.registry import registry
+from camgeo.registry import root as roots
+from camgeo.registry.root import CAM
 from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
 from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.reader import Reader
@@ -35,6 +38,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from os import PathLike
+    from typing import Self
 
     from camgeo.cams.family import Cam
     from camgeo.recipe.export import Export, FileRequest, Length
@@ -63,7 +67,9 @@ class Verify:
 
 @dataclass(frozen=True)
 class Order(Document):
-    """What any recipe says, of one cam or of a camshaft; `mm` is the length of its unit."""
+    """What a recipe of any kind says; `mm` is the length of its unit, `root` the key that its kind goes by (`Root`)."""
+
+    root: ClassVar[str]
 
     name: str
     about: str
@@ -86,6 +92,12 @@ class Order(Document):
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
+    def using(self, *options: str) -> Self:
+        """Give the recipe as one that uses the capabilities of these options; raises CallError where it has no cam."""
+        if options:
+            raise CallError(f"{options[0]} looks at files of one cam: leave it out for a {self.root}")
+        return self
+
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
         """Name the files of a request that hold what the recipe is of."""
         return (request.filename(self.name, self.export.files),)
@@ -103,6 +115,7 @@ class Recipe(Order):
     name, each with the value that it makes of its keys, or None.
     """
 
+    root = CAM
     cam: Cam
     part: Part
     linkage: Linkage | None = None
@@ -132,6 +145,10 @@ class Recipe(Order):
     def without(self, *names: str) -> Recipe:
         """Give the recipe as one that does not use these capabilities; its text and its places stay."""
         return replace(self, capabilities=tuple(item for item in self.capabilities if item[0] not in names))
+
+    def using(self, *options: str) -> Recipe:
+        """Give the recipe as one that also uses these capabilities, of whose keys it gives none."""
+        return replace(self, capabilities=(*self.capabilities, *((option, None) for option in options)))
 
     def with_value(self, value: object) -> Recipe:
         """Give the recipe with another value in the place of the one of its class; raises ValueError without one."""
@@ -211,26 +228,29 @@ def without_places(name: str) -> Iterator[None]:
         raise RecipeErrors(error.without_place(name) if name else error for error in errors.errors) from None
 
 
-def is_of_a_camshaft(source: Source) -> bool:
-    """Whether a text is the recipe of a camshaft, which has no cam of its own."""
-    return isinstance(source.root, Mapping) and "camshaft" in entries(source.root)
-
-
-def is_meant_as_a_camshaft(source: Source) -> bool:
-    """Whether it is one, or has a slip in that word in the place of a cam."""
+def root_key(source: Source) -> str:
+    """Key of the kind of recipe that a text is of, that of one cam where none stands there."""
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
-    if "camshaft" in top or "cam" in top:
-        return "camshaft" in top
-    words = ("camshaft", *recipe_table().keys)
-    return any("camshaft" in suggestion(key, words) for key in top)
+    return next((key for key in roots.folders() if key in top), CAM)
+
+
+def meant_root(source: Source) -> str:
+    """Key of the kind that a text is of, or has a slip in that word in the place of a cam."""
+    top = entries(source.root) if isinstance(source.root, Mapping) else {}
+    key = root_key(source)
+    if key != CAM or CAM in top:
+        return key
+    words = (*roots.folders(), *recipe_table().keys)
+    slips = (suggestion(word, words) for word in top)
+    return next((key for slip in slips for key in roots.folders() if key in slip), CAM)
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
     """Make the recipe of a text that was parsed; raises RecipeErrors."""
-    if is_of_a_camshaft(source):
-        mark = keys(source.root)["camshaft"].mark if isinstance(source.root, Mapping) else source.root.mark
-        remedy = "export, check and verify take it; give any other command the recipe of a lobe"
-        raise RecipeErrors([RecipeError(str(path), *mark, "camshaft", "a camshaft is no cam", None, remedy)])
+    if (key := root_key(source)) != CAM:
+        mark = keys(source.root)[key].mark if isinstance(source.root, Mapping) else source.root.mark
+        remedy = f"export, check and verify take it; give any other command {roots.root(key).instead}"
+        raise RecipeErrors([RecipeError(str(path), *mark, key, f"a {key} is no cam", None, remedy)])
     reader, values = _read(source, registry.by_words(words_of(source.root)))
     if reader.errors:  # so that suggestions know all keys, and keys in other tables are found
         reader, values = _read(source, registry.recorded())

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAMS
-from camgeo.recipe.camshaft import SHAFT
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.track import OF_A_DISC
 from camgeo.registry.gathered import Gathered
+from camgeo.registry.root import CAM, root
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import Field, Kind, Table, either
 from kin.numeric.records import dataclass, field, replace
@@ -28,8 +28,9 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 class Starter:
     """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
 
-    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown. A
-    starter of a camshaft has no cam. `after` is the core's starter behind which that of a capability stands.
+    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown.
+    `after` is the core's starter behind which that of a capability stands, `root` the key of a recipe of another kind,
+    which has no cam.
     """
 
     title: str
@@ -38,6 +39,7 @@ class Starter:
     more: Given = field(default_factory=dict)
     unfit: tuple[str, ...] = ()
     after: str = ""
+    root: str = CAM
 
 
 def _roller(title: str, ratio: str, route: str, values: str | Given) -> Starter:
@@ -212,23 +214,6 @@ _CORE = {
         {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_SHAFT},
         {"linkage": {"kind": "slider-crank", "coupler": "75", "offset": "5"}, "dwell": {"band": "0.1"}},
     ),
-    "camshaft": Starter(
-        "Lobes of other recipes on one shaft: `camgeo new disc-lobe lobe.yaml` makes theirs.",
-        "",
-        {},
-        {
-            "camshaft": {
-                "shaft": {"diameter": "26", "to": "80", "bore": "8"},
-                "journals": "\n    - {z: 0, length: 15, diameter: 32}\n    - {z: 65, length: 15, diameter: 32}",
-                "lobes": (
-                    "\n    - {recipe: lobe.yaml, cylinder: 1, valve: intake, z: 20}"
-                    "\n    - {recipe: lobe.yaml, cylinder: 1, valve: exhaust, z: 45}"
-                ),
-                "engine": {"order": "[1]", "intake": "110", "exhaust": "114", "lift": "1"},
-            },
-            "export": {"tolerance": "0.005", "files": "[stl, svg, {csv: {as: events}}, html]"},
-        },
-    ),
 }
 
 STARTERS: Gathered[Starter] = Gathered(_CORE, lambda capability: capability.starters())
@@ -245,7 +230,7 @@ _REST: Given = {
 
 def starters_for(kind: str) -> tuple[str, ...]:
     """Name the starters of a kind of cam, such as disc; none for another word."""
-    return tuple(name for name, each in STARTERS.items() if each.kind and each.kind == kind)
+    return tuple(name for name, each in STARTERS.items() if each.root == CAM and each.kind == kind)
 
 
 def starter(kind: str) -> str:
@@ -256,7 +241,7 @@ def starter(kind: str) -> str:
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = STARTERS[kind]
     given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
-    lines = _lines(_recipe(chosen) if chosen.kind else SHAFT, given, "")
+    lines = _lines(_recipe(chosen) if chosen.root == CAM else root(chosen.root).table(), given, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.starter import Starter
+    from camgeo.registry.root import Root
     from camgeo.report.page.curves import Plot
     from camgeo.schema.fields import Field
     from camgeo.schema.reader import Reader, Values
@@ -40,11 +41,13 @@ class Results(NamedTuple):
     """What a capability makes of a run: sections of the report by their keys, checks, and figures of runs of its own.
 
     `runs` has for each figure that is `of` a run its values by the file that drives it, None for the intended motion.
+    `skipped` is what was left out, with the reason.
     """
 
     sections: Mapping[str, Any] = EMPTY
     checks: Sequence[Check] = ()
     runs: Mapping[str, Mapping[str | None, Measured]] = EMPTY
+    skipped: Sequence[tuple[str, str]] = ()
 
 
 class SampledCams(Protocol):
@@ -124,6 +127,17 @@ def no_results(_recipe: Recipe, _design: Design, _files: Sequence[FileResult], _
     return Results()
 
 
+def no_demand(_recipe: Recipe, /) -> None:
+    """Need nothing."""
+
+
+def no_opinion(
+    _recipe: Recipe, _design: Design, _files: Sequence[FileResult], _checks: Sequence[Check], _clock: Clock, /
+) -> Results:
+    """Look at no file."""
+    return Results()
+
+
 def no_figures(
     _recipe: Recipe, _design: Design, _names: Sequence[str], _speeds: Mapping[str, float], /
 ) -> Mapping[str, Measured]:
@@ -161,6 +175,7 @@ class Capability:
     build     makes of the values in which there is no fault what `recipe.of(Class)` gives; None for nothing
     speed     turns a minute of the shaft, where a recipe gives it
     starters  recipes for `camgeo new`, by name
+    roots     other kinds of recipes, by the label's keys
 
     Of figures and checks:
 
@@ -169,6 +184,8 @@ class Capability:
     estimates figures of many cams at once for a sweep, by name
     checks    declarations of all its checks; every check that it makes is one of them
     exact     checks that need no file: (recipe, exact cam, each surface with its contour)
+    demand    raises SurroundingsError where a library is missing that it needs, before anything is designed
+    look      checks of files beside the judge's: (recipe, design, all files, checks of them so far, clock)
     examine   checks, sections of the report and figures of runs, when all files were judged
 
     Of what is shown:
@@ -184,11 +201,14 @@ class Capability:
     build: Callable[[Values], object | None] = no_value
     speed: Callable[[Recipe], float | None] = no_speed
     starters: Callable[[], Mapping[str, Starter]] = no_starters
+    roots: Mapping[str, Root[Any]] = EMPTY
     figures: Mapping[str, Figure] = EMPTY
     measure: Callable[[Recipe, Design, Sequence[str], Mapping[str, float]], Mapping[str, Measured]] = no_figures
     estimates: Callable[[], Mapping[str, Estimate]] = no_estimates
     checks: Callable[[], Sequence[Declared]] = no_declarations
     exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = no_exact_checks
+    demand: Callable[[Recipe], None] = no_demand
+    look: Callable[[Recipe, Design, Sequence[FileResult], Sequence[Check], Clock], Results] = no_opinion
     examine: Callable[[Recipe, Design, Sequence[FileResult], Clock], Results] = no_results
     remarks: Mapping[str, Callable[[Recipe, Design], Sequence[Remark]]] = EMPTY
     panel: Callable[[dict[str, Any]], str] = no_panel

@@ -94,8 +94,6 @@ class Format:
     summary   whether it reports on all other files of a run, and is made last
     turning   whether it is made only of a mechanism that turns right round
     path      whether it shows the path of the cutter where `manufacture.layer` asks for that
-    second    libraries that are asked for a second opinion on it
-    silence   why none is asked
 
     What makes them:
 
@@ -121,8 +119,6 @@ class Format:
     summary: bool = False
     turning: bool = False
     path: bool = False
-    second: frozenset[str] = frozenset()
-    silence: str = ""
     make: Callable[[Job, FileRequest, Path], Made] | None = None
     foresee: Callable[[Job, FileRequest], None] = foresee_nothing
     intent: Callable[[Recipe, Design], PartIntent] = as_designed

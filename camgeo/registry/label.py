@@ -20,6 +20,9 @@ class Label(NamedTuple):
     reports   files of the output folder that list others, as `report.json` does
     absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
     record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
+    option    help of the option of the folder's name, by which a call uses it on files of one cam; empty: none
+    roots     keys of the top level that make a text a recipe of another kind, which the record reads, see `Root`
+    names     names that it adds to the library, each with the module of the folder that has it
     """
 
     rank: int
@@ -28,3 +31,6 @@ class Label(NamedTuple):
     reports: tuple[str, ...] = ()
     absent: str = ""
     record: bool = True
+    option: str = ""
+    roots: tuple[str, ...] = ()
+    names: Mapping[str, str] = NONE

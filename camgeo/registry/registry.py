@@ -56,6 +56,20 @@ def in_order(names: Iterable[str]) -> list[Capability]:
     return [capability(name) for name in recorded() if name in chosen]
 
 
+def options() -> dict[str, str]:
+    """Help of each option by which a call uses a capability, by the capability's name."""
+    return {name: label.option for name, label in labels().items() if label.option}
+
+
+def names() -> dict[str, str]:
+    """Module of each name that capabilities add to the library."""
+    return {
+        name: f"{PACKAGE}.{folder}.{module}"
+        for folder, label in labels().items()
+        for name, module in label.names.items()
+    }
+
+
 def by_words(words: Collection[str]) -> tuple[str, ...]:
     """Names of the recorded capabilities that a recipe with these words uses, see `Label.words`."""
     return tuple(name for name in recorded() if not set(labels()[name].words).isdisjoint(words))

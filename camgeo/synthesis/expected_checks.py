@@ -27,9 +27,9 @@ class Foreseen(NamedTuple):
         return self.name if self.file is None else f"{self.name}[{self.file}]"
 
 
-def foreseen(recipe: Recipe, *, second_opinion: bool = False) -> tuple[Foreseen, ...]:
+def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
-    scene = Scene(recipe, _follower(recipe), second_opinion=second_opinion)
+    scene = Scene(recipe, _follower(recipe))
     every = declarations(recipe)
     found = [Foreseen(one.name) for one in every if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower

@@ -40,14 +40,19 @@ def test_reading_a_recipe_loads_no_library_of_drawings_or_solids() -> None:
 
 
 def test_every_name_is_there_and_listed() -> None:
-    homes: dict[str, str] = vars(camgeo)["_HOMES"]
+    homes: dict[str, str] = vars(camgeo)["_homes"]()
     for name in camgeo.__all__:
         assert getattr(camgeo, name) is not None
         assert name in dir(camgeo)
     assert set(camgeo.__all__) == {"__version__", *homes}
-    tree = ast.parse(Path(camgeo.__file__ or "").read_text(encoding="utf-8"))
-    typed = {a.name: node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}
-    assert {name: module for name, module in typed.items() if name not in {"import_module", "__version__"}} == homes
+    typed = {}
+    for file in (camgeo.__file__, camgeo.capabilities.__file__):
+        tree = ast.parse(Path(file or "").read_text(encoding="utf-8"))
+        typed |= {
+            a.name: node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names
+        }
+    inner = {"import_module", "__version__", "names", "capabilities", "*"}
+    assert {name: module for name, module in typed.items() if name not in inner} == homes
     with pytest.raises(AttributeError, match="module 'camgeo' has no attribute 'lode'"):
         getattr(camgeo, "lode")  # noqa: B009 - mypy would see it, as a user's does
 

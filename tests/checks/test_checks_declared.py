@@ -14,6 +14,7 @@ from camgeo.checks.declared import CHECKS, LIMIT, OUTLINE, READABLE, declaration
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load, load_text
+from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,7 +81,7 @@ def test_the_search_for_names_finds_some() -> None:
 
 def test_each_is_declared_once() -> None:
     text = (PACKAGE / "checks" / "declared.py").read_text(encoding="utf-8")
-    assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) == len(CHECKS)
+    assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) == len(CHECKS.among(()))
     names = [one.name for one in declarations()]
     assert names == [*CHECKS, *(LIMIT + name for name in FIGURES)]
     assert all(declaration(name).name == name for name in names)
@@ -214,7 +215,7 @@ def of_text(text: str) -> tuple[dict[str, Any], ...]:
 @pytest.mark.slow
 def test_what_is_declared_is_made_and_what_is_made_is_declared() -> None:
     checks = [check for text in MORE.values() for check in of_text(text)]
-    checks += pipeline.check(load_text(MORE["a ring"], "cam.yaml"), second_opinion=True).report["checks"]
+    checks += pipeline.check(load_text(MORE["a ring"], "cam.yaml").using(*registry.options())).report["checks"]
     assert {check["name"] for check in checks} == set(CHECKS) - {READABLE.name}
     for check in checks:
         assert check["unit"] in {*CHECKS[check["name"]].units, ""}, check

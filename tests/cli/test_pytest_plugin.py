@@ -9,7 +9,8 @@ import pytest
 from support.places import RECIPES
 
 from camgeo import testing
-from camgeo.output import pipeline, second_opinion
+from camgeo.capabilities.second_opinion import opinion as second_opinion
+from camgeo.output import pipeline
 from camgeo.recipe.loading import load
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 

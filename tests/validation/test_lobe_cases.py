@@ -146,7 +146,7 @@ def test_d21_lobe_centres(tmp_path: Path) -> None:
 
 def test_d21_events_of_230_and_236_crank_degrees() -> None:
     """Durations of 230 and 236: open at 234 -+ 57.5 and at 124 -+ 59 cam degrees."""
-    from camgeo.camshaft.events import Event, valves_of
+    from camgeo.capabilities.camshaft.events import Event, valves_of
 
     intake = Event(234 - 57.5, 234 + 57.5, 234, 115)
     exhaust = Event(124 - 59, 124 + 59, 124, 118)

@@ -7,4 +7,5 @@ LABEL = Label(
     words=("sweep",),
     commands={"sweep": "Many designs of one recipe, ranked; the best become recipes."},
     reports=("sweep.json",),
+    names={"Candidate": "library", "Search": "library", "search": "library"},
 )

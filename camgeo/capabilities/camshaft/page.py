@@ -6,8 +6,8 @@ import re
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from camgeo.camshaft.diagram import SHEET
-from camgeo.camshaft.diagrams import shown
+from camgeo.capabilities.camshaft.diagram import SHEET
+from camgeo.capabilities.camshaft.diagrams import shown
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import RELOAD, head
@@ -15,8 +15,8 @@ from camgeo.report.page.page import RELOAD, head
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 LOBES = {
     "name": "lobe",

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.camshaft.diagram import stacked
-from camgeo.camshaft.drawing import shaft_drawing
-from camgeo.camshaft.timing import bars
-from camgeo.camshaft.wheels import cam_wheel, crank_wheels
+from camgeo.capabilities.camshaft.diagram import stacked
+from camgeo.capabilities.camshaft.drawing import shaft_drawing
+from camgeo.capabilities.camshaft.timing import bars
+from camgeo.capabilities.camshaft.wheels import cam_wheel, crank_wheels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 
 def diagram(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], form: str | None) -> str:

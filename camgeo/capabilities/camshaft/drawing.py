@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.diagram import WIDTH, both, drawn, kind, line, sheet, text
+from camgeo.capabilities.camshaft.diagram import WIDTH, both, drawn, kind, line, sheet, text
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page.outline import exact
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from kin.numeric.arrays import Array
 
 LEFT, TOP = 34.0, 44.0  # px beside and above the drawing

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.camshaft.lobes import lobe_checks, placed
+from camgeo.capabilities.camshaft.keys import SHAFT_FILES
+from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
 from camgeo.common.units import UNIT_MM
@@ -14,7 +15,6 @@ from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.pipeline import REPORT, Outcome
-from camgeo.recipe.camshaft import SHAFT_FILES
 from camgeo.registry.formats import numbers_of
 from camgeo.report.document import Findings, document, encoded
 from camgeo.schema.fields import either
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from camgeo.fit.bound import Bound
-    from camgeo.recipe.camshaft import CamshaftRecipe
     from camgeo.recipe.export import FileRequest
     from kin.judge.camshaft import CamshaftIntent
     from kin.judge.check import Check
@@ -139,7 +139,7 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
             checks += more
     found = _findings(recipe, lobes, checks, files, clock)
     for request in pages:
-        from camgeo.camshaft.page import page
+        from camgeo.capabilities.camshaft.page import page
 
         path = folder / request.filename(recipe.name, recipe.export.files)
         path.write_text(page(recipe, lobes, _report(recipe, found, lobes)), encoding="utf-8", newline="\n")
@@ -152,13 +152,13 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
     recipe = job.recipe
     match request.kind:
         case "csv":
-            from camgeo.camshaft.tables import write_events, write_motion
+            from camgeo.capabilities.camshaft.tables import write_events, write_motion
 
             with job.clock.stage("table"):
                 (write_events if request.as_ == "events" else write_motion)(path, recipe, job.lobes)
             return FileResult(path, request, units=recipe.mm), ()
         case "svg":
-            from camgeo.camshaft.diagrams import diagram
+            from camgeo.capabilities.camshaft.diagrams import diagram
 
             with job.clock.stage("timing"):
                 path.write_text(diagram(recipe, job.lobes, request.as_), encoding="utf-8", newline="\n")
@@ -192,7 +192,7 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
     """Write a solid; the bound of its lobes' contours, mm, and the pieces that they are made of."""
     recipe, tolerance, mm, record = job.recipe, job.tolerance(request), job.unit(request), request.format
     if record.numbers is None:
-        from camgeo.camshaft.body import camshaft_outlines, circle
+        from camgeo.capabilities.camshaft.body import camshaft_outlines, circle
         from camgeo.formats.step import write_stack
 
         stretches, bound, pieces = camshaft_outlines(recipe, job.lobes, job.fits_of, 0.5 * tolerance)
@@ -200,7 +200,7 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
             bore = None if recipe.bore is None else circle(recipe.bore)
             more = write_stack(path, stretches, bore, units=request.units or "mm", name=recipe.name, about=recipe.about)
         return bound.widened(more), pieces
-    from camgeo.camshaft.body import camshaft_mesh
+    from camgeo.capabilities.camshaft.body import camshaft_mesh
 
     numbers = numbers_of(record, mm)
     with job.clock.stage(f"mesh {request.kind}"):
@@ -259,6 +259,6 @@ def _findings(
 
 def _report(recipe: CamshaftRecipe, findings: Findings, lobes: tuple[PlacedLobe, ...]) -> dict[str, Any]:
     """The report, with a section on the lobes: where they stand, and when they lift."""
-    from camgeo.camshaft.section import camshaft_section
+    from camgeo.capabilities.camshaft.section import camshaft_section
 
     return {**document(recipe, findings), "camshaft": camshaft_section(recipe, lobes)}

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.diagram import LETTER, WIDTH, both, filled, kind, line, sheet, text
-from camgeo.camshaft.lobes import lifts
-from camgeo.camshaft.tables import event_lift
+from camgeo.capabilities.camshaft.diagram import LETTER, WIDTH, both, filled, kind, line, sheet, text
+from camgeo.capabilities.camshaft.lobes import lifts
+from camgeo.capabilities.camshaft.tables import event_lift
 from camgeo.files.markup import one_line
 from camgeo.measures.units import UNIT_NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.events import Phase, Stretch
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.events import Phase, Stretch
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 SHADES: dict[Phase, float] = {"rise": 0.55, "dwell": 0.08, "return": 0.3}
 TOP, LEFT, RIGHT = 44.0, 16.0, 18.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,23 +12,20 @@ from camgeo.api.check import Check, Figures
 from camgeo.api.design import Design
 from camgeo.api.errors import CallError
 from camgeo.api.log import staged
-from camgeo.camshaft import pipeline
-from camgeo.camshaft.lobes import lobe_checks, placed
+from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.arguments import numbers_of, spelled, whole_of
 from camgeo.common.clock import Clock
 from camgeo.report import failure
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from pathlib import Path
+    from collections.abc import Mapping
 
     from numpy.typing import ArrayLike
 
-    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from camgeo.checks.remedies import Entry
-    from camgeo.output.pipeline import Outcome
-    from camgeo.recipe.camshaft import CamshaftRecipe
     from kin.numeric.arrays import Array
 
 MOST_DERIVATIVE = 6  # of a lobe's motion by the shaft angle
@@ -93,7 +90,7 @@ class CamshaftDesign:
         return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}  {len(self._placed)} lobes{''.join(failed)}"
 
     def _repr_svg_(self) -> str:
-        from camgeo.camshaft.diagrams import diagram
+        from camgeo.capabilities.camshaft.diagrams import diagram
 
         return diagram(self.recipe, self._placed, "timing")
 
@@ -111,31 +108,3 @@ def failed(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> st
     """Tell a failed check of a report over several lines, with the lobe's place in the recipe of the camshaft."""
     fields = {lobe.name: f"camshaft.lobes[{i}].recipe" for i, lobe in enumerate(recipe.lobes)}
     return failure.placed(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)
-
-
-def made(
-    recipe: CamshaftRecipe,
-    out: Path | None,
-    only: tuple[str, ...],
-    told: Callable[[str], None],
-    *,
-    second_opinion: bool,
-) -> Outcome:
-    """Write and judge a camshaft's files below `out`, or without one keep none of them."""
-    _demand_none(second_opinion=second_opinion)
-    if out is None:
-        return pipeline.check(recipe, progress=told)
-    return pipeline.export(recipe, out, only=only, progress=told)
-
-
-def judged(
-    recipe: CamshaftRecipe, paths: list[Path], tolerance: float | None, units: float | None, *, second_opinion: bool
-) -> dict[str, Any]:
-    """Report on solids held against a camshaft's recipe, lengths in mm."""
-    _demand_none(second_opinion=second_opinion)
-    return pipeline.judged(recipe, paths, tolerance=tolerance, units=units)
-
-
-def _demand_none(*, second_opinion: bool) -> None:
-    if second_opinion:
-        raise CallError("second_opinion looks at files of one cam: leave it out for a camshaft")

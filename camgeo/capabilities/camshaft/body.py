@@ -15,11 +15,11 @@ from camgeo.fit.pieces import ArcSpline, Polygon
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.camshaft.lobes import PlacedLobe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.fit.cache import Fits
-    from camgeo.recipe.camshaft import CamshaftRecipe
     from kin.numeric.arrays import Array
 
 LOOKS = 4  # places on each arc at which it is looked at

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import event, stretches, valves_of
+from camgeo.capabilities.camshaft.events import event, stretches, valves_of
+from camgeo.capabilities.camshaft.keys import of_a_lobe
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
-from camgeo.recipe.camshaft import of_a_lobe
 from camgeo.recipe.part import THINNEST
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.camshaft.events import Event, Stretch, Valves
+    from camgeo.capabilities.camshaft.events import Event, Stretch, Valves
+    from camgeo.capabilities.camshaft.keys import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.recipe.camshaft import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.synthesis.design import Design
     from kin.judge.check import Check
     from kin.numeric.arrays import Array

@@ -15,9 +15,9 @@ from support.places import RECIPES
 
 import camgeo
 from camgeo import testing
-from camgeo.checks.declared import SECOND_OPINIONS
+from camgeo.capabilities.second_opinion import opinion as second_opinion
+from camgeo.capabilities.second_opinion.checks import SECOND_OPINIONS
 from camgeo.cli.main import main
-from camgeo.output import second_opinion
 from camgeo.report.failure import remedy
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest

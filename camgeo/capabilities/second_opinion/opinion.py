@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import (
+from camgeo.capabilities.second_opinion.checks import (
     AUDIT,
     CONTOUR_AREA,
     CONTOUR_DISTANCE,
@@ -23,9 +23,10 @@ from camgeo.checks.declared import (
     MESH_VOLUME,
     MESH_WATERTIGHT,
     MESH_WINDING,
-    READABLE,
     SECOND_OPINIONS,
+    silence,
 )
+from camgeo.checks.declared import READABLE
 from camgeo.common.errors import SurroundingsError
 from camgeo.files.errors import demand_uninterrupted, install
 from camgeo.fit.nodes import MOST_PIECES, ToleranceError
@@ -33,6 +34,7 @@ from camgeo.fit.pieces import Polygon
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.output.job import Job
 from camgeo.output.skipped import scene_of
+from camgeo.registry.capability import Results
 from kin.judge.check import Check, about, at_most, failed
 from kin.read.errors import ReadError
 
@@ -57,21 +59,6 @@ UNMADE = "a check of the exact contour fails"
 LIBRARIES = ("shapely", "trimesh", "scipy.sparse", "networkx", "lxml", "manifold3d")
 
 
-class Opinion(NamedTuple):
-    """The checks on files, and what was left out with the reason."""
-
-    checks: tuple[Check, ...] = ()
-    skipped: tuple[Skipped, ...] = ()
-
-    def more(self, *checks: Check) -> Opinion:
-        """Add checks."""
-        return Opinion((*self.checks, *checks), self.skipped)
-
-    def less(self, *skipped: Skipped) -> Opinion:
-        """Leave more out."""
-        return Opinion(self.checks, (*self.skipped, *skipped))
-
-
 class _Skip(Exception):  # noqa: N818 - no error: a row that is left out, with the reason
     """Leaves a library's rows on one file out."""
 
@@ -92,28 +79,27 @@ def demand_libraries(recipe: Recipe) -> None:
             raise SurroundingsError(f"a second opinion needs {missing}: {install('check')}", recipe.path) from error
 
 
-def second_opinion_on(
-    files: Sequence[FileResult], recipe: Recipe, design: Design, checks: Sequence[Check], clock: Clock
-) -> Opinion:
+def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Sequence[Check], clock: Clock) -> Results:
     """Ask the libraries about files that were judged, with `checks` as the outcome.
 
     A file that kin refuses to read is left out: what would cost without bound is refused there.
     """
     if not design.contours:
-        return Opinion().less(*((f"second opinion[{file.path.name}]", UNMADE) for file in files))
+        return Results(skipped=[(f"second opinion[{file.path.name}]", UNMADE) for file in files])
     job = Job.of(recipe, design, clock)
     unread = {check.file for check in checks if check.name == READABLE.name and not check.ok}
-    scene = replace(scene_of(recipe, design), second_opinion=True)
-    opinion = Opinion()
+    scene = scene_of(recipe, design)
+    every: list[Check] = []
+    skipped: list[Skipped] = []
     for file in files:
         name = file.path.name
-        why = file.request.format.silence
+        why = silence(file.request.format)
         if file.body != "cam" or file.request.united:
             why = "it holds other bodies than the cam"
         elif name in unread:
             why = "the file cannot be read"
         if why:
-            opinion = opinion.less((f"second opinion[{name}]", why))
+            skipped.append((f"second opinion[{name}]", why))
             continue
         due = [row.name for row in SECOND_OPINIONS if row.of_file is not None and row.of_file(scene, file.request)]
         with clock.stage("second opinion"):
@@ -123,12 +109,12 @@ def second_opinion_on(
                 try:
                     with warnings.catch_warnings():  # of a volume of 0 and the like, which the rows tell
                         warnings.simplefilter("ignore")
-                        checks = ask(job, file) if rows else []
+                        made = ask(job, file) if rows else []
                 except _Skip as left:
-                    checks, why = [], str(left)
-                left_out = [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in checks}]
-                opinion = opinion.more(*(about(check, name) for check in checks)).less(*left_out)
-    return opinion
+                    made, why = [], str(left)
+                every += [about(check, name) for check in made]
+                skipped += [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in made}]
+    return Results(checks=every, skipped=skipped)
 
 
 def _of_audit(_: Job, file: FileResult) -> list[Check]:

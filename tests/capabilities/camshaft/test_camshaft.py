@@ -14,18 +14,18 @@ import yaml
 from support.heavy import trimesh
 
 import camgeo
-from camgeo.camshaft.diagram import WIDTH
-from camgeo.camshaft.events import stretches
-from camgeo.camshaft.timing import LEFT, RIGHT
+from camgeo.capabilities.camshaft.diagram import WIDTH
+from camgeo.capabilities.camshaft.events import stretches
+from camgeo.capabilities.camshaft.keys import DIAGRAMS, Levels
+from camgeo.capabilities.camshaft.timing import LEFT, RIGHT
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
-from camgeo.recipe.camshaft import DIAGRAMS, Levels
 from camgeo.recipe.loading import load_order
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.judge.camshaft import verify_camshaft
 
-RECIPES = Path(__file__).parents[2] / "recipes"
+RECIPES = Path(__file__).parents[3] / "recipes"
 INTAKE = """\
 cam:
   kind: disc
@@ -474,8 +474,8 @@ def test_a_phase_is_measured(solid: tuple[Path, camgeo.Report]) -> None:
     """Judged as if turned by a tenth of a degree more, the lobe is found a tenth of a degree back."""
     from dataclasses import replace
 
-    from camgeo.camshaft.lobes import placed
-    from camgeo.camshaft.pipeline import _intent
+    from camgeo.capabilities.camshaft.lobes import placed
+    from camgeo.capabilities.camshaft.pipeline import _intent
     from camgeo.recipe.loading import load_order
 
     path, report = solid

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.camshaft.events import CRANK
-from camgeo.camshaft.lobes import valves
-from camgeo.camshaft.tables import event_lift
+from camgeo.capabilities.camshaft.events import CRANK
+from camgeo.capabilities.camshaft.lobes import valves
+from camgeo.capabilities.camshaft.tables import event_lift
 from camgeo.measures.balance import KG
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 __all__ = ["camshaft_section"]
 

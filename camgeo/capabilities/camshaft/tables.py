@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.camshaft.events import CRANK
-from camgeo.camshaft.lobes import lifts, valves
+from camgeo.capabilities.camshaft.events import CRANK
+from camgeo.capabilities.camshaft.lobes import lifts, valves
 from camgeo.files.table import write_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 STEP = 1.0  # degree of the shaft
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.camshaft.diagram import WIDTH, arc, drawn, kind, line, on_wheel, sheet, text
-from camgeo.camshaft.events import DEAD_CENTRES, crank_after, event_words, signed
-from camgeo.camshaft.tables import event_lift
+from camgeo.capabilities.camshaft.diagram import WIDTH, arc, drawn, kind, line, on_wheel, sheet, text
+from camgeo.capabilities.camshaft.events import DEAD_CENTRES, crank_after, event_words, signed
+from camgeo.capabilities.camshaft.tables import event_lift
 from camgeo.measures.units import UNIT_NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.camshaft.events import Event
-    from camgeo.camshaft.lobes import PlacedLobe
-    from camgeo.recipe.camshaft import CamshaftRecipe, Engine
+    from camgeo.capabilities.camshaft.events import Event
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe, Engine
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
 
 RING = 14.0  # px of a lobe's ring: the least that shows the number of its cylinder
 INNER = 60.0  # px: radius within the rings

@@ -102,6 +102,7 @@ class CamshaftRecipe(Order):
     bore: float | None = None
     engine: Engine | None = None
 
+    root = "camshaft"
     __repr__ = Order.__repr__
 
     @property

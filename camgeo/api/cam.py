@@ -1,0 +1,71 @@
+"""Recipes of one cam, as commands and the library ask for them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.output import pipeline
+from camgeo.recipe.keys import recipe_table
+from camgeo.recipe.recipe import of_source
+from camgeo.registry.root import Root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.api.design import Design
+    from camgeo.output.pipeline import Outcome
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.expected_checks import Foreseen
+
+
+def _design(recipe: Recipe) -> Design:
+    from camgeo.api.design import Design
+    from camgeo.api.log import staged
+    from camgeo.common.clock import Clock
+    from camgeo.synthesis.design import designed
+
+    return Design(recipe, designed(recipe, Clock(staged(recipe))))
+
+
+def _export(recipe: Recipe, out: Path, only: tuple[str, ...], progress: Callable[[str], None]) -> Outcome:
+    return pipeline.export(recipe, out, only=only, progress=progress)
+
+
+def _check(recipe: Recipe, progress: Callable[[str], None]) -> Outcome:
+    return pipeline.check(recipe, progress=progress)
+
+
+def _judge(
+    recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
+) -> dict[str, Any]:
+    return pipeline.judged(recipe, paths, tolerance=tolerance, units=units, gap=gap)
+
+
+def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None) -> str:
+    from camgeo.report.failure import failure
+
+    return failure(check, report, recipe, shown)
+
+
+def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:
+    """Checks to come; none where there is no such motion."""
+    from camgeo.synthesis.expected_checks import foreseen
+    from kin.law.programme import IntentError
+
+    try:
+        return foreseen(recipe)
+    except IntentError:
+        return ()
+
+
+ROOT = Root(
+    table=recipe_table,
+    read=of_source,
+    design=_design,
+    export=_export,
+    check=_check,
+    judge=_judge,
+    explain=_explain,
+    foresee=_foresee,
+)

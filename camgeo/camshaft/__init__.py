@@ -1,1 +1,0 @@
-"""Camshafts: lobes of several cams on one shaft, made as one solid, and when they lift."""

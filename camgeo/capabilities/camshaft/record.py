@@ -1,0 +1,84 @@
+"""What camshafts add: recipes of their own kind, and a starter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.registry.capability import Capability
+from camgeo.registry.root import Root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
+    from camgeo.capabilities.camshaft.library import CamshaftDesign
+    from camgeo.output.pipeline import Outcome
+    from camgeo.recipe.starter import Starter
+    from camgeo.schema.fields import Table
+    from camgeo.schema.yaml_source import Source
+
+
+def _table() -> Table:
+    from camgeo.capabilities.camshaft.keys import SHAFT
+
+    return SHAFT
+
+
+def _read(source: Source, path: Path) -> CamshaftRecipe:
+    from camgeo.capabilities.camshaft.keys import read_camshaft
+
+    return read_camshaft(source, path)
+
+
+def _design(recipe: CamshaftRecipe) -> CamshaftDesign:
+    from camgeo.capabilities.camshaft.library import designed
+
+    return designed(recipe)
+
+
+def _export(recipe: CamshaftRecipe, out: Path, only: tuple[str, ...], progress: Callable[[str], None]) -> Outcome:
+    from camgeo.capabilities.camshaft import pipeline
+
+    return pipeline.export(recipe, out, only=only, progress=progress)
+
+
+def _check(recipe: CamshaftRecipe, progress: Callable[[str], None]) -> Outcome:
+    from camgeo.capabilities.camshaft import pipeline
+
+    return pipeline.check(recipe, progress=progress)
+
+
+def _judge(
+    recipe: CamshaftRecipe, paths: list[Path], tolerance: float | None, units: float | None, _gap: float | None
+) -> dict[str, Any]:
+    """Report on solids; a gap is one between ends in a drawing, and drawings are refused."""
+    from camgeo.capabilities.camshaft import pipeline
+
+    return pipeline.judged(recipe, paths, tolerance=tolerance, units=units)
+
+
+def _explain(check: dict[str, Any], _: dict[str, Any], recipe: CamshaftRecipe, shown: str | None) -> str:
+    from camgeo.capabilities.camshaft.library import failed
+
+    return failed(check, recipe, shown)
+
+
+def _starters() -> Mapping[str, Starter]:
+    from camgeo.capabilities.camshaft.starter import STARTERS
+
+    return STARTERS
+
+
+ROOT = Root(
+    table=_table,
+    read=_read,
+    design=_design,
+    export=_export,
+    check=_check,
+    judge=_judge,
+    explain=_explain,
+    foresee=lambda _: (),  # the item of the recipe itself has all its checks
+    instead="the recipe of a lobe",
+)
+CAPABILITY = Capability(roots={"camshaft": ROOT}, starters=_starters)

@@ -1,0 +1,80 @@
+"""Kinds of recipes as the core sees them: a recipe of one cam, and those that capabilities read.
+
+A text is a recipe of the kind whose key stands at its top level, or of one cam. The types below stand above this
+module, for which alone imports for types run upwards.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+from camgeo.registry import registry
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from camgeo.api.check import Check
+    from camgeo.output.pipeline import Outcome
+    from camgeo.recipe.recipe import Order
+    from camgeo.schema.fields import Table
+    from camgeo.schema.yaml_source import Source
+    from camgeo.synthesis.expected_checks import Foreseen
+
+R = TypeVar("R", bound="Order")
+CAM = "cam"
+_OF_A_CAM = "camgeo.api.cam"  # the module that has the core's own
+
+
+class Designed(Protocol):
+    """What the library hands out as a design."""
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Root(Generic[R]):
+    """All that commands and the library ask of one kind of recipe; lengths in mm.
+
+    table    its keys
+    read     makes a recipe of a text that was parsed, at a path; raises RecipeErrors with all its faults
+    design   the exact cams, as the library hands them out
+    export   writes and judges files: (recipe, folder, kinds of files or none for all, what hears of stages)
+    check    makes and judges all files, and keeps none: (recipe, what hears of stages)
+    judge    reports on files of any origin: (recipe, paths, tolerance, unit of files that state none, gap)
+    explain  tells a failed check of a report over several lines: (check, report, recipe, name of the recipe's file)
+    foresee  checks to come
+    instead  what to give a command that takes recipes of one cam alone
+    """
+
+    table: Callable[[], Table]
+    read: Callable[[Source, Path], R]
+    design: Callable[[R], Designed]
+    export: Callable[[R, Path, tuple[str, ...], Callable[[str], None]], Outcome]
+    check: Callable[[R, Callable[[str], None]], Outcome]
+    judge: Callable[[R, list[Path], float | None, float | None, float | None], dict[str, Any]]
+    explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
+    foresee: Callable[[R], Sequence[Foreseen]]
+    instead: str = ""
+
+
+def folders() -> dict[str, str]:
+    """Capability by the key of the recipes that it reads."""
+    return {key: name for name, label in registry.labels().items() for key in label.roots}
+
+
+def root(key: str) -> Root[Any]:
+    """Record of a kind of recipe by its key; raises KeyError."""
+    if key == CAM:
+        record: Root[Any] = import_module(_OF_A_CAM).ROOT
+        return record
+    return registry.capability(folders()[key]).roots[key]
+
+
+def root_of(recipe: R) -> Root[R]:
+    """Record of the kind that a recipe is of."""
+    return root(recipe.root)
