@@ -1,7 +1,7 @@
 """Pytest plugin: each check of each recipe that a project names becomes a test item.
 
 A project asks for it with one line of its pytest configuration, `camgeo_recipes = recipes/*.yaml`. Where that line is
-missing nothing is registered and nothing imported beyond this module.
+missing nothing is registered and nothing imported beyond this module and the labels of capabilities.
 
 Collection reads the recipes and foresees their checks, which takes milliseconds. A recipe is made and judged when its
 first item runs, once a process.
