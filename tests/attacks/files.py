@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 CAMS = 12  # cams whose files are altered, of so many attacks
 SHARED = 400
-KINDS = ("dxf", "dxf", "dxf", "svg", "stl", "3mf", "step", "ngc")
+KINDS = ("dxf", "dxf", "dxf", "svg", "stl", "ply", "3mf", "step", "ngc")
 MILLING = "manufacture: {cutter: 4, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 6, safe_height: 5}\n"
 FAILS, PASSES, ANY = (1,), (0,), (0, 1, 2)
 
@@ -50,7 +50,7 @@ def exported(share: int, number: int) -> tuple[Cam, dict[str, bytes]]:
     for attempt in range(40):
         rng = Random(f"cam {share} {number} {attempt}")
         cam = drawn(rng)
-        files = [f"{{dxf: {{as: {rng.choice(['arcs', 'polyline'])}}}}}", "svg", "stl", "3mf"]
+        files = [f"{{dxf: {{as: {rng.choice(['arcs', 'polyline'])}}}}}", "svg", "stl", "ply", "3mf"]
         files += ["step"] if number == 0 else ["gcode"] if number % 2 else []
         text = cam.text(", ".join(files), MILLING)
         with TemporaryDirectory() as folder:
@@ -417,6 +417,7 @@ def program_changed(rng: Random, raw: bytes, cam: Cam) -> Spoilt:
 CHANGES: dict[str, list[Callable[[Random, bytes, Cam], Spoilt]]] = {
     "dxf": [points_changed, points_changed, points_changed, made_wrong, saved_again, garbled, truncated, noise, digits],
     "svg": [svg_changed, svg_changed, garbled, truncated, noise, digits],
+    "ply": [garbled, truncated, noise],
     "stl": [stl_changed, stl_changed, stl_changed, garbled, truncated, noise],
     "3mf": [three_mf_changed, three_mf_changed, garbled, truncated, noise],
     "step": [step_changed, step_changed, garbled, truncated, noise, digits],

@@ -26,7 +26,18 @@ if TYPE_CHECKING:
 
 LONG = 60.0  # s: sets and searches make and move ten bodies, or a hundred designs
 SLOW_TOPICS = {"set": LONG, "linkage-set": LONG}
-FORMS = ["dxf", "svg", "stl", "3mf", "csv", "glb", "html", "{dxf: {as: arcs, version: R12}}", "{dxf: {as: spline}}"]
+FORMS = [
+    "dxf",
+    "svg",
+    "stl",
+    "ply",
+    "3mf",
+    "csv",
+    "glb",
+    "html",
+    "{dxf: {as: arcs, version: R12}}",
+    "{dxf: {as: spline}}",
+]
 FORMS += ["{csv: {as: contacts}}", "{csv: {as: polar}}", "{svg: {as: polyline}}", "{dxf: {as: polyline, kerf: 0.1}}"]
 PLACED = re.compile(r"^cam\.yaml(:\d+:\d+)?: |^camgeo: ")
 

@@ -118,9 +118,9 @@ def furnished(rng: Random, number: int) -> Attack:
     way = rng.choice(["part", "part", "set", "train", "rigid", "limits", "program", "ring", "trim"])
     if way == "part":
         text = text.replace("bore: 8}", "bore: 8, " + ", ".join(rng.sample(FEATURES, rng.randrange(1, 4))) + "}")
-        files = rng.sample(["dxf", "svg", "stl", "3mf", "glb"], 2)
+        files = rng.sample(["dxf", "svg", "stl", "ply", "3mf", "glb"], 2)
     elif way == "set":
-        files, seconds = ["{" + rng.choice(["stl", "3mf", "glb"]) + ": {parts: all}}"], LONG
+        files, seconds = ["{" + rng.choice(["stl", "ply", "3mf", "glb"]) + ": {parts: all}}"], LONG
         text = text.replace(f"tolerance: {cam.tolerance!r}", "tolerance: 0.01")
     elif way == "train":
         transient = ", transient: true" if rng.random() < 0.3 else ""
