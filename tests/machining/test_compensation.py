@@ -123,7 +123,7 @@ def test_a_drawing_says_what_it_is(tmp_path):
 def test_no_file_passes_for_another(tmp_path, cam):
     """A nominal file in the place of a compensated one, and the reverse, fails; so does half of the kerf."""
     _, _, folder = made(tmp_path, "dxf, {dxf: {kerf: 0.4}}", cam=cam)
-    nominal, kerf = (folder / f"c-arcs-R2010{tag}.dxf" for tag in ("", "-kerf"))
+    nominal, kerf = folder / "c.dxf", folder / "c-arcs-R2010-kerf.dxf"
     recipe = recipe_of("dxf", cam=cam)
     found = verify(kerf, intended(recipe, designed(recipe)), 90, Limits(0.001))
     assert {"contour", "bore", "motion"} <= {check.name for check in found.checks if not check.ok}

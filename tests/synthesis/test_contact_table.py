@@ -40,7 +40,7 @@ KINDS = {
     "plate": "cam: {kind: support, p: 30 + 2*cos(2*t) + cos(3*t)}\n",
     "double roller": "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 300}}}\n",
     "flat pair": "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}\n",
-    "linkage": "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}\n"
+    "linkage": "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}\n"
     "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}\n",
 }
 FILES = "export: {files: [csv, {csv: {as: contacts}}, {csv: {as: polar}}, {csv: {as: inspection}}]}\n"
@@ -54,7 +54,7 @@ def exported(text: str, folder: Path, files: str = FILES) -> dict[str, dict[str,
         with path.open(encoding="ascii", newline="") as stream:
             head, *rows = list(csv.reader(stream))
         columns = np.array([[float(cell) if cell else math.nan for cell in row] for row in rows]).T
-        found[path.stem.removeprefix("cam-")] = dict(zip(head, columns, strict=True))
+        found[path.stem.removeprefix("cam-").replace("cam", "motion")] = dict(zip(head, columns, strict=True))
     return found
 
 
@@ -138,7 +138,7 @@ def test_a_trimmed_cam_is_not_touched_everywhere(tmp_path: Path) -> None:
 
 
 def test_no_polar_table_of_a_shaft_outside(tmp_path: Path) -> None:
-    text = "cam: {kind: support, p: 30, pivot: [40, 0]}\nexport:\n  files:\n    - dxf\n    - {csv: {as: polar}}\n"
+    text = "cam: {kind: support, p: 30, shaft: [40, 0]}\nexport:\n  files:\n    - dxf\n    - {csv: {as: polar}}\n"
     with pytest.raises(RecipeErrors) as caught:
         pipeline.export(load_text(text, "cam.yaml"), tmp_path)
     (error,) = caught.value.errors

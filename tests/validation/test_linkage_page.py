@@ -37,8 +37,8 @@ def test_every_shipped_linkage_is_within_its_limits(workshop, name):
     assert 0 < linkage["error"]["max"] <= linkage["error"]["limit"] < 3 * linkage["error"]["max"]
     e = made.recipe.export.tolerance / made.recipe.mm
     for file in linkage["files"]:
-        for play in (file["play_across"], file["play_along"]):
-            assert -2 * e * (1 + 1e-9) <= play["min"] <= play["max"] <= 2 * e * (1 + 1e-9)
+        for backlash in (file["backlash_across"], file["backlash_along"]):
+            assert -2 * e * (1 + 1e-9) <= backlash["min"] <= backlash["max"] <= 2 * e * (1 + 1e-9)
 
 
 def test_the_page_has_no_table_besides(page):
