@@ -35,8 +35,8 @@ def test_paths_in_files(tmp_path: Path, rotation: str) -> None:
     assert np.hypot(x - 70.0, y) == pytest.approx(90.0, abs=1e-9)
     moving = rows["trace_1_speed"] > 1e-3
     assert np.abs(rows["trace_1_curvature"])[moving] == pytest.approx(1 / 90.0, rel=1e-6)
-    for name in ("curve.dxf", "curve-arcs-R12.dxf"):
-        drawing = ezdxf.readfile(folder / name)
+    for file in ("curve.dxf", "curve-arcs-R12.dxf"):
+        drawing = ezdxf.readfile(folder / file)
         assert not drawing.audit().errors
         paths = {}
         for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
