@@ -101,7 +101,7 @@ def test_a_camshaft_is_read_beside_its_lobes(tmp_path):
             shutil.copy(ROOT / "recipes" / "camshafts" / source, tmp_path / name)
         path = tmp_path / "shaft.yaml"
         path.write_text(block.text, encoding="utf-8")
-        assert load_order(path).lobes
+        assert load_order(path).parts
 
 
 # --- commands ---------------------------------------------------------------------------------------------------------
