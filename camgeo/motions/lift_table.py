@@ -30,13 +30,15 @@ _FIELD = "table"
 class Rows:
     """Rows of a table: angles of the cam in rad, displacements in mm or rad, and their lines in the file.
 
-    `unit` is one unit of the file's displacements, in mm or rad.
+    `unit` is one unit of the file's displacements, in mm or rad; angles that were rounded may be off by `slack` rad.
     """
 
     theta: tuple[float, ...]
     s: tuple[float, ...]
     lines: tuple[int, ...]
     unit: float
+    slack: float = 0.0
+    turned: float = 1.0
 
     def samples(self) -> Samples:
         """Give the rows as kin takes them."""
@@ -44,7 +46,8 @@ class Rows:
 
         from kin.law.sources.ring import Samples
 
-        return Samples(np.array(self.theta), np.array(self.s), np.array(self.lines, dtype=np.intp), self.unit)
+        columns = np.array(self.theta), np.array(self.s), np.array(self.lines, dtype=np.intp)
+        return Samples(*columns, self.unit, self.slack, self.turned)
 
 
 def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None:
@@ -108,6 +111,5 @@ def _rows(text: str, angles: Angles, unit: Unit) -> tuple[Rows, float]:
     from kin.law.sources.table_text import read_table
 
     samples, place = read_table(text, angles=angles, unit=unit, field=_FIELD)
-    return Rows(
-        tuple(samples.theta.tolist()), tuple(samples.s.tolist()), tuple(samples.lines.tolist()), samples.unit
-    ), place
+    columns = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))
+    return Rows(*columns, samples.unit, samples.slack, samples.turned), place

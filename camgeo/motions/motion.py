@@ -30,7 +30,7 @@ _ROUNDING = 1e-9  # of a stroke that is just as great as it may be
 _ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
 MOST_POINTS = 1000
 MOST_REPEATS = 100
-LEAST_READING = 1e-6  # of the greatest displacement, where a recipe gives none: a table may show every digit
+LEAST_READING = 1e-9  # of the stroke, where a recipe gives none: a table may show every digit of its computer
 
 
 class MotionAsked(ABC):
@@ -133,7 +133,7 @@ class FormulaAsked(MotionAsked):
 
 @dataclass(frozen=True)
 class TableAsked(MotionAsked):
-    """Rows of a table, smoothed within a reading error; `scale` mm or rad are one of the recipe's units."""
+    """Rows of a table, each kept within a reading error; `scale` mm or rad are one of the recipe's units."""
 
     file: str
     rows: Rows
@@ -147,21 +147,21 @@ class TableAsked(MotionAsked):
         return self.rows.theta[-1] if self.rows.theta else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
-        return _smoothed(self, total, field, around)
+        return _kept(self, total, field, around)
 
 
 @lru_cache(maxsize=8)
-def _smoothed(table: TableAsked, total: float, field: str, around: int | None) -> Motion:
+def _kept(table: TableAsked, total: float, field: str, around: int | None) -> Motion:
     from kin.law.programme import IntentError
-    from kin.law.sources.smoothing import TableError
     from kin.law.sources.table import from_table
+    from kin.law.sources.tabled import TableError
 
     field, samples = f"{field}.table", table.rows.samples()
     if around != 1 and len(samples.s):
         first = f"{table.file}, line {samples.lines[0]}: "
         _demand_zero(float(samples.s[0]), table.reading, table.rows.unit, field, first)
     try:
-        return from_table(samples, table.reading, total, around=around, field=field).motion
+        return from_table(samples, table.reading, total, around=around, field=field)
     except TableError as error:
         raise IntentError(f"{table.file}, {error.message}", field, error.at_deg) from error
 
@@ -295,7 +295,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
             "reading",
             stroke,
             "greatest distance of the motion from a row of the table",
-            default="the unit of the table's last digit",
+            default="half the unit of the table's last digit",
             above=0,
             at_most=most,
         ),
@@ -380,7 +380,7 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAske
         problem = f"{values['table']}, line {line}: a displacement above {MOST:.0f}"
         reader.fault_at(path, problem, None, "give a table of smaller ones")
         return None
-    reading = values.get("reading", max(place, LEAST_READING * largest))
+    reading = values.get("reading", max(0.5 * place, LEAST_READING * (max(rows.s) - min(rows.s))))
     return TableAsked(values["table"], rows, reading, reader.scale(stroke))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError
 from kin.law.segment import Affine, Constant
 from kin.law.sources.peaks import extremes
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,16 +37,32 @@ class Rest(NamedTuple):
     level: float
 
 
+class TableRemark(NamedTuple):
+    """What is to be remarked on a table: a name, and a sentence in the table's own units."""
+
+    name: Literal["table-angles", "table-distance", "table-noise", "table-row"]
+    sentence: str
+
+
+class Kept(NamedTuple):
+    """Greatest distance of a motion from the rows of its table, mm or rad, that row's line, and remarks on the table."""
+
+    distance: float
+    line: int
+    remarks: tuple[TableRemark, ...]
+
+
 @dataclass(frozen=True)
 class Motion:
     """Displacement S over [0, total] rad, mm or rad; `around` says how the end is followed by the beginning.
 
     With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
-    half turn. With None nothing is said.
+    half turn. With None nothing is said. `kept` tells how a motion keeps the rows of the table that it was made of.
     """
 
     motion: Piecewise
     around: int | None = 1
+    kept: Kept | None = None
 
     @property
     def total(self) -> float:
@@ -140,7 +156,7 @@ class Motion:
         if by == 0.0:
             return self
         functions = tuple(_raised(f, by) for f in self.motion.functions)
-        return Motion(Piecewise(self.motion.knots, functions), self.around)
+        return replace(self, motion=Piecewise(self.motion.knots, functions))
 
     def from_lowest(self) -> Motion:
         """The motion less its least value, so that it stands at 0 where it is lowest."""

@@ -29,13 +29,16 @@ _FOLDED = 1e-13  # rad: by so much at most folding by a turn rounds
 class Samples(NamedTuple):
     """Angles (rad, rising), displacements, and the line of each in its file, each (n,).
 
-    `unit` is one unit of the file's displacements, in mm or rad: messages tell them as the file has them.
+    `unit` is one unit of the file's displacements, in mm or rad: messages tell them as the file has them. By `slack`,
+    rad, an angle may be off that was rounded when it was written; `turned` of its own units were a degree.
     """
 
     theta: Array
     s: Array
     lines: NDArray[np.intp]
     unit: float = 1.0
+    slack: float = 0.0
+    turned: float = 1.0
 
     def part(self, which: slice) -> Samples:
         """Some of the rows."""
@@ -66,7 +69,7 @@ def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | 
     -1 the motion is fitted over two halves, the second one upside down; with None it rests at both ends.
     """
     if around == 1:
-        return _settled(*_round(rows, dwells, total, fit), total, total)
+        return settled(*_round(rows, dwells, total, fit), total, total)
     if around is None:
         return _open(rows, dwells, fit)
     n = len(rows.theta) - 1
@@ -79,7 +82,7 @@ def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | 
     )
     again = [Dwelling(d.first + n, d.last + n, rows.s[0] + rows.s[-1] - d.level) for d in dwells]
     knots, functions = _round(both, merged([*dwells, *again], 2 * n), 2 * total, fit)
-    half = _settled(knots, functions, 2 * total, total)
+    half = settled(knots, functions, 2 * total, total)
     start = float(half.derivatives(0.0, 0)[0, 0])
     return Motion(half.raised(-start).motion, -1)
 
@@ -141,7 +144,7 @@ def _open(rows: Samples, dwells: Sequence[Dwelling], fit: Fit) -> Motion:
     return joined(knots, functions, None).raised(-float(rows.s[0]))
 
 
-def _settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, total: float) -> Motion:
+def settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, total: float) -> Motion:
     """Fold stretches that cover one turn from anywhere into [0, turn], and keep [0, total]."""
     pieces: list[tuple[float, float, Stretch]] = []
     for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):

@@ -50,7 +50,7 @@ class Basis:
     def rows(self, x: Array) -> tuple[Indices, Array]:
         """Span of each x (n,) and the six B-splines that do not vanish there, (6, n)."""
         span = np.clip(np.searchsorted(self.sites, x, side="right") - 1, 0, len(self.sites) - 2)
-        return span, _values(self.knots, span + DEGREE, x, DEGREE)
+        return span, b_splines(self.knots, span + DEGREE, x, DEGREE)
 
     def columns(self, span: Indices) -> Indices:
         """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
@@ -74,7 +74,7 @@ class Basis:
         for k in range(DEGREE + 1):
             low = DEGREE - k
             factorial *= k or 1
-            values = _values(knots, index, starts, low)
+            values = b_splines(knots, index, starts, low)
             at = np.arange(low + 1)[:, None] + wide + k
             taylor[k] = (values * c[at]).sum(axis=0) * width**k / factorial
             if k < DEGREE:  # coefficients of the derivative, a spline one degree lower over the same knots
@@ -85,7 +85,7 @@ class Basis:
         return tuple(Affine(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
 
 
-def _values(knots: Array, index: Indices, x: Array, degree: int) -> Array:
+def b_splines(knots: Array, index: Indices, x: Array, degree: int) -> Array:
     """B-splines of a degree that do not vanish between knots[index] and the next, at x (n,); (degree + 1, n)."""
     values = np.ones((1, len(x)))
     for d in range(1, degree + 1):

@@ -1,41 +1,44 @@
-"""A motion from a table: the quintic spline of fewest equal spans that stays within the reading error."""
+"""A motion from a table: that of least mean square jerk whose distance from each row is at most the row's reading."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, merged
-from kin.law.sources.smoothing import Bounded, EqualSpans, TableError, Task, UnmetError
-from kin.numeric.records import dataclass
+from kin.law.segment import Constant
+from kin.law.sources.dwells import runs, stretches
+from kin.law.sources.least_jerk import Bounds, UnsolvedError, least
+from kin.law.sources.motion import Kept, Motion, TableRemark, joined
+from kin.law.sources.ring import SAME_ANGLE, Samples, settled
+from kin.law.sources.spline import Ends, through
+from kin.law.sources.suspects import ladder, suspect
+from kin.law.sources.tabled import FLOOR, TableError, advised, demand_rows, tabled
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from kin.law.sources.motion import Motion
+    from kin.law.segment import Stretch
+    from kin.law.sources.dwells import Run
+    from kin.law.sources.dwells import Stretch as Moving
+    from kin.law.sources.least_jerk import Least, Space
+    from kin.law.sources.suspects import Suspect
+    from kin.law.sources.tabled import Rest, Tabled
 
+Suspects: TypeAlias = Literal["refuse", "keep"]
 
-_LEAST_ROWS = 8
 _LEAST_LOADS = 2
-_GAP = 1.5  # of the median of the five steps about it
-_LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
-_FOOT, _ANKLE = 3.0, 60.0  # readings above a dwell between which the motion's foot is looked for
-_TRIALS, _RAISED = 8, 1.3  # of the reading error that a refused table would need
-_LEVELLED = 3  # times that a motion is made again, 0 where the last one was lowest
-_ENDS = 2  # rows at each end of a dwell between which it may end
-
-
-@dataclass(frozen=True)
-class Smoothed:
-    """A motion from a table, how many spans it took, and its greatest distance from the rows, with that row's line."""
-
-    motion: Motion
-    spans: int
-    residual: float
-    line: int
+_GAP = 1.5  # of the widest step of a load
+_ZERO = 2.0  # readings, within which the least value of a motion is meant to be 0
+_FAR = 0.01  # of the stroke: a distance of rows above that is told
+_PINS = 3  # times that a motion above its least level is brought down to it, where it was lowest
+_TOUCHES = 1e-9  # of the stroke: by so much it may stay above
+_ABOUT = 0.01  # of a reading: by so much the motion without dwells, which is but compared with, may be too low
+_QUARTER = 0.25  # of the angle: rows that cover less were hardly meant to
+_MEANT = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles, and of what they are
 
 
 def from_table(
@@ -44,87 +47,191 @@ def from_table(
     total: float = 2 * math.pi,
     *,
     around: int | None = 1,
-    dwells: Sequence[tuple[float, float]] | None = None,
-    spans: int | None = None,
+    rest: Rest | None = None,
+    suspects: Suspects = "refuse",
     field: str = "motion.table",
-) -> Smoothed:
-    """Smooth rows of a table within `reading`, the bound of |S - table| at every row.
+) -> Motion:
+    """The motion of least mean square jerk within `reading` of every row: a quintic spline, C4 but at dwells.
 
-    Between dwells runs the least-squares C4 quintic spline of fewest equal spans that does it, or of `spans`. Where
-    that takes a span for less than four rows, joints are looked for at which the acceleration or the jerk jumps, and
-    the spline is one that keeps the reading if any over equal spans between them does. The rows bound the motion less
-    its least value (`around` 1) or its first (-1), where that is 0 within twice the reading.
+    With `around` 1 it repeats after `total` rad, and is nowhere below its least level; what the rows leave out of a
+    turn is filled as `rest` has it. With -1 it goes on upside down, and with None it rests at both ends; both begin at
+    0. Rows that are equal over 10 degrees are a dwell, exactly level on its inner part. How far the rows are from the
+    motion, and what is to be remarked on them, is in its `kept`.
 
-    Where a table ends before the turn does, at the displacement it began with, the rest is a dwell; so are rows that
-    are equal over 10 degrees, or, where `dwells` (rad) are given, those. A dwell is exact, and S' = 0 at its ends.
-
-    TableError, with the line, for angles that do not rise, gaps, steps, rows that scatter by more than the reading.
+    Raises TableError, with the line, for rows that do not close within their readings, for doubled angles, and, where
+    `suspects` are refused, for a row, or two, without which the mean square is less than half.
     """
-    _demand_rows(rows, total, field)
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
-    rows, event = _one_turn(rows, Task(rows, reading, total, around), field)
-    demand_whole(rows, total, around, field)
-    if around is None and abs(rows.s[0]) <= reading:
-        rows = rows._replace(s=np.append(0.0, rows.s[1:]))  # where the motion begins
-    task = Task(rows, reading, total, around)
-
-    def equal(task: Task) -> tuple[list[Dwelling], EqualSpans, Motion, bool]:
-        found = _found(task) if dwells is None else _given(task, dwells, field)
-        if event is not None:
-            found = merged(sorted([*found, event]), len(rows.s))
-        _demand_even(rows, found, field)
-        fit = EqualSpans(task, spans, field)
-        motion = fit.laid(found)
-        return found, fit, motion, fit.residual <= task.reading * (1 + 1e-9) and task.keeps(motion)
-
-    found, fit, motion, kept = equal(task)
-    if spans is not None or kept:
-        return Smoothed(motion, fit.count, fit.residual, fit.line)
-    bounded = Bounded(task, field, fit.faults)
-    if dwells is None:
-        found = _shortened(found, len(rows.s), around)
+    layout = tabled(rows, reading, total, around, rest, field)
     try:
-        motion = bounded.laid(found)
-        for _ in range(_LEVELLED):
-            if not task.keeps(motion):
-                lowest = task.lowest(motion)
-                motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
-        bounded.demand_supported(motion)
-    except UnmetError as error:
-        raise TableError(error.problem + _remedy(task, fit.residual, equal), field, error.line) from None
-    return Smoothed(motion, bounded.count, bounded.residual, bounded.line)
+        return _motion(layout, rows, reading, total, around, suspects, field)
+    except UnsolvedError:
+        stroke = layout.tell(layout.stroke)
+        problem = f"no motion was found within {layout.tell(reading)} of rows over {stroke}: rounding stands in the way"
+        raise IntentError(f"{problem}; give a greater reading, or leave rows out", field) from None
 
 
-def _remedy(
-    task: Task, reached: float, equal: Callable[[Task], tuple[Sequence[Dwelling], EqualSpans, Motion, bool]]
-) -> str:
-    """A reading error with which the table is smoothed, tried."""
-    for k in range(_TRIALS):
-        reading = max(reached, task.reading) * _RAISED**k / task.rows.unit
-        digit = 10.0 ** (math.floor(math.log10(reading)) - 1)
-        trial = task._replace(reading=math.ceil(reading / digit) * digit * task.rows.unit)
-        try:
-            if equal(trial)[-1]:
-                return f"; mend it, or give reading: {task.tell(trial.reading)}, which a motion keeps"
-        except TableError:
-            continue
-    return "; mend it, or give a greater reading"
+def _motion(
+    layout: Tabled, rows: Samples, reading: float, total: float, around: int | None, suspects: Suspects, field: str
+) -> Motion:
+    plain, raised = ladder(layout)
+    if plain is None or not layout.stroke:
+        _demand_stroke(layout, reading, field)
+        level = float(0.5 * (layout.s.min() + layout.s.max())) if len(layout.s) else 0.0
+        level = 0.0 if around != 1 or abs(level) <= reading else level
+        return replace(joined([0.0, total], [Constant(level)], around), kept=Kept(0.0, 0, ()))
+    remarks = []
+    standing = suspect(layout, plain)
+    if standing is not None:
+        told = _standing(layout, standing)
+        if standing.certain and suspects == "refuse":
+            line = int(layout.lines[standing.rows[0]])
+            raise TableError(f"{told}; mend it, or give suspect: keep", field, line)
+        remarks.append(TableRemark("table-row", f"line {layout.lines[standing.rows[0]]}: {told}"))
+    elif raised is not None and standing is None:
+        calm = layout.advised(raised * reading)
+        text = f"with reading: {calm} the mean square of the jerk is a tenth: the rows scatter by more than their digits"
+        remarks.append(TableRemark("table-noise", text))
+    remarks += _angles(rows, total)
+    motion = _laid(layout, plain, total, around)
+    theta = np.mod(rows.theta, total) if around == 1 else rows.theta
+    off = np.abs(motion.derivatives(theta, 0)[0] - rows.s)
+    worst = int(np.argmax(off))
+    if off[worst] > _FAR * layout.stroke:
+        share = 100.0 * off[worst] / layout.stroke
+        text = f"the motion leaves its rows by up to {layout.tell(off[worst], 3)}, {share:.2g} % of the stroke"
+        remarks.append(TableRemark("table-distance", f"{text} (line {rows.lines[worst]})"))
+    return replace(motion, kept=Kept(float(off[worst]), int(rows.lines[worst]), tuple(remarks)))
 
 
-def _shortened(dwells: Sequence[Dwelling], count: int, around: int | None) -> list[Dwelling]:
-    """Dwells without the rows at their ends: where between them one ends is found from the motion beside it.
+def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Motion:
+    """The motion with its dwells over [0, total], 0 where the rows have it."""
+    depth = FLOOR * layout.stroke
+    floor = _floor(layout, plain) if around == 1 else None
+    about = max(depth, _ABOUT * float(layout.reading.min()))
+    bounds = layout.bounds(1.0, floor)
+    for _ in range(_PINS):
+        near = plain if floor is None else _solved(layout.space, bounds, plain, floor, about)
+        dwells, moving = stretches(layout, runs(layout, floor), near, bounds, floor, depth)
+        whole = near if dwells else _solved(layout.space, bounds, near, floor, depth)
+        if floor is None or any(run.level == floor for run in dwells):
+            break
+        lows = [part.least.curve.lowest() for part in moving] or [whole.curve.lowest()]
+        at, value = min(lows, key=lambda low: low[1])
+        if value - floor <= _TOUCHES * layout.stroke:
+            break
+        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), floor)
+    if around is None:
+        return joined(*_open(dwells, moving), None).raised(-dwells[0].level)
+    turn = layout.period
+    knots, functions = _round(dwells, moving, turn) if dwells else _all_round(whole, turn)
+    motion = settled(knots, functions, turn, total)
+    return motion if around == 1 else Motion(motion.raised(-float(motion.at_start(0)[0])).motion, -1)
 
-    None that stands beside a stretch of few rows: with those added it could be anything.
+
+def _solved(
+    space: Space, bounds: Bounds, near: Least, floor: float | None = None, depth: float = 0.0
+) -> Least:
+    """The motion within bounds that is no constant."""
+    found = least(space, bounds, near.touch, floor, depth)
+    if found is None:
+        raise UnsolvedError
+    return found
+
+
+def _floor(layout: Tabled, plain: Least) -> float | None:
+    """Level that a motion over a turn is never below, and has somewhere; None of a table that is moved as a whole.
+
+    A table that is lowest in a dwell has that level, or 0 where that is within its reading, as has any other table that
+    is 0 within it. So has one whose motion is lowest at about 0, between two rows.
     """
-    shorter = []
-    for i, dwell in enumerate(dwells):
-        before, after = dwells[i - 1], dwells[(i + 1) % len(dwells)]
-        beside = dwell.first - before.last, after.first - dwell.last
-        least = min(number % count if around == 1 else abs(number) for number in beside) if len(dwells) > 1 else count
-        less = min(_ENDS, (dwell.last - dwell.first) // 3) if least > _LEAST_ROWS else 0
-        shorter.append(Dwelling(dwell.first + less, dwell.last - less, dwell.level))
-    return shorter
+    lowest = int(np.argmin(layout.s))
+    level, reading = float(layout.s[lowest]), float(layout.reading[lowest])
+    if abs(level) <= reading:
+        return 0.0
+    if any(run.level == level for run in runs(layout, None)):
+        return level
+    return 0.0 if level > 0.0 and abs(plain.curve.lowest()[1]) <= _ZERO * reading else None
+
+
+def _pinned(bounds: Bounds, at: float, level: float) -> Bounds:
+    """With a bound that brings the motion down to a level at an angle."""
+    same = np.array([level])
+    return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])))
+
+
+def _between(moving: Moving, before: Run, after: Run) -> tuple[list[float], list[Stretch]]:
+    """Knots but the last, and functions, of the motion between two dwells."""
+    found, ends = moving.least, Ends(before.level, after.level)
+    sites = np.concatenate([[moving.begin], found.x, [moving.end]])
+    values = np.concatenate([[before.level], found.values, [after.level]])
+    return sites[:-1].tolist(), list(through(sites, values, ends))
+
+
+def _round(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tuple[list[float], list[Stretch]]:
+    """Dwells and what is between them round a turn, from the first dwell on."""
+    knots: list[float] = []
+    functions: list[Stretch] = []
+    for i, run in enumerate(dwells):
+        places, parts = _between(moving[i], run, dwells[(i + 1) % len(dwells)])
+        knots += [run.begin, *places]
+        functions += [Constant(run.level), *parts]
+    return [*knots, dwells[0].begin + turn], functions
+
+
+def _all_round(whole: Least, turn: float) -> tuple[list[float], list[Stretch]]:
+    sites = np.append(whole.x, whole.x[0] + turn)
+    return sites.tolist(), list(through(sites, np.append(whole.values, whole.values[0]), None))
+
+
+def _open(dwells: Sequence[Run], moving: Sequence[Moving]) -> tuple[list[float], list[Stretch]]:
+    """Dwells and what is between them from the first one to the last one."""
+    knots = [dwells[0].begin]
+    functions: list[Stretch] = []
+    for i, run in enumerate(dwells):
+        if run.end > run.begin:
+            functions.append(Constant(run.level))
+            knots.append(run.end)
+        if i < len(moving):
+            places, parts = _between(moving[i], run, dwells[i + 1])
+            functions += parts
+            knots += [*places[1:], moving[i].end]
+    return knots, functions
+
+
+def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
+    """Refuse a reading within which nothing of a motion is left."""
+    if layout.stroke > 1e-9 * float(np.abs(layout.s).max(initial=0.0)):
+        told = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
+        problem = f"{told}: {layout.tell(reading)} to either side"
+        raise IntentError(f"{problem}; give reading: {layout.advised(0.05 * layout.stroke)} or less", field)
+
+
+def _standing(layout: Tabled, standing: Suspect) -> str:
+    """Say which rows stand out, and what is expected there."""
+    (first, *more), (expected, *others) = standing.rows, standing.expected
+    digits = 7
+    told = f"the row stands out: it is {layout.tell(float(layout.s[first]), digits)}, about "
+    told += layout.tell(expected, 4 if abs(expected) < layout.stroke else digits)
+    for place, value in zip(more, others, strict=True):
+        told += f", and line {layout.lines[place]} is {layout.tell(float(layout.s[place]), digits)}, about "
+        told += layout.tell(value, 4)
+    return f"{told} fits the others; without, the mean square of the jerk is {standing.falls:.3g} times less"
+
+
+def _angles(rows: Samples, total: float) -> list[TableRemark]:
+    """Where the angles are hardly degrees, or a part of the turn."""
+    last = float(np.degrees(np.abs(rows.theta).max())) * rows.turned
+    meant = next((word for end, word in _MEANT.items() if abs(last - end) <= 1e-3 * end), None)
+    over = float(rows.theta[-1] - rows.theta[0])
+    covered = f"the angles cover {math.degrees(abs(over)):.6g} degrees"
+    if meant is not None:
+        return [TableRemark("table-angles", f"{covered} and end at {last:.6g}; give angle: {meant} if they are {meant}")]
+    if abs(over) < _QUARTER * total:
+        rest = f"the rest of {math.degrees(total):.6g} is a dwell"
+        return [TableRemark("table-angles", f"{covered}, {rest}; see that they are degrees of the cam")]
+    return []
 
 
 def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
@@ -133,7 +240,7 @@ def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
     TableError, with the line, for angles that do not rise, for a last row a turn later that is not the first one's
     again, and where more is left out behind the last row than between any two, and the ends differ.
     """
-    _demand_rows(rows, total, field, _LEAST_LOADS, "load")
+    rows = demand_rows(rows, total, field, _LEAST_LOADS, "load")
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
     first, last = float(rows.s[0]), float(rows.s[-1])
     closed = over > total - SAME_ANGLE
@@ -146,149 +253,3 @@ def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
         )
         raise TableError(f"{what} {unit}; add the rows of the rest of the turn", field, line)
     return rows.part(slice(None, -1)) if closed else rows
-
-
-def _demand_rows(
-    rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
-) -> None:
-    if len(rows.theta) < least:
-        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
-    for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
-        bad = np.flatnonzero(~np.isfinite(column))
-        if len(bad):
-            raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
-    falls = np.flatnonzero(np.diff(rows.theta) <= SAME_ANGLE)
-    if len(falls):
-        i = int(falls[0]) + 1
-        before, here = np.degrees(rows.theta[i - 1 : i + 1])
-        word = "stands twice" if here == before else f"follows {before:.9g}"
-        raise TableError(f"the angles must rise; {here:.9g} {word}", field, int(rows.lines[i]))
-    over = float(rows.theta[-1] - rows.theta[0])
-    if over > total + SAME_ANGLE:
-        i = int(np.argmax(rows.theta - rows.theta[0] > total + SAME_ANGLE))
-        crank = quantity == "displacement" and over <= 2.0 * total + SAME_ANGLE
-        remedy = "; give angle: crank if its angles are the crank's" if crank else ""
-        covered = f"the table covers more than {math.degrees(total):.6g} degrees{remedy}"
-        raise TableError(covered, field, int(rows.lines[i]))
-
-
-def _one_turn(rows: Samples, task: Task, field: str) -> tuple[Samples, Dwelling | None]:
-    """Rows of a repeating motion without a closing one; and the dwell that the table leaves out."""
-    total, reading = task.total, task.reading
-    if task.around != 1:
-        return rows, None
-    over, step = float(rows.theta[-1] - rows.theta[0]), float(np.median(np.diff(rows.theta)))
-    apart, line = abs(float(rows.s[-1] - rows.s[0])), int(rows.lines[-1])
-    if over > total - SAME_ANGLE:
-        if apart > 2 * reading:
-            problem = f"the motion does not close: {task.tell(apart)} off the first row, a turn later"
-            raise TableError(f"{problem}; give this row the displacement of the first one", field, line)
-        return rows.part(slice(None, -1)), None
-    if total - over <= _GAP * step:
-        return rows, None
-    if apart > 2 * reading:
-        raise TableError(
-            f"the table ends after {math.degrees(over):.6g} degrees, {task.tell(apart)} off its first row: the rest of "
-            "the turn can be no dwell; add the rows that are missing",
-            field,
-            line,
-        )
-    n = len(rows.s)
-    return rows, Dwelling(n - 1, n, 0.5 * float(rows.s[0] + rows.s[-1]))
-
-
-def _found(task: Task) -> list[Dwelling]:
-    """Dwells where rows are equal over 10 degrees and more."""
-    rows, total, around = task.rows, task.total, task.around
-    n = len(rows.s)
-    whole = around == 1 and rows.theta[0] + total - rows.theta[-1] <= _GAP * float(np.median(np.diff(rows.theta)))
-    same = np.append(np.diff(rows.s) == 0, bool(whole and rows.s[0] == rows.s[-1]))
-    if same.all():
-        return []
-    first = int(np.argmin(same)) + 1  # after a step that is none: no run is cut
-    index = np.arange(first, first + n)
-    edges = np.diff(np.concatenate([[0], same[index % n].astype(int), [0]]))
-    found = []
-    for a, b in zip(index[0] + np.flatnonzero(edges == 1), index[0] + np.flatnonzero(edges == -1), strict=True):
-        begin = rows.theta[a % n] + total * (a // n)
-        end = rows.theta[b % n] + total * (b // n)
-        if end - begin >= _LEAST_DWELL - SAME_ANGLE:
-            turns, middle = int(a) // n, (int(a) + int(b)) // 2
-            leave = _foot(task, int(b), 1, middle)
-            reach = _foot(task, int(a), -1, middle)
-            found.append(Dwelling(reach - turns * n, leave - turns * n, float(rows.s[a % n])))
-    return sorted(found)
-
-
-def _foot(task: Task, end: int, way: int, middle: int) -> int:
-    """Row at which the motion leaves a dwell, on the side `way` of its last equal row.
-
-    Rounded rows stay equal for a while after the motion has begun. It begins as a cube, so the cube roots of the first
-    displacements lead back to its foot.
-    """
-    rows, reading, total = task.rows, task.reading, task.total
-    n = len(rows.s)
-    index = end + way * np.arange(1, n // 2)
-    if task.around != 1:
-        index = index[(index >= 0) & (index < n)]
-    climb = np.abs(rows.s[index % n] - rows.s[end % n])
-    chosen = np.flatnonzero(climb >= _FOOT * reading)[:2]
-    if len(chosen) < 2:
-        return end
-    last = int(np.argmax(climb > _ANKLE * reading)) if (climb > _ANKLE * reading).any() else len(climb)
-    chosen = np.arange(chosen[0], max(last, chosen[-1] + 1))
-    angle = rows.theta[index % n] + total * (index // n)
-    root, at = np.cbrt(climb[chosen]), angle[chosen]
-    spread = root - root.mean()
-    if not np.ptp(root) > 1e-3 * root.max():  # it leaves by a step
-        return end
-    foot = float(at.mean() - root.mean() * (spread @ at) / (spread @ spread))
-    inside = np.arange(end, middle, -way)
-    if not len(inside):
-        return end
-    apart = np.abs(rows.theta[inside % n] + total * (inside // n) - foot)
-    return int(inside[int(np.argmin(apart))])
-
-
-def _given(task: Task, dwells: Sequence[tuple[float, float]], field: str) -> list[Dwelling]:
-    """Dwells from a row to a row at given angles; the rows between must be within the reading of their mean."""
-    rows, reading, total, around = task.rows, task.reading, task.total, task.around
-    n, found = len(rows.s), []
-    for begin, end in dwells:
-        ends = []
-        for angle in (begin, end):
-            turns = math.floor((angle - rows.theta[0] + SAME_ANGLE) / total) if around == 1 else 0
-            i = int(np.argmin(np.abs(rows.theta - (angle - turns * total))))
-            ends.append(i + turns * n)
-        index = np.arange(ends[0], ends[1] + 1)
-        if len(index) < 2:
-            at = [math.degrees(angle) for angle in (begin, end)]
-            raise IntentError(f"no two rows lie between {at[0]:.6g} and {at[1]:.6g} degrees", field)
-        s = rows.s[index % n]
-        level = float(0.5 * (s.min() + s.max()))
-        if s.max() - s.min() > 2 * reading:
-            line = int(rows.lines[index[int(np.argmax(np.abs(s - np.median(s))))] % n])
-            raise TableError(f"the row is not part of a dwell at {task.tell(float(np.median(s)))}", field, line)
-        turns = ends[0] // n
-        found.append(Dwelling(ends[0] - turns * n, ends[1] - turns * n, level))
-    return sorted(found)
-
-
-def _demand_even(rows: Samples, dwells: Sequence[Dwelling], field: str) -> None:
-    """Refuse a step of the angle that is much longer than those about it, outside dwells."""
-    step = np.diff(rows.theta)
-    padded = np.concatenate([step[2:0:-1], step, step[-2:-4:-1]])
-    about = np.median(np.stack([padded[i : i + len(step)] for i in range(5)]), axis=0)
-    wide = step > _GAP * about
-    n = len(rows.theta)
-    for dwell in dwells:
-        wide[np.arange(dwell.first, dwell.last) % n % len(step)] = False
-    if wide.any():
-        i = int(np.argmax(wide)) + 1
-        before, here = np.degrees(rows.theta[i - 1 : i + 1])
-        raise TableError(
-            f"rows are missing between {before:.6g} and {here:.6g} degrees; the steps beside it are "
-            f"{math.degrees(about[i - 1]):.6g}",
-            field,
-            int(rows.lines[i]),
-        )

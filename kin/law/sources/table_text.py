@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from kin.law.programme import IntentError
 from kin.law.sources.ring import Samples
-from kin.law.sources.smoothing import TableError
+from kin.law.sources.tabled import TableError
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
 
 MM_PER_INCH = 25.4
+_FEW = 3  # angles
+_EXACT = 1e-9  # of the greatest angle: what is less is no rounding of digits
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|nan|inf(?:inity)?)", re.IGNORECASE)
 _SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
@@ -41,16 +46,28 @@ def read_table(
     separator = _separator([line for _, line in kept])
     if not re.match(r'["\s]*[+-]?[.,]?\d', kept[0][1]):
         kept = kept[1:]  # a heading
-    theta, s, places = np.empty(len(kept)), np.empty(len(kept)), 0
+    theta, s, places, digits = np.empty(len(kept)), np.empty(len(kept)), 0, 0
     for row, (i, line) in enumerate(kept):
         cells = _numbers(line, separator)
         if not cells:
             raise _unread(line, separator, i, field, "load" if unit == "N" else "displacement")
         theta[row], s[row] = float(cells[0]), float(cells[1])
-        places = max(places, _places(cells[1]))
-    theta *= math.pi / 180 / (2 if angles == "crank" else 1)
+        places, digits = max(places, _places(cells[1])), max(digits, _places(cells[0]))
+    turned = 2.0 if angles == "crank" else 1.0
+    degree = math.pi / 180 / turned
+    slack = _rounded(theta, 0.5 * 10.0**-digits) * degree
+    theta *= degree
     scale = {"mm": 1.0, "inch": MM_PER_INCH, "thou": MM_PER_INCH / 1000, "degrees": math.pi / 180, "N": 1.0}[unit]
-    return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp), scale), scale * 10.0**-places
+    lines = np.array([i for i, _ in kept], dtype=np.intp)
+    return Samples(theta, s * scale, lines, scale, slack, turned), scale * 10.0**-places
+
+
+def _rounded(angles: Array, half: float) -> float:
+    """Half of the last digit of angles that are even but for it, as 6.7 and 13.3 are; 0 of others."""
+    if len(angles) < _FEW or not np.isfinite(angles).all():
+        return 0.0
+    off = np.abs(angles - np.linspace(angles[0], angles[-1], len(angles))).max()
+    return half if _EXACT * float(np.abs(angles).max()) < off <= 2.0 * half * (1.0 + _EXACT) else 0.0
 
 
 def _separator(lines: list[str]) -> str:

@@ -1,0 +1,177 @@
+"""Dwells of a table: runs of equal rows, exactly level on their inner part.
+
+Rounded rows stay equal for a while after a motion has left its dwell. So the ends of a dwell move in, from where the
+motion without dwells has no acceleration to speak of, until its peak is about that without dwells. Where a quarter of a
+run does not do, its rows are equal for another reason, such as a slow flank of few digits, and it is none.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.law.sources.least_jerk import Space, UnsolvedError, least
+from kin.law.sources.ring import SAME_ANGLE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.sources.least_jerk import Bounds, Least
+    from kin.law.sources.tabled import Tabled
+
+_LEAST_ROWS = 3
+_LEAST_ANGLE = math.radians(10.0)
+_MOST_RUNS = 24  # the longest ones
+_INNER = 0.25  # of a run: what is left of a dwell at least
+_PEAK = 1.1  # times the acceleration without dwells
+_SQUARE = 1.3  # times its mean square jerk, on either half of a stroke
+_SMALL = 0.1  # of that acceleration, below which a motion may as well rest
+_LOOKS = 49  # places in the part of a run that may be moved in where that is looked for
+_STEP = 0.02  # of a run: by so much at least an end moves
+_FASTER = 1.5  # from one step to the next
+
+
+class Run(NamedTuple):
+    """Equal rows from an angle to another, beyond the turn perhaps; `step` is the angle from row to row."""
+
+    begin: float
+    end: float
+    level: float
+    step: float
+
+    @property
+    def limit(self) -> float:
+        """How far each end may move in."""
+        return 0.5 * (1.0 - _INNER) * (self.end - self.begin)
+
+    def later(self, by: float) -> Run:
+        """The same run a turn on."""
+        return self._replace(begin=self.begin + by, end=self.end + by)
+
+
+class Stretch(NamedTuple):
+    """A motion from the end of one dwell to the beginning of the next."""
+
+    begin: float
+    end: float
+    least: Least
+
+
+def runs(rows: Tabled, floor: float | None) -> list[Run]:
+    """Runs of three rows and more that are equal as written, over 10 degrees and more; those at the least level lie on it.
+
+    A motion that rests at its ends has a run at each of them, however short.
+    """
+    x, s = rows.x, rows.s
+    if rows.space.rest:
+        first, last = rows.space.rest
+        x = np.concatenate([[rows.space.begin], x, [rows.space.end]])
+        s = np.concatenate([[first], s, [last]])
+    n = len(x)
+    same = np.append(np.diff(s) == 0.0, bool(rows.period and s[-1] == s[0]))
+    if same.all():
+        return []
+    start = int(np.argmin(same)) + 1 if rows.period else 0
+    edges = np.diff(np.concatenate([[0], same[(start + np.arange(n)) % n].astype(int), [0]]))
+    found = []
+    for a, b in zip(start + np.flatnonzero(edges == 1), start + np.flatnonzero(edges == -1), strict=True):
+        begin, end = (float(x[i % n]) + rows.period * (i // n) for i in (int(a), int(b)))
+        level = float(s[a % n])
+        if b - a + 1 >= _LEAST_ROWS and end - begin >= _LEAST_ANGLE - SAME_ANGLE:
+            found.append(Run(begin, end, level, (end - begin) / int(b - a)))
+    found = sorted(sorted(found, key=lambda run: run.begin - run.end)[:_MOST_RUNS])
+    if floor is not None and found:
+        lowest = min(run.level for run in found)
+        found = [run._replace(level=floor) if run.level == lowest == s.min() else run for run in found]
+    if rows.space.rest:
+        if not found or found[0].begin > rows.space.begin:
+            found.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))
+        if found[-1].end < rows.space.end:
+            found.append(Run(rows.space.end, rows.space.end, float(s[-1]), 0.0))
+    return found
+
+
+def stretches(
+    rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, floor: float | None, depth: float
+) -> tuple[list[Run], list[Stretch]]:
+    """Those runs that are dwells, with their ends moved in, and the motions between them.
+
+    `plain` is the motion without dwells within the same bounds.
+    """
+    kept = list(dwells)
+    while kept:
+        following = [*kept[1:], kept[0].later(rows.period)] if rows.period else kept[1:]
+        found: list[Stretch] = []
+        for i, after in enumerate(following):
+            stretch, spoilt = _stretch(rows, kept[i], after, plain, bounds, floor, depth)
+            if stretch is None:
+                kept.pop((i + spoilt) % len(kept))
+                break
+            found.append(stretch)
+        else:
+            return _moved(kept, found, rows.period), found
+    return [], []
+
+
+def _moved(kept: Sequence[Run], found: Sequence[Stretch], period: float) -> list[Run]:
+    """Runs that begin where the stretch before them ends, and end where the next one begins."""
+    moved = []
+    for i, run in enumerate(kept):
+        begin, end = run.begin, run.end
+        if period or i > 0:
+            begin = found[i - 1].end - (period if i == 0 else 0.0)
+        if i < len(found):
+            end = found[i].begin
+        moved.append(run._replace(begin=begin, end=end))
+    return moved
+
+
+def _stretch(
+    rows: Tabled, before: Run, after: Run, plain: Least, bounds: Bounds, floor: float | None, depth: float
+) -> tuple[Stretch | None, int]:
+    """The motion between two runs; or None, with 0 where the first one is no dwell and 1 where the second one is none."""
+    middle = 0.5 * (before.end + after.begin)
+    allowed = plain.curve.peak(before.end - before.limit, middle), plain.curve.peak(middle, after.begin + after.limit)
+    limits = before.limit, after.limit
+    moved = [_quiet(plain, run, way, small) for run, way, small in zip((before, after), (-1, 1), allowed, strict=True)]
+    steps = [max(0.5 * run.step, _STEP * (run.end - run.begin)) for run in (before, after)]
+    touch = plain.touch
+    while True:
+        begin, end = before.end - moved[0], after.begin + moved[1]
+        space = Space(begin, end, (before.level, after.level))
+        try:
+            found = least(space, rows.between(bounds, space), touch, floor, depth)
+        except UnsolvedError:
+            found = None
+        if found is not None:
+            touch = found.touch
+            peaks = found.curve.peak(begin, middle), found.curve.peak(middle, end)
+            rough = found.curve.square(begin, middle), found.curve.square(middle, end)
+            calm = plain.curve.square(begin, middle), plain.curve.square(middle, end)
+            wild = [
+                side
+                for side in (0, 1)
+                if limits[side] > 0.0
+                and (peaks[side] > _PEAK * allowed[side] or rough[side] > _SQUARE * calm[side])
+            ]
+            if not wild:
+                return Stretch(begin, end, found), 0
+        else:
+            wild = [side for side in (0, 1) if limits[side] > 0.0]
+        for side in wild:
+            if moved[side] >= limits[side]:
+                return None, side
+            moved[side] = min(limits[side], moved[side] + steps[side])
+            steps[side] *= _FASTER
+        if not wild:
+            raise UnsolvedError
+
+
+def _quiet(plain: Least, run: Run, way: int, peak: float) -> float:
+    """How far in from an end of a run the motion without dwells has little acceleration."""
+    shares = np.linspace(0.0, run.limit, _LOOKS)
+    edge = run.end if way < 0 else run.begin
+    quiet = np.abs(plain.curve(edge + way * shares, 2)) <= _SMALL * peak
+    return float(shares[int(np.argmax(quiet))]) if quiet.any() else run.limit

@@ -1,0 +1,147 @@
+"""Rows of a table that stand out, and noise beyond its digits, by the mean square of the jerk that they call for."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.law.sources.least_jerk import Touch, least, pulls
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.sources.least_jerk import Least
+    from kin.law.sources.tabled import Tabled
+    from kin.numeric.arrays import Array
+
+_FALLS = 2.0  # times less the mean square is without a row that is told of
+_SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
+_LEAST_ROWS = 5  # that a stroke spans, where one of them can be told from it
+_ABOUT = 2  # rows to either side: about a row
+_CALMER = 10.0  # times less the mean square about a certain row is without it
+_SHARP = 0.5  # of the mean square that is left: where so much of it lies about a row, the law itself is sharp there
+_LIKELY = 0.08  # of it that falls at least where the other rows stay touched, of rows that are tried
+_MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3  # rows of the greatest multipliers, of those with a neighbour, and solved
+_LADDER = 4.0  # from one reading to the next
+_TENFOLD = 10.0
+_COARSEST = 0.02  # of the stroke
+
+
+class Suspect(NamedTuple):
+    """Rows by their places, how many times less the mean square is without them, and what their neighbours suggest."""
+
+    rows: tuple[int, ...]
+    falls: float
+    expected: tuple[float, ...]
+    certain: bool
+
+
+def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
+    """The motion within the rows' readings, and how many times as great readings let its mean square fall tenfold.
+
+    Climbed down from great readings, at each of which the motion of the one before tells where to begin.
+    """
+    most = _COARSEST * rows.stroke / float(rows.reading.max())
+    count = max(0, math.floor(math.log(most, _LADDER))) if most > 1.0 else 0
+    found, touch, squares = None, None, []
+    for k in range(count, -1, -1):
+        found = least(rows.space, rows.bounds(_LADDER**k), touch)
+        touch = None if found is None else found.touch
+        squares.append(0.0 if found is None else found.square)
+    squares.reverse()
+    steps = (k for k in range(1, len(squares)) if 0.0 < _TENFOLD * squares[k] <= squares[k - 1])
+    return found, next((_LADDER**k for k in steps), None)
+
+
+def suspect(rows: Tabled, plain: Least) -> Suspect | None:
+    """The one row, or two side by side, without which the mean square falls most, if it falls by half or is certain."""
+    best = None
+    for places in _likely(rows, plain):
+        if best is not None and best.certain and len(places) > len(best.rows):
+            break
+        without = _without(rows, plain, places)
+        if without is None or not without.square:
+            continue
+        falls = plain.square / without.square
+        certain = _certain(rows, plain, without, places, falls)
+        better = best is None or (certain, falls) > (best.certain, best.falls)
+        if (certain or falls >= _FALLS) and better:
+            named = [place for place in places if rows.lines[place]]
+            best = Suspect(tuple(named), falls, tuple(without.curve(rows.x[named]).tolist()), certain)
+    return best
+
+
+def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int], falls: float) -> bool:
+    """Whether rows are no part of a law that is sharp there: a stroke of many rows tells more than one of few."""
+    span = min(spanned(rows, place) for place in places)
+    if span < _LEAST_ROWS or falls < (_SURE_OF_MANY if span >= _MANY else _SURE):
+        return False
+    before, after = (max(_about(rows, found, place) for place in places) for found in (plain, without))
+    return before >= _CALMER * after and after <= _SHARP * without.square
+
+
+def _about(rows: Tabled, found: Least, place: int) -> float:
+    """Integral of the jerk's square about a row."""
+    n = len(rows.x)
+    ends = place - _ABOUT, place + _ABOUT
+    if rows.period:
+        begin, end = (float(rows.x[i % n]) + rows.period * (i // n) for i in ends)
+    else:
+        begin, end = (float(rows.x[min(max(i, 0), n - 1)]) for i in ends)
+    return found.curve.square(begin, end)
+
+
+def _without(rows: Tabled, plain: Least, places: Sequence[int]) -> Least | None:
+    bounds = rows.bounds()
+    gone, keep = np.isin(bounds.row, places), ~np.isin(plain.row, places)
+    bounds = bounds._replace(lo=np.where(gone, -np.inf, bounds.lo), hi=np.where(gone, np.inf, bounds.hi))
+    return least(rows.space, bounds, Touch(plain.row[keep], plain.upper[keep]))
+
+
+def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
+    """Places of single rows, then of pairs, that much of the mean square rests on, those of most first.
+
+    A motion over two halves has each row twice.
+    """
+    k = len(plain.row)
+    order = np.argsort(-np.abs(plain.pull))[:_MOST_TRIED].tolist()
+    space = rows.space._replace(rest=rows.space.rest and (0.0, 0.0))
+    columns: dict[int, Array] = {}
+
+    def response(i: int) -> Array:
+        if i not in columns:
+            columns[i] = pulls(space, plain.x, np.where(np.arange(k) == i, 1.0, 0.0))[0]
+        return columns[i]
+
+    def falls(group: Sequence[int]) -> float:
+        matrix = np.array([response(i)[list(group)] for i in group])
+        pull = plain.pull[list(group)]
+        return float(pull @ np.linalg.solve(matrix, pull)) / plain.square
+
+    def twins(i: int) -> list[int]:
+        line = rows.lines[plain.row[i]]
+        return [i] if not line else np.flatnonzero(rows.lines[plain.row] == line).tolist()
+
+    singles = {tuple(twins(i)) for i in order}
+    beside = {tuple(sorted({*twins(i), *twins((i + way) % k)})) for i in order[:_PAIRED] for way in (-1, 1)}
+    likely = []
+    for groups in (singles, beside - singles):
+        weighed = sorted(((falls(group), group) for group in groups), reverse=True)[:_MOST_SOLVED]
+        likely += [tuple(plain.row[list(group)].tolist()) for share, group in weighed if share >= _LIKELY]
+    return likely
+
+
+def spanned(rows: Tabled, place: int) -> int:
+    """Rows that the stroke of a row spans, without it; of one between two strokes, the lesser of them."""
+    n = len(rows.s)
+    sides = []
+    for way in (-1, 1):
+        s = rows.s[(place + way * np.arange(1, n)) % n] if rows.period else rows.s[place + way :: way][: n - 1]
+        signs = np.sign(np.diff(s))
+        changes = np.flatnonzero(signs != signs[0]) if len(signs) else signs
+        run = int(changes[0]) if len(changes) else len(signs)
+        sides.append((run + 1, way * float(signs[0]) if len(signs) else 0.0))
+    (left, rising), (right, later) = sides
+    return left + right if rising == later else min(left, right)

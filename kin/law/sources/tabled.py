@@ -1,0 +1,254 @@
+"""Rows of a table laid out over the angle of their motion, each with its reading error, and as bounds of a motion."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.sources.least_jerk import Bounds, Space
+from kin.law.sources.ring import SAME_ANGLE, Samples
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.sources.least_jerk import Curve
+    from kin.numeric.arrays import Array, Indices
+
+Rest: TypeAlias = Literal["dwell", "cycle", "mirror"]
+
+_UNITS = {1.0: " mm", 25.4: " in", 0.0254: " thou", math.radians(1.0): " deg"}  # as tables have them
+_ADVISED = {0.0254: (25.4, " in")}  # units that recipes have not, and what they have in their place
+_KEPT = 1.0 - 1e-3  # of a reading: what a motion keeps within it, so that its zero may move by rounding
+_LEAST_ROWS = 4
+_GAP = 1.5  # of the widest step: what is more is no row's
+_MOST_FILLED = 400  # rows with which the rest of a turn is filled
+FLOOR = 1e-10  # of the stroke: by so much a motion may be below its least level
+
+
+class TableError(IntentError):
+    """A table that is no motion; `line` is the line of the file at fault."""
+
+    def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
+        super().__init__(f"line {line}: {message}", field, at)
+        self.line, self.problem = line, message
+
+
+@dataclass(frozen=True)
+class Tabled:
+    """Rows of a motion: rising angles, displacements, reading errors and lines (0: of no row), (n,) each.
+
+    The motion repeats after `period`, or, where that is 0, rests at the ends of `space`. `fixed` are the places of rows
+    that are met exactly. One unit of the file is `unit` mm or rad.
+    """
+
+    x: Array
+    s: Array
+    reading: Array
+    lines: Indices
+    space: Space
+    unit: float
+    fixed: tuple[int, ...] = ()
+
+    @property
+    def period(self) -> float:
+        """Angle after which the motion repeats, 0 where it does not."""
+        return 0.0 if self.space.rest else self.space.end - self.space.begin
+
+    @property
+    def stroke(self) -> float:
+        """Greatest difference of two rows."""
+        levels = self.s if self.space.rest is None else np.append(self.s, self.space.rest)
+        return float(np.ptp(levels))
+
+    def tell(self, value: float, digits: int = 6) -> str:
+        """A displacement in the table's own unit, as a message has it."""
+        return f"{value / self.unit:.{digits}g}{_UNITS.get(self.unit, '')}"
+
+    def advised(self, reading: float) -> str:
+        """A reading error of two digits, not below this one, in a unit that a recipe may have."""
+        return advised(reading, self.unit)
+
+    def bounds(self, share: float = 1.0, floor: float | None = None) -> Bounds:
+        """Bounds of a motion, with readings that are so many times as great; none below the floor."""
+        within = share * self.reading * _KEPT
+        within[list(self.fixed)] = 0.0
+        lo, hi = self.s - within, self.s + within
+        if floor is not None:
+            lo = np.where(hi >= floor, np.maximum(lo, floor), lo)
+        return Bounds(self.x, lo, hi, share * self.reading, np.arange(len(self.x)))
+
+    def between(self, bounds: Bounds, space: Space) -> Bounds:
+        """Those of bounds that lie inside a space, which may run over the end of a period."""
+        parts = []
+        for turn in (-1, 0, 1) if self.period else (0,):
+            x = bounds.x + turn * self.period
+            inside = (x > space.begin + SAME_ANGLE) & (x < space.end - SAME_ANGLE)
+            parts.append(Bounds(x, *bounds[1:]).at(np.flatnonzero(inside)))
+        return Bounds(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+    def off(self, curve: Curve) -> Array:
+        """Distances of the rows from a curve, (n,)."""
+        return np.abs(curve(self.x) - self.s)
+
+
+def advised(reading: float, unit: float) -> str:
+    """A reading error of two digits, not below this one, in a unit that a recipe may have."""
+    unit, word = _ADVISED.get(unit, (unit, _UNITS.get(unit, "")))
+    digit = 10.0 ** (math.floor(math.log10(reading / unit)) - 1)
+    return f"{math.ceil(reading / unit / digit - 1e-9) * digit:.6g}{word}"
+
+
+def tabled(
+    rows: Samples, reading: float, total: float, around: int | None, rest: Rest | None, field: str
+) -> Tabled:
+    """Lay rows out over [0, total], or the turn; TableError, with the line, for rows that can be no motion.
+
+    With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. What rows
+    leave out of a turn is filled as `rest` has it, and is a dwell where it is None and the ends agree.
+    """
+    rows = demand_rows(rows, total, field)
+    within = reading + rows.slack * _slopes(rows)
+    if around == 1:
+        return _turn(rows, within, total, rest, field)
+    if rest is not None:
+        raise IntentError("the rest of a turn is that of a motion that repeats with it", f"{field}.rest")
+    _demand_whole(rows, total, field)
+    s = rows.s.copy()
+    if abs(s[0]) <= reading:
+        s[0] = 0.0  # where the motion begins
+    n = len(s) - 1
+    if around is None:
+        inner = slice(1, -1)
+        space = Space(0.0, total, (float(s[0]), float(s[-1])))
+        return Tabled(rows.theta[inner], s[inner], within[inner], rows.lines[inner], space, rows.unit)
+    return Tabled(
+        np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
+        np.concatenate([s[:-1], s[0] + s[-1] - s[:-1]]),
+        np.tile(within[:-1], 2),
+        np.concatenate([rows.lines[:-1], rows.lines[-1:], rows.lines[1:-1]]),
+        Space(0.0, 2.0 * total),
+        rows.unit,
+        (0, n),
+    )
+
+
+def _slopes(rows: Samples) -> Array:
+    """Greatest slope beside each row."""
+    slope = np.abs(np.diff(rows.s) / np.diff(rows.theta))
+    return np.maximum(np.append(slope, slope[-1]), np.append(slope[0], slope))
+
+
+def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: str) -> Tabled:
+    """Rows of a motion that repeats, without one that closes it, and with what they leave out."""
+    over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
+    apart, allowed = abs(float(rows.s[-1] - rows.s[0])), float(within[0] + within[-1])
+    space = Space(float(rows.theta[0]), float(rows.theta[0]) + total)
+    if over > total - SAME_ANGLE:
+        if rest is not None:
+            raise IntentError("the rows cover the turn: there is no rest of it; leave it out", f"{field}.rest")
+        if apart > allowed * (1.0 + 1e-9):
+            problem = f"the motion does not close: {_told(apart, rows)} off the first row, a turn later"
+            remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
+            raise TableError(f"{problem}; {remedy}", field, line)
+        keep = slice(None, -1)
+        return Tabled(rows.theta[keep], rows.s[keep], within[keep], rows.lines[keep], space, rows.unit)
+    widest = float(np.diff(rows.theta).max())
+    if rest is None and total - over <= _GAP * widest:
+        return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
+    if rest is None and apart > allowed:
+        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_told(apart, rows)} off its first row"
+        remedy = "add the rows that are missing, or give rest: mirror, cycle or dwell"
+        raise TableError(f"{ends}: the rest of the turn can be no dwell; {remedy}", field, line)
+    x, s, of = _rest(rows, total, rest or "dwell", field)
+    return Tabled(
+        np.concatenate([rows.theta, x]),
+        np.concatenate([rows.s, s]),
+        np.concatenate([within, within[of]]),
+        np.concatenate([rows.lines, np.zeros(len(x), dtype=np.intp)]),
+        space,
+        rows.unit,
+    )
+
+
+def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, Array, Indices]:
+    """Angles and displacements with which the rest of a turn is filled, and the rows whose reading each has."""
+    first, last = float(rows.theta[0]), float(rows.theta[-1])
+    over, n = last - first, len(rows.s)
+    left = total - over
+    if rest == "dwell":
+        step = max(float(np.median(np.diff(rows.theta))), left / _MOST_FILLED)
+        count = max(2, math.ceil(left / step - 1e-6))
+        x = last + left * np.arange(1, count) / count
+        return x, np.full(len(x), rows.s[-1]), np.full(len(x), n - 1)
+    if rest == "mirror":
+        if abs(left - over) > SAME_ANGLE:
+            half = math.degrees(0.5 * total)
+            problem = f"rows that are mirrored cover {half:.6g} degrees, not {math.degrees(over):.6g}"
+            raise IntentError(f"{problem}; add those that are missing, or give rest: dwell", f"{field}.rest")
+        of = np.arange(n - 2, 0, -1)
+        return 2.0 * last - rows.theta[of], rows.s[of], of
+    step = float(np.median(np.diff(rows.theta)))
+    times, closed = total / over, False
+    if abs(times - round(times)) < 1e-6 and abs(float(rows.s[-1] - rows.s[0])) <= 1e-9 * max(1.0, float(np.ptp(rows.s))):
+        closed = True
+    else:
+        times = total / (over + step)
+        if abs(times - round(times)) > 1e-6:
+            problem = f"{math.degrees(over):.6g} degrees, or with a further row {math.degrees(over + step):.6g}"
+            raise IntentError(f"a cycle of {problem}, fills no turn a whole number of times", f"{field}.rest")
+    count, length = round(times), total / round(times)
+    of = np.arange(n - closed)
+    x = np.concatenate([rows.theta[of] + k * length for k in range(1, count)])
+    s = np.tile(rows.s[of], count - 1)
+    if closed:  # the last row was the first of the next cycle
+        x, s, of = x[1:], s[1:], np.tile(of, count - 1)[1:]
+        return x, s, of
+    return x, s, np.tile(of, count - 1)
+
+
+def _told(value: float, rows: Samples) -> str:
+    return f"{value / rows.unit:.6g}{_UNITS.get(rows.unit, '')}"
+
+
+def demand_rows(
+    rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
+) -> Samples:
+    """Rows without such as are written twice; TableError for other doubled angles, and for more than the whole."""
+    if len(rows.theta) < least:
+        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
+    for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
+        bad = np.flatnonzero(~np.isfinite(column))
+        if len(bad):
+            raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
+    if (np.diff(rows.theta) < 0.0).all():
+        rows = rows.part(slice(None, None, -1))
+    twice = (np.diff(rows.theta) == 0.0) & (np.diff(rows.s) == 0.0)
+    if twice.any():
+        keep = np.append(True, ~twice)
+        rows = rows._replace(theta=rows.theta[keep], s=rows.s[keep], lines=rows.lines[keep])
+    falls = np.flatnonzero(np.diff(rows.theta) <= SAME_ANGLE)
+    if len(falls):
+        i = int(falls[0]) + 1
+        before, here = np.degrees(rows.theta[i - 1 : i + 1])
+        word = f"stands twice, with another {quantity}" if here == before else f"follows {before:.9g}"
+        raise TableError(f"the angles must rise; {here:.9g} {word}", field, int(rows.lines[i]))
+    over = float(rows.theta[-1] - rows.theta[0])
+    if over > total + SAME_ANGLE:
+        i = int(np.argmax(rows.theta - rows.theta[0] > total + SAME_ANGLE))
+        crank = quantity == "displacement" and over <= 2.0 * total + SAME_ANGLE
+        remedy = "; give angle: crank if its angles are the crank's" if crank else ""
+        covered = f"the table covers more than {math.degrees(total):.6g} degrees{remedy}"
+        raise TableError(covered, field, int(rows.lines[i]))
+    return rows
+
+
+def _demand_whole(rows: Samples, total: float, field: str) -> None:
+    """Refuse rows that do not reach from 0 to `total`."""
+    if abs(rows.theta[0]) > SAME_ANGLE or abs(rows.theta[-1] - total) > SAME_ANGLE:
+        first, last = np.degrees(rows.theta[[0, -1]])
+        raise IntentError(
+            f"the angles must reach from 0 to {math.degrees(total):.6g} degrees, these from {first:.6g} to {last:.6g}",
+            field,
+        )
