@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
-    from kin.law.sources.motion import Motion
+    from kin.law.sources.motion import Kept, Motion
     from kin.law.support_function import Lift
 
 ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sources.programme)
@@ -66,6 +66,10 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         swing = self.frame_swing()
         return super().joints() if swing is None else swing.joints
 
+    def kept(self) -> Kept | None:
+        """Distances of the half turn's motion, or of the swing, from the rows of its table."""
+        return self._swing().kept if self.swings else super().kept()
+
     @property
     def by_linkage(self) -> bool:
         """Where the frame's swing is given."""
@@ -79,10 +83,15 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         """The law of the swing, over as much of the shaft as its source tells."""
         if not self.swings:
             return None
-        from kin.law.frame_swing import frame_swing, span_of
+        from kin.law.frame_swing import frame_swing
 
         if self.frame is None:
             raise TypeError("a frame swings in a linkage")
+        return frame_swing(self._swing(), self.frame.ground, self.frame.rocker, self.frame.side)
+
+    def _swing(self) -> Motion:
+        from kin.law.frame_swing import span_of
+
         asked, last = self.motion, self.motion.last
         if isinstance(asked, FormulaAsked):
             last = span_of(asked.text, asked.scale)
@@ -92,7 +101,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
             # fractions of degrees add up to all but rounding
             if abs(wanted - asked.covered) <= ROUNDED:
                 motion = asked.motion(wanted, "swing", None)
-        return frame_swing(motion, self.frame.ground, self.frame.rocker, self.frame.side)
+        return motion
 
     @property
     def advice(self) -> SizeAdvice:

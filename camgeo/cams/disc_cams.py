@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from camgeo.motions.motion import MotionAsked
     from kin.law.contacts import Guide, Side, Touch
     from kin.law.joints import Joint
-    from kin.law.sources.motion import Motion
+    from kin.law.sources.motion import Kept, Motion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +69,10 @@ class DiscCam(GuidedCam):
     def joints(self) -> tuple[Joint, ...]:
         """Those of the turn, or of the part of it that repeats."""
         return self._turn().joints
+
+    def kept(self) -> Kept | None:
+        """Distances of the turn's motion from the rows of its table."""
+        return self._turn().kept
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it
         """One touch, a contact on every flank; where a face's width is given, it must stay on it."""

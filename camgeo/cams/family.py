@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
+    from kin.law.sources.motion import Kept
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -252,6 +253,11 @@ class ExactCam(ABC):
         """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
         return ()
 
+    @property
+    def kept(self) -> Kept | None:
+        """How the motion keeps the rows of the recipe's table, mm or rad; None without a table."""
+        return self.cam.kept()
+
     def circles(self, surface: str) -> tuple[Circle, ...]:  # noqa: ARG002 - most have one disc
         """Circles about the shaft for a drawing of the disc with a surface."""
         return self.cam.circles()
@@ -344,6 +350,10 @@ class Cam(ABC):
     @abstractmethod
     def advice(self) -> Advice:
         """What would help."""
+
+    def kept(self) -> Kept | None:
+        """How the motion keeps the rows of the recipe's table, mm or rad; None without a table."""
+        return None
 
     @property
     def linear(self) -> Linear | None:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
+    from kin.law.sources.motion import Kept
     from kin.law.transmission import Transmission
     from kin.law.wanted import Nearest
 
@@ -225,6 +226,13 @@ class PairCam(Cam):
         psi = wanted.at(spread(wanted.breaks, 2.0 * math.pi), 0)[1][0]
         still = share * float(np.abs(psi).max())
         return Proof(error < still or not still, error, still, "deg", degrees(float(wanted.at(series.at, 0)[0][0, 0])))
+
+    def kept(self) -> Kept | None:
+        """Distances of the swing over 360/lambda degrees from the rows of its table, rad."""
+        if isinstance(self.route, LawRoute | WantedRoute):
+            field = "law" if isinstance(self.route, LawRoute) else "delta.law"
+            return self.route.motion.motion(math.pi / self.lam, field, None).kept
+        return None
 
     def joints(self, law: Transmission) -> tuple[Joint, ...]:
         """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""

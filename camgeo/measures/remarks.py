@@ -64,6 +64,10 @@ RemarkName = Literal[
     "shaft-outside",
     "sharp-corner",
     "sizing",
+    "table-angles",
+    "table-distance",
+    "table-noise",
+    "table-row",
     "thick",
     "thin",
     "wanted-law",
@@ -97,6 +101,7 @@ def remarks_of(
         "pivot-clearance": [_pivot(recipe, design)],
         "lost-contact": [_lost(recipe, design)],
         "motion": _motion(recipe, design),
+        "table": _table(design),
         "wanted-law": [_law_error(recipe, design)],
         "loose-motion-error": [_implied(recipe, design, checks, files)],
         "no-play": [_stuck(recipe, design, files)],
@@ -362,6 +367,12 @@ def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
+
+
+def _table(design: Design) -> list[Remark]:
+    """What its rows say of a table, in its own units."""
+    kept = design.exact.kept
+    return [] if kept is None else [Remark(name, None, None, "", sentence) for name, sentence in kept.remarks]
 
 
 def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:

@@ -14,7 +14,7 @@ from camgeo.schema.fields import Kind
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
-    from kin.law.sources.motion import Motion
+    from kin.law.sources.motion import Kept, Motion
 
 MOTION = motion_field(
     "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it", required=True
@@ -39,6 +39,10 @@ class HalfTurnCam:
     def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn; the other half has them too, turned round."""
         return self.half_turn().joints
+
+    def kept(self) -> Kept | None:
+        """Distances of the half turn's motion from the rows of its table."""
+        return self.half_turn().kept
 
 
 def check_half_turn(cam: Values, reader: Reader, holding: str) -> None:

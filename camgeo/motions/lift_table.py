@@ -111,5 +111,5 @@ def _rows(text: str, angles: Angles, unit: Unit) -> tuple[Rows, float]:
     from kin.law.sources.table_text import read_table
 
     samples, place = read_table(text, angles=angles, unit=unit, field=_FIELD)
-    columns = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))
-    return Rows(*columns, samples.unit, samples.slack, samples.turned), place
+    theta, s, lines = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))
+    return Rows(theta, s, lines, samples.unit, samples.slack, samples.turned), place

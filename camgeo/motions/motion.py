@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
     from kin.law.sources.motion import Motion
+    from kin.law.sources.table import Suspects
+    from kin.law.sources.tabled import Rest
 
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
 _ROUNDING = 1e-9  # of a stroke that is just as great as it may be
@@ -139,6 +141,8 @@ class TableAsked(MotionAsked):
     rows: Rows
     reading: float
     scale: float
+    rest: Rest | None = None
+    suspects: Suspects = "refuse"
     source: ClassVar[str] = ".table"
 
     @property
@@ -161,7 +165,8 @@ def _kept(table: TableAsked, total: float, field: str, around: int | None) -> Mo
         first = f"{table.file}, line {samples.lines[0]}: "
         _demand_zero(float(samples.s[0]), table.reading, table.rows.unit, field, first)
     try:
-        return from_table(samples, table.reading, total, around=around, field=field)
+        rest, suspects = table.rest, table.suspects
+        return from_table(samples, table.reading, total, around=around, rest=rest, suspects=suspects, field=field)
     except TableError as error:
         raise IntentError(f"{table.file}, {error.message}", field, error.at_deg) from error
 
@@ -299,6 +304,20 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
             above=0,
             at_most=most,
         ),
+        Field(
+            "rest",
+            Kind.CHOICE,
+            "what fills the rest of a turn: the table's last displacement, its rows again, or backwards",
+            default="a dwell, where its ends agree",
+            choices=("dwell", "cycle", "mirror"),
+        ),
+        Field(
+            "suspect",
+            Kind.CHOICE,
+            "whether a row that stands out is refused or kept",
+            default="refuse",
+            choices=("refuse", "keep"),
+        ),
         Field("points", Kind.OWN, "points for a spline to go through, with a dwell between equal ones", form=points),
         mapping(
             "lobe",
@@ -340,7 +359,7 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
         raise AssertionError(field.name)
     found = len(reader.errors)
     values = reader.table(field.form.instead, node, path)
-    for key in ("angle", "units", "reading"):
+    for key in ("angle", "units", "reading", "rest", "suspect"):
         if key in values and f"{path}.table" not in reader.marks:
             reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
     if "units" in values and stroke in reader.angular:
@@ -380,8 +399,11 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAske
         problem = f"{values['table']}, line {line}: a displacement above {MOST:.0f}"
         reader.fault_at(path, problem, None, "give a table of smaller ones")
         return None
-    reading = values.get("reading", max(0.5 * place, LEAST_READING * (max(rows.s) - min(rows.s))))
-    return TableAsked(values["table"], rows, reading, reader.scale(stroke))
+    stroke_of_rows = max(rows.s, default=0.0) - min(rows.s, default=0.0)
+    least = LEAST_READING * stroke_of_rows if math.isfinite(stroke_of_rows) else 0.0
+    reading = values.get("reading", max(0.5 * place, least))
+    scale, suspects = reader.scale(stroke), values.get("suspect", "refuse")
+    return TableAsked(values["table"], rows, reading, scale, values.get("rest"), suspects)
 
 
 def _read_points(

@@ -287,6 +287,7 @@ def _findings(
         sections={name: section for result in results for name, section in result.sections.items()},
         remarks=remarks,
         joints=design.exact.joints,
+        table=design.exact.kept,
         displacements=of_displacements(recipe),
         contours={surface.name: measures(contour) for surface, contour in design.contours},
         balances=balances,

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
     from kin.law.joints import Joint
+    from kin.law.sources.motion import Kept
 
 BELOW = "below rounding"
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
@@ -53,6 +54,7 @@ class Findings:
     forces: dict[str, object] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
+    table: Kept | None = None
     displacements: tuple[float, str] = (1.0, "mm")
     contours: Mapping[str, Measures] = field(default_factory=dict)
     balances: tuple[Balance, ...] = ()
@@ -83,6 +85,7 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         "checks": [_check(recipe, check) for check in findings.checks],
         "remarks": [_remark(recipe, remark) for remark in findings.remarks],
         "joints": [entry for joint in findings.joints for entry in _jumps(findings, joint)],
+        **({} if findings.table is None else {"table": _kept(findings, findings.table)}),
         "files": [_file(recipe, file) for file in findings.files]
         + [{"path": name, "stale": True} for name in findings.kept],
         **linkage,
@@ -146,6 +149,11 @@ def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
         {"at_deg": at_deg, "derivative": k, "before": a, "after": b, "unit": unit + per[k]}
         for k, a, b in joint.scaled(scale).jumps
     ]
+
+
+def _kept(findings: Findings, kept: Kept) -> dict[str, Any]:
+    scale, unit = findings.displacements
+    return {"distance": kept.distance * scale, "unit": unit, "line": kept.line}
 
 
 def _file(recipe: Order, file: FileResult) -> dict[str, Any]:

@@ -134,7 +134,7 @@ def test_d19_table():
     exact = Displacement.of(lobe(8.0, 68 * DEGREE, (2, 8, 14, 20, 26)))
     theta = np.arange(360) * DEGREE
     rows = Samples(theta, np.round(exact.derivatives(theta, 0)[0], 3), np.arange(1, 361))
-    smooth = Displacement.of(from_table(rows, 0.001).motion)
+    smooth = Displacement.of(from_table(rows, 0.001))
     follower = on_stem(smooth, 27.0, 0.0, 9.0)
     (rest,) = follower.rests
     assert np.degrees(rest[1] - rest[0]) > 200.0

@@ -18,7 +18,7 @@ from kin.law.sources.ring import SAME_ANGLE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.sources.least_jerk import Bounds, Least
+    from kin.law.sources.least_jerk import Bounds, Floor, Least
     from kin.law.sources.tabled import Tabled
 
 _LEAST_ROWS = 3
@@ -60,7 +60,7 @@ class Stretch(NamedTuple):
 
 
 def runs(rows: Tabled, floor: float | None) -> list[Run]:
-    """Runs of three rows and more that are equal as written, over 10 degrees and more; those at the least level lie on it.
+    """Runs of three rows and more that are equal as written, over 10 degrees and more; the least ones lie on the floor.
 
     A motion that rests at its ends has a run at each of them, however short.
     """
@@ -94,7 +94,7 @@ def runs(rows: Tabled, floor: float | None) -> list[Run]:
 
 
 def stretches(
-    rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, floor: float | None, depth: float
+    rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, floor: Floor | None
 ) -> tuple[list[Run], list[Stretch]]:
     """Those runs that are dwells, with their ends moved in, and the motions between them.
 
@@ -105,7 +105,7 @@ def stretches(
         following = [*kept[1:], kept[0].later(rows.period)] if rows.period else kept[1:]
         found: list[Stretch] = []
         for i, after in enumerate(following):
-            stretch, spoilt = _stretch(rows, kept[i], after, plain, bounds, floor, depth)
+            stretch, spoilt = _stretch(rows, (kept[i], after), plain, bounds, floor)
             if stretch is None:
                 kept.pop((i + spoilt) % len(kept))
                 break
@@ -129,20 +129,21 @@ def _moved(kept: Sequence[Run], found: Sequence[Stretch], period: float) -> list
 
 
 def _stretch(
-    rows: Tabled, before: Run, after: Run, plain: Least, bounds: Bounds, floor: float | None, depth: float
+    rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, floor: Floor | None
 ) -> tuple[Stretch | None, int]:
-    """The motion between two runs; or None, with 0 where the first one is no dwell and 1 where the second one is none."""
+    """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is."""
+    before, after = pair
     middle = 0.5 * (before.end + after.begin)
     allowed = plain.curve.peak(before.end - before.limit, middle), plain.curve.peak(middle, after.begin + after.limit)
     limits = before.limit, after.limit
-    moved = [_quiet(plain, run, way, small) for run, way, small in zip((before, after), (-1, 1), allowed, strict=True)]
-    steps = [max(0.5 * run.step, _STEP * (run.end - run.begin)) for run in (before, after)]
+    moved = [_quiet(plain, run, way, small) for run, way, small in zip(pair, (-1, 1), allowed, strict=True)]
+    steps = [max(0.5 * run.step, _STEP * (run.end - run.begin)) for run in pair]
     touch = plain.touch
     while True:
         begin, end = before.end - moved[0], after.begin + moved[1]
         space = Space(begin, end, (before.level, after.level))
         try:
-            found = least(space, rows.between(bounds, space), touch, floor, depth)
+            found = least(space, rows.between(bounds, space), touch, floor)
         except UnsolvedError:
             found = None
         if found is not None:
@@ -153,8 +154,7 @@ def _stretch(
             wild = [
                 side
                 for side in (0, 1)
-                if limits[side] > 0.0
-                and (peaks[side] > _PEAK * allowed[side] or rough[side] > _SQUARE * calm[side])
+                if limits[side] > 0.0 and (peaks[side] > _PEAK * allowed[side] or rough[side] > _SQUARE * calm[side])
             ]
             if not wild:
                 return Stretch(begin, end, found), 0

@@ -4,9 +4,9 @@ Of all functions with lo_i <= S(x_i) <= hi_i that of the least integral of S'''^
 are the bounds it touches (O. L. Mangasarian and L. L. Schumaker, SIAM J. Control 7, 1969). The multiplier of a bound is
 the jump of -S^(5) there, above 0 at a lower bound and below 0 at an upper one.
 
-S''' is a spline of degree two over the same knots, and its coefficients mu solve G mu = E s, where G has the products of
+S''' is a spline of degree two over the same knots. Its coefficients mu solve G mu = E s, where G has the products of
 the quadratic B-splines and E takes third divided differences of the values s (C. de Boor, A Practical Guide to Splines,
-chapter 14). The multipliers are E^T mu. Differences of neighbours alone enter, so that knots may be as close as they like.
+chapter 14). The multipliers are E^T mu. Differences of neighbours alone enter, so that close knots do little harm.
 
 Which bounds are touched is found on the dual side: bounds that are missed are added, all at once where that raises the
 integral, else by the steps of C. L. Lawson and R. J. Hanson (Solving Least Squares Problems, chapter 23), which stop
@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices
@@ -61,12 +63,11 @@ class Bounds(NamedTuple):
 
     def at(self, which: Indices) -> Bounds:
         """Some of the bounds."""
-        return Bounds(*(column[which] for column in self))
+        return Bounds(self.x[which], self.lo[which], self.hi[which], self.unit[which], self.row[which])
 
     def with_more(self, more: Bounds) -> Bounds:
         """These and others, by their angles."""
-        order = np.argsort(np.concatenate([self.x, more.x]), kind="stable")
-        return Bounds(*(np.concatenate(pair)[order] for pair in zip(self, more, strict=True)))
+        return joined_bounds([self, more]).at(np.argsort(np.concatenate([self.x, more.x]), kind="stable"))
 
     def touching(self, start: Touch | None) -> Touch | None:
         """Places of those bounds that are of the rows of a touch."""
@@ -78,6 +79,19 @@ class Bounds(NamedTuple):
         at = place[start.which]
         order = np.argsort(at)[int((at < 0).sum()) :]
         return Touch(at[order], start.upper[order])
+
+
+def joined_bounds(parts: Sequence[Bounds]) -> Bounds:
+    """Bounds one after another."""
+    x, lo, hi, unit = (np.concatenate([part[k] for part in parts]) for k in range(4))
+    return Bounds(x, lo, hi, unit, np.concatenate([part.row for part in parts]))
+
+
+class Floor(NamedTuple):
+    """A level that a function is nowhere below by more than `depth`."""
+
+    level: float
+    depth: float
 
 
 class Touch(NamedTuple):
@@ -199,7 +213,7 @@ def _third(space: Space, x: Array, s: Array) -> _Third:
         period = space.end - space.begin
         t = x[place]
         t[k:] += period * (1 + (np.arange(4) // k))
-        f, pieces = s[place], np.arange(k)
+        f = s[place]
         starts, widths, values = t[:k], t[1 : k + 1] - t[:k], f[: k + 1]
         before, after = np.roll(widths, 1), np.roll(widths, -1)
         taken, size = (np.arange(k) - _BACK[:, None]) % k, k
@@ -223,7 +237,7 @@ def _third(space: Space, x: Array, s: Array) -> _Third:
     products = widths * np.array([aa, ab, ac, ab, 1.0 - 2.0 * (a + c) / 3.0 + aa + cc + 2.0 * ac, cb, ac, cb, cc])
     flat = taken[_ROW] * size + taken[_COLUMN]
     gram = np.bincount(flat.ravel(), products.ravel(), size * size).reshape(size, size)
-    mu = np.linalg.solve(gram, rhs)
+    mu = np.linalg.solve(gram, rhs).astype(np.float64, copy=False)
     low, middle, high = mu[taken]
     return _Third(
         starts, widths, values, near, far, mu, rhs, (middle + a * (low - middle), middle, middle + c * (high - middle))
@@ -247,7 +261,7 @@ def pulls(space: Space, x: Array, s: Array) -> tuple[Array, float]:
     square = float(d.mu @ d.rhs)
     if space.rest is not None:
         return pull[3:-3], square
-    return np.bincount(np.arange(k + 3) % k, pull, k), square
+    return np.bincount(np.arange(k + 3) % k, pull, k).astype(np.float64, copy=False), square
 
 
 def curve_through(space: Space, x: Array, s: Array) -> Curve:
@@ -294,33 +308,29 @@ class Least(NamedTuple):
         return Touch(self.row[real], self.upper[real])
 
 
-def least(
-    space: Space, bounds: Bounds, start: Touch | None = None, floor: float | None = None, depth: float = 0.0
-) -> Least | None:
-    """The function of least mean square jerk within bounds, looked for from the rows that `start` touches.
+def least(space: Space, bounds: Bounds, start: Touch | None = None, floor: Floor | None = None) -> Least | None:
+    """The function of least mean square jerk within bounds and above a floor, looked for from the rows of `start`.
 
-    Nowhere is it below `floor` by more than `depth`, where a floor is given. None where a constant keeps all the bounds
-    of a function with a period. Raises UnsolvedError where rounding stands in the way.
+    None where a constant keeps all the bounds of a function with a period. Raises UnsolvedError where rounding stands
+    in the way.
     """
     begun = bounds.touching(start)
     for turn in range(_DIPS):
         found = _of_many(space, bounds, begun)
         if found is None or floor is None:
             return found
-        x, deep = found.curve.dips(floor)
-        x = x[deep > depth]
+        x, deep = found.curve.dips(floor.level)
+        x = x[deep > floor.depth]
         if not len(x):
             return found
         share = 1.0 if turn < _MOVES else _CLOSE
-        bounds = _held_up(space, bounds, found, x, floor, _HELD * depth / _MISSED, share)
+        bounds = _held_up(space, bounds, found, x, floor=floor, share=share)
         kept = np.isin(found.x, bounds.x)
         begun = Touch(np.searchsorted(bounds.x, found.x[kept]), found.upper[kept])
     raise UnsolvedError
 
 
-def _held_up(
-    space: Space, bounds: Bounds, found: Least, dips: Array, floor: float, unit: float, share: float
-) -> Bounds:
+def _held_up(space: Space, bounds: Bounds, found: Least, dips: Array, *, floor: Floor, share: float) -> Bounds:
     """Bounds with one at the floor at each dip; where one holds the function up beside it, that moves towards the dip.
 
     Beside it is nearer than `share` of the way to the next touch. With 1 none is left that holds the function nowhere:
@@ -340,8 +350,8 @@ def _held_up(
         hi[beside], moved[old] = bounds.hi[old], True
     idle = (bounds.row < 0) & np.isinf(bounds.hi) & ~np.isin(bounds.x, found.x) & (share == 1.0)
     rest = bounds.at(np.flatnonzero(~moved & ~idle))
-    same = np.full(len(x), floor)
-    return rest.with_more(Bounds(x, same, hi, np.full(len(x), unit), np.full(len(x), -1)))
+    unit = np.full(len(x), _HELD * floor.depth / _MISSED)
+    return rest.with_more(Bounds(x, np.full(len(x), floor.level), hi, unit, np.full(len(x), -1)))
 
 
 def _of_many(space: Space, bounds: Bounds, start: Touch | None) -> Least | None:

@@ -45,7 +45,7 @@ class TableRemark(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """Greatest distance of a motion from the rows of its table, mm or rad, that row's line, and remarks on the table."""
+    """Greatest distance of a motion from a row of its table, mm or rad, the row's line, and remarks on the table."""
 
     distance: float
     line: int

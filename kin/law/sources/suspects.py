@@ -24,6 +24,7 @@ _CALMER = 10.0  # times less the mean square about a certain row is without it
 _SHARP = 0.5  # of the mean square that is left: where so much of it lies about a row, the law itself is sharp there
 _LIKELY = 0.08  # of it that falls at least where the other rows stay touched, of rows that are tried
 _MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3  # rows of the greatest multipliers, of those with a neighbour, and solved
+_TOGETHER = 2  # rows from one of a pair to the other at most
 _LADDER = 4.0  # from one reading to the next
 _TENFOLD = 10.0
 _COARSEST = 0.02  # of the stroke
@@ -51,32 +52,35 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
         touch = None if found is None else found.touch
         squares.append(0.0 if found is None else found.square)
     squares.reverse()
-    steps = (k for k in range(1, len(squares)) if 0.0 < _TENFOLD * squares[k] <= squares[k - 1])
-    return found, next((_LADDER**k for k in steps), None)
+    steps = [k for k in range(1, len(squares)) if 0.0 < _TENFOLD * squares[k] <= squares[k - 1]]
+    return found, _LADDER ** steps[-1] if steps else None
 
 
-def suspect(rows: Tabled, plain: Least) -> Suspect | None:
-    """The one row, or two side by side, without which the mean square falls most, if it falls by half or is certain."""
+def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
+    """The one row, or two side by side, without which the mean square falls most, if it falls by half or is certain.
+
+    Of `noisy` rows, of which greater readings would take the scatter, one must tell as much as in a short stroke.
+    """
     best = None
     for places in _likely(rows, plain):
-        if best is not None and best.certain and len(places) > len(best.rows):
+        if best is not None and best.certain and len({*rows.lines[list(places)].tolist()}) > len(best.rows):
             break
         without = _without(rows, plain, places)
         if without is None or not without.square:
             continue
         falls = plain.square / without.square
-        certain = _certain(rows, plain, without, places, falls)
+        certain = falls >= (_SURE if noisy else _SURE_OF_MANY) and _certain(rows, plain, without, places)
         better = best is None or (certain, falls) > (best.certain, best.falls)
         if (certain or falls >= _FALLS) and better:
-            named = [place for place in places if rows.lines[place]]
+            named = list({int(rows.lines[place]): place for place in reversed(places) if rows.lines[place]}.values())
             best = Suspect(tuple(named), falls, tuple(without.curve(rows.x[named]).tolist()), certain)
     return best
 
 
-def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int], falls: float) -> bool:
+def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) -> bool:
     """Whether rows are no part of a law that is sharp there: a stroke of many rows tells more than one of few."""
     span = min(spanned(rows, place) for place in places)
-    if span < _LEAST_ROWS or falls < (_SURE_OF_MANY if span >= _MANY else _SURE):
+    if span < _LEAST_ROWS or (span < _MANY and plain.square < _SURE * without.square):
         return False
     before, after = (max(_about(rows, found, place) for place in places) for found in (plain, without))
     return before >= _CALMER * after and after <= _SHARP * without.square
@@ -125,12 +129,19 @@ def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
         return [i] if not line else np.flatnonzero(rows.lines[plain.row] == line).tolist()
 
     singles = {tuple(twins(i)) for i in order}
-    beside = {tuple(sorted({*twins(i), *twins((i + way) % k)})) for i in order[:_PAIRED] for way in (-1, 1)}
+    pairs = [(i, (i + way) % k) for i in order[:_PAIRED] for way in (-1, 1)]
+    beside = {tuple(sorted({*twins(i), *twins(j)})) for i, j in pairs if _together(rows, plain, i, j)}
     likely = []
     for groups in (singles, beside - singles):
         weighed = sorted(((falls(group), group) for group in groups), reverse=True)[:_MOST_SOLVED]
         likely += [tuple(plain.row[list(group)].tolist()) for share, group in weighed if share >= _LIKELY]
     return likely
+
+
+def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
+    """Whether two rows that are touched have at most one other between them."""
+    n, apart = len(rows.x), abs(int(plain.row[i]) - int(plain.row[j]))
+    return 0 < min(apart, n - apart if rows.period else n) <= _TOGETHER
 
 
 def spanned(rows: Tabled, place: int) -> int:

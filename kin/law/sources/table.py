@@ -10,12 +10,12 @@ import numpy as np
 from kin.law.programme import IntentError
 from kin.law.segment import Constant
 from kin.law.sources.dwells import runs, stretches
-from kin.law.sources.least_jerk import Bounds, UnsolvedError, least
+from kin.law.sources.least_jerk import Bounds, Floor, UnsolvedError, least
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
 from kin.law.sources.ring import SAME_ANGLE, Samples, settled
 from kin.law.sources.spline import Ends, through
 from kin.law.sources.suspects import ladder, suspect
-from kin.law.sources.tabled import FLOOR, TableError, advised, demand_rows, tabled
+from kin.law.sources.tabled import FLOOR, TableError, demand_rows, tabled
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ _PINS = 3  # times that a motion above its least level is brought down to it, wh
 _TOUCHES = 1e-9  # of the stroke: by so much it may stay above
 _ABOUT = 0.01  # of a reading: by so much the motion without dwells, which is but compared with, may be too low
 _QUARTER = 0.25  # of the angle: rows that cover less were hardly meant to
+_NEARLY = 1e-3  # of a last angle
 _MEANT = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles, and of what they are
 
 
@@ -63,9 +64,9 @@ def from_table(
     """
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
-    layout = tabled(rows, reading, total, around, rest, field)
+    layout = tabled(rows, reading, total, around, rest=rest, field=field)
     try:
-        return _motion(layout, rows, reading, total, around, suspects, field)
+        return _motion(layout, rows, reading, (total, around), suspects=suspects, field=field)
     except UnsolvedError:
         stroke = layout.tell(layout.stroke)
         problem = f"no motion was found within {layout.tell(reading)} of rows over {stroke}: rounding stands in the way"
@@ -73,8 +74,9 @@ def from_table(
 
 
 def _motion(
-    layout: Tabled, rows: Samples, reading: float, total: float, around: int | None, suspects: Suspects, field: str
+    layout: Tabled, rows: Samples, reading: float, over: tuple[float, int | None], *, suspects: Suspects, field: str
 ) -> Motion:
+    total, around = over
     plain, raised = ladder(layout)
     if plain is None or not layout.stroke:
         _demand_stroke(layout, reading, field)
@@ -82,16 +84,18 @@ def _motion(
         level = 0.0 if around != 1 or abs(level) <= reading else level
         return replace(joined([0.0, total], [Constant(level)], around), kept=Kept(0.0, 0, ()))
     remarks = []
-    standing = suspect(layout, plain)
+    standing = suspect(layout, plain, noisy=raised is not None)
     if standing is not None:
         told = _standing(layout, standing)
         if standing.certain and suspects == "refuse":
             line = int(layout.lines[standing.rows[0]])
             raise TableError(f"{told}; mend it, or give suspect: keep", field, line)
         remarks.append(TableRemark("table-row", f"line {layout.lines[standing.rows[0]]}: {told}"))
-    elif raised is not None and standing is None:
+    if raised is not None and (standing is None or not standing.certain):
         calm = layout.advised(raised * reading)
-        text = f"with reading: {calm} the mean square of the jerk is a tenth: the rows scatter by more than their digits"
+        text = (
+            f"with reading: {calm} the mean square of the jerk is a tenth: the rows scatter by more than their digits"
+        )
         remarks.append(TableRemark("table-noise", text))
     remarks += _angles(rows, total)
     motion = _laid(layout, plain, total, around)
@@ -107,21 +111,23 @@ def _motion(
 
 def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Motion:
     """The motion with its dwells over [0, total], 0 where the rows have it."""
-    depth = FLOOR * layout.stroke
-    floor = _floor(layout, plain) if around == 1 else None
-    about = max(depth, _ABOUT * float(layout.reading.min()))
-    bounds = layout.bounds(1.0, floor)
+    level = _floor(layout, plain) if around == 1 else None
+    floor = None if level is None else Floor(level, FLOOR * layout.stroke)
+    bounds = layout.bounds(1.0, level)
     for _ in range(_PINS):
-        near = plain if floor is None else _solved(layout.space, bounds, plain, floor, about)
-        dwells, moving = stretches(layout, runs(layout, floor), near, bounds, floor, depth)
-        whole = near if dwells else _solved(layout.space, bounds, near, floor, depth)
-        if floor is None or any(run.level == floor for run in dwells):
+        near = plain
+        if floor is not None:
+            about = Floor(floor.level, max(floor.depth, _ABOUT * float(layout.reading.min())))
+            near = _solved(layout.space, bounds, plain, about)
+        dwells, moving = stretches(layout, runs(layout, level), near, bounds, floor)
+        whole = near if dwells else _solved(layout.space, bounds, near, floor)
+        if floor is None or any(run.level == level for run in dwells):
             break
         lows = [part.least.curve.lowest() for part in moving] or [whole.curve.lowest()]
         at, value = min(lows, key=lambda low: low[1])
-        if value - floor <= _TOUCHES * layout.stroke:
+        if value - floor.level <= _TOUCHES * layout.stroke:
             break
-        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), floor)
+        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), floor.level)
     if around is None:
         return joined(*_open(dwells, moving), None).raised(-dwells[0].level)
     turn = layout.period
@@ -130,11 +136,9 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
     return motion if around == 1 else Motion(motion.raised(-float(motion.at_start(0)[0])).motion, -1)
 
 
-def _solved(
-    space: Space, bounds: Bounds, near: Least, floor: float | None = None, depth: float = 0.0
-) -> Least:
+def _solved(space: Space, bounds: Bounds, near: Least, floor: Floor | None) -> Least:
     """The motion within bounds that is no constant."""
-    found = least(space, bounds, near.touch, floor, depth)
+    found = least(space, bounds, near.touch, floor)
     if found is None:
         raise UnsolvedError
     return found
@@ -222,16 +226,20 @@ def _standing(layout: Tabled, standing: Suspect) -> str:
 
 def _angles(rows: Samples, total: float) -> list[TableRemark]:
     """Where the angles are hardly degrees, or a part of the turn."""
+    over = abs(float(rows.theta[-1] - rows.theta[0]))
+    if over >= (1.0 - _NEARLY) * total:
+        return []
     last = float(np.degrees(np.abs(rows.theta).max())) * rows.turned
-    meant = next((word for end, word in _MEANT.items() if abs(last - end) <= 1e-3 * end), None)
-    over = float(rows.theta[-1] - rows.theta[0])
-    covered = f"the angles cover {math.degrees(abs(over)):.6g} degrees"
+    covered = f"the angles cover {math.degrees(over):.6g} degrees"
+    meant = next((word for end, word in _MEANT.items() if abs(last - end) <= _NEARLY * end), None)
     if meant is not None:
-        return [TableRemark("table-angles", f"{covered} and end at {last:.6g}; give angle: {meant} if they are {meant}")]
-    if abs(over) < _QUARTER * total:
-        rest = f"the rest of {math.degrees(total):.6g} is a dwell"
-        return [TableRemark("table-angles", f"{covered}, {rest}; see that they are degrees of the cam")]
-    return []
+        return [
+            TableRemark("table-angles", f"{covered} and end at {last:.6g}; give angle: {meant} if they are {meant}")
+        ]
+    if over >= _QUARTER * total:
+        return []
+    rest = f"the rest of {math.degrees(total):.6g} is a dwell"
+    return [TableRemark("table-angles", f"{covered}, {rest}; see that they are degrees of the cam")]
 
 
 def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:

@@ -58,8 +58,8 @@ def read_table(
     slack = _rounded(theta, 0.5 * 10.0**-digits) * degree
     theta *= degree
     scale = {"mm": 1.0, "inch": MM_PER_INCH, "thou": MM_PER_INCH / 1000, "degrees": math.pi / 180, "N": 1.0}[unit]
-    lines = np.array([i for i, _ in kept], dtype=np.intp)
-    return Samples(theta, s * scale, lines, scale, slack, turned), scale * 10.0**-places
+    numbers = np.array([i for i, _ in kept], dtype=np.intp)
+    return Samples(theta, s * scale, numbers, scale, slack, turned), scale * 10.0**-places
 
 
 def _rounded(angles: Array, half: float) -> float:

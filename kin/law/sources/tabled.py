@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.sources.least_jerk import Bounds, Space
+from kin.law.sources.least_jerk import Bounds, Space, joined_bounds
 from kin.law.sources.ring import SAME_ANGLE, Samples
 from kin.numeric.records import dataclass
 
@@ -23,6 +23,7 @@ _ADVISED = {0.0254: (25.4, " in")}  # units that recipes have not, and what they
 _KEPT = 1.0 - 1e-3  # of a reading: what a motion keeps within it, so that its zero may move by rounding
 _LEAST_ROWS = 4
 _GAP = 1.5  # of the widest step: what is more is no row's
+_LEAST_READING = 1e-6  # of a row's, of one that two rows bound
 _MOST_FILLED = 400  # rows with which the rest of a turn is filled
 FLOOR = 1e-10  # of the stroke: by so much a motion may be below its least level
 
@@ -85,8 +86,8 @@ class Tabled:
         for turn in (-1, 0, 1) if self.period else (0,):
             x = bounds.x + turn * self.period
             inside = (x > space.begin + SAME_ANGLE) & (x < space.end - SAME_ANGLE)
-            parts.append(Bounds(x, *bounds[1:]).at(np.flatnonzero(inside)))
-        return Bounds(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+            parts.append(bounds._replace(x=x).at(np.flatnonzero(inside)))
+        return joined_bounds(parts)
 
     def off(self, curve: Curve) -> Array:
         """Distances of the rows from a curve, (n,)."""
@@ -100,9 +101,7 @@ def advised(reading: float, unit: float) -> str:
     return f"{math.ceil(reading / unit / digit - 1e-9) * digit:.6g}{word}"
 
 
-def tabled(
-    rows: Samples, reading: float, total: float, around: int | None, rest: Rest | None, field: str
-) -> Tabled:
+def tabled(rows: Samples, reading: float, total: float, around: int | None, *, rest: Rest | None, field: str) -> Tabled:
     """Lay rows out over [0, total], or the turn; TableError, with the line, for rows that can be no motion.
 
     With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. What rows
@@ -137,7 +136,8 @@ def tabled(
 def _slopes(rows: Samples) -> Array:
     """Greatest slope beside each row."""
     slope = np.abs(np.diff(rows.s) / np.diff(rows.theta))
-    return np.maximum(np.append(slope, slope[-1]), np.append(slope[0], slope))
+    greatest: Array = np.maximum(np.append(slope, slope[-1]), np.append(slope[0], slope))
+    return greatest
 
 
 def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: str) -> Tabled:
@@ -152,8 +152,12 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
             problem = f"the motion does not close: {_told(apart, rows)} off the first row, a turn later"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
-        keep = slice(None, -1)
-        return Tabled(rows.theta[keep], rows.s[keep], within[keep], rows.lines[keep], space, rows.unit)
+        s, readings = rows.s[:-1].copy(), within[:-1].copy()
+        if apart:  # one angle, that both rows bound
+            low, high = (rows.s + sign * within for sign in (-1.0, 1.0))
+            least, most = max(low[0], low[-1]), min(high[0], high[-1])
+            s[0], readings[0] = 0.5 * (least + most), max(0.5 * (most - least), _LEAST_READING * within[0])
+        return Tabled(rows.theta[:-1], s, readings, rows.lines[:-1], space, rows.unit)
     widest = float(np.diff(rows.theta).max())
     if rest is None and total - over <= _GAP * widest:
         return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
@@ -191,7 +195,9 @@ def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, A
         return 2.0 * last - rows.theta[of], rows.s[of], of
     step = float(np.median(np.diff(rows.theta)))
     times, closed = total / over, False
-    if abs(times - round(times)) < 1e-6 and abs(float(rows.s[-1] - rows.s[0])) <= 1e-9 * max(1.0, float(np.ptp(rows.s))):
+    if abs(times - round(times)) < 1e-6 and abs(float(rows.s[-1] - rows.s[0])) <= 1e-9 * max(
+        1.0, float(np.ptp(rows.s))
+    ):
         closed = True
     else:
         times = total / (over + step)

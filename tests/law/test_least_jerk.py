@@ -1,0 +1,152 @@
+"""The function of least mean square jerk within bounds, against its kernel, its conditions, and other functions."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import lsq_linear
+from support.cases import examples
+
+from kin.law.sources.least_jerk import Bounds, Floor, Space, curve_through, least, missed_by, pulls
+
+TURN = 2 * math.pi
+
+
+def bounds(x, s, reading):
+    x, s = np.asarray(x, dtype=float), np.asarray(s, dtype=float)
+    reading = np.broadcast_to(reading, x.shape).astype(float)
+    return Bounds(x, s - reading, s + reading, reading, np.arange(len(x)))
+
+
+def round_kernel(x, t):
+    """Reproducing kernel of the integral of S'''^2 over a turn, by its Fourier series (Wahba 1990, chapter 2)."""
+    k = np.arange(1, 400)
+    return (np.cos(np.subtract.outer(x, t)[..., None] * k) / (math.pi * k**6)).sum(axis=-1)
+
+
+def by_kernel(x, lo, hi):
+    """The least integral of S'''^2 of functions with values from lo to hi, as a least-squares problem in the values."""
+    inverse = np.linalg.inv(round_kernel(x, x))
+    one = inverse.sum(axis=1)
+    energy = inverse - np.outer(one, one) / one.sum()  # less the constant that costs nothing
+    values, vectors = np.linalg.eigh(energy)
+    root = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+    return 2.0 * lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
+
+
+@pytest.mark.parametrize("reading", [0.02, 0.2, 0.6])
+def test_the_integral_is_that_of_the_kernel(reading):
+    x = np.arange(12) * TURN / 12 + 0.03 * np.sin(7.0 * np.arange(12))
+    s = 3 - 3 * np.cos(x) + 0.4 * np.sin(5 * x)
+    found = least(Space(0.0, TURN), bounds(x, s, reading))
+    assert found.square == pytest.approx(by_kernel(x, s - reading, s + reading), rel=1e-6)
+
+
+def conditions(found, space, limits):
+    """Bounds are kept, multipliers have their signs, and vanish where no bound is touched."""
+    miss, _ = missed_by(found.curve, limits)
+    assert miss.max() <= 1e-5
+    assert (found.pull * np.where(found.upper, -1.0, 1.0) > 0).all()
+    assert found.curve(found.x) == pytest.approx(found.values, abs=1e-9 * np.abs(found.values).max())
+    again, square = pulls(space, found.x, found.values)
+    assert again == pytest.approx(found.pull)
+    assert found.curve.square(space.begin, space.end) == pytest.approx(square, rel=1e-6)
+    if space.rest is None:
+        assert abs(found.pull.sum()) <= 1e-6 * np.abs(found.pull).sum()
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    count=st.integers(5, 60),
+    places=st.integers(0, 5),
+    stroke=st.floats(0.5, 40),
+    rest=st.booleans(),
+)
+def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
+    rng = np.random.default_rng(seed)
+    x = np.sort(rng.uniform(0.05, TURN - 0.05, count))
+    x = x[np.append(True, np.diff(x) > 1e-3)]
+    s = np.round(stroke * (0.5 - 0.5 * np.cos(x) + 0.1 * np.sin(4 * x + seed)), places)
+    space = Space(0.0, TURN, (0.0, 0.0) if rest else None)
+    limits = bounds(x, s, 0.5 * 10.0**-places)
+    found = least(space, limits)
+    if found is None:
+        assert limits.lo.max() <= limits.hi.min()
+    else:
+        conditions(found, space, limits)
+
+
+def test_no_other_function_within_the_bounds_has_less():
+    """Splines through other values within the bounds, and with other knots."""
+    rng = np.random.default_rng(3)
+    x = np.arange(40) * TURN / 40
+    s = np.round(4 - 4 * np.cos(x) + 0.5 * np.cos(3 * x), 1)
+    space, limits = Space(0.0, TURN), bounds(x, s, 0.05)
+    found = least(space, limits)
+    for _ in range(50):
+        other = curve_through(space, x, s + rng.uniform(-0.05, 0.05, 40))
+        assert other.square(0.0, TURN) > found.square
+        mixed = curve_through(space, x, 0.99 * found.curve(x) + 0.01 * (s + rng.uniform(-0.05, 0.05, 40)))
+        assert mixed.square(0.0, TURN) > found.square
+
+
+def test_where_the_search_begins_makes_no_difference():
+    x = np.arange(180) * TURN / 180
+    s = np.round(5 - 5 * np.cos(x) + 0.7 * np.sin(4 * x), 3)
+    space, limits = Space(0.0, TURN), bounds(x, s, 0.0005)
+    plain = least(space, limits)
+    wide = least(space, bounds(x, s, 0.05))
+    again = least(space, limits, wide.touch)
+    assert again.square == pytest.approx(plain.square, rel=1e-9)
+    theta = np.linspace(0, TURN, 500)
+    assert again.curve(theta, 2) == pytest.approx(plain.curve(theta, 2), abs=1e-5)
+
+
+def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
+    x = np.arange(900) * TURN / 900
+    s = np.round(5 - 5 * np.cos(x) + 0.7 * np.abs(np.sin(x)) ** 3, 3)
+    space, limits = Space(0.0, TURN), bounds(x, s, 0.0005)
+    plain = least(space, limits)
+    monkeypatch.setattr("kin.law.sources.least_jerk._FEW", 100)
+    few = least(space, limits)
+    assert few.square == pytest.approx(plain.square, rel=1e-9)
+    assert missed_by(few.curve, limits)[0].max() <= 1e-5
+
+
+def test_a_function_above_a_floor_touches_it_and_costs_more():
+    x = np.arange(24) * TURN / 24
+    s = np.where(np.abs(x - math.pi) < 1.0, 5.0, 0.0)
+    space, limits = Space(0.0, TURN), bounds(x, s, 0.001)
+    free, held = least(space, limits), least(space, limits, floor=Floor(0.0, 1e-9))
+    assert free.curve.lowest()[1] < -0.3
+    assert held.curve.lowest()[1] >= -1e-9
+    assert held.square > free.square
+    assert (held.row < 0).any()
+
+
+def test_a_constant_has_no_least():
+    x = np.arange(6.0)
+    assert least(Space(0.0, TURN), bounds(x, [1.0, 1.2, 0.9, 1.1, 1.0, 1.0], 0.2)) is None
+
+
+def test_between_two_rests_it_is_the_polynomial_345_without_bounds():
+    found = least(Space(1.0, 3.0, (2.0, 6.0)), bounds([2.0], [4.0], 1.0))
+    u = np.linspace(0.0, 1.0, 11)
+    assert found.curve(1.0 + 2.0 * u) == pytest.approx(2.0 + 4.0 * u**3 * (10.0 - 15.0 * u + 6.0 * u * u))
+    assert found.square == pytest.approx(16.0 * 720.0 / 2.0**5)
+    assert found.curve.peak(1.0, 3.0) == pytest.approx(4.0 * 5.7735 / 4.0, rel=1e-4)
+
+
+def test_jumps_of_the_fifth_derivative_are_the_multipliers():
+    x = np.array([0.2, 1.1, 2.0, 3.3, 4.9])
+    s = np.array([0.0, 2.0, 3.0, 1.0, 0.5])
+    curve = curve_through(Space(0.0, TURN), x, s)
+    fifth = 120.0 * curve.coefficients[5] / curve.widths**5
+    jumps = fifth - np.roll(fifth, 1)
+    assert pulls(Space(0.0, TURN), x, s)[0] == pytest.approx(-jumps)
+    for order in range(5):
+        ends = [curve(np.array([place - 1e-9, place + 1e-9]), order) for place in x]
+        assert all(abs(b - a) < 1e-5 * max(1.0, abs(a)) for a, b in ends)
