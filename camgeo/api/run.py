@@ -98,7 +98,7 @@ def verify(
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
     again = [path for path in dict.fromkeys(found) if found.count(path) > 1]
     faults += [f"{escaped(str(path))}: it is given {found.count(path)} times; give each file once" for path in again]
-    known = suffixes()
+    known = [suffix for suffix, name in suffixes().items() if name in FORMATS]
     faults += [
         f"{escaped(str(path))}: none of {', '.join(known)}" for path in found if path.suffix.lower() not in known
     ]

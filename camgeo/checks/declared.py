@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
 
-LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
 STANDS = "the mechanism does not make a full turn: it has no motion over the shaft angle"
 LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
@@ -168,16 +167,6 @@ def _solid(scene: Scene, file: FileRequest) -> bool:
     return _contour(scene, file) and file.format.solid
 
 
-def _program(_: Scene, file: FileRequest) -> bool:
-    return file.format.program
-
-
-def _pocketed(scene: Scene, file: FileRequest) -> bool:
-    """Of a program that mills between two surfaces that one touch runs on."""
-    follower = scene.follower
-    return file.format.program and follower.arrangement.contacts < len(follower.contacts)
-
-
 def _reached(scene: Scene, file: FileRequest) -> bool:
     asked = scene.recipe.manufacture
     drawn = file.format.path and file.compensation is None and asked is not None and asked.layer
@@ -189,27 +178,11 @@ def _ringed(scene: Scene, file: FileRequest) -> bool:
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:
-    part, asked = scene.recipe.part, scene.recipe.manufacture
-    if part.bore is None or not file.format.contour:
-        return False
-    if not file.format.program:
-        return True
-    if asked is None or not asked.holes or part.sides or part.keyway or part.flat or part.hub:
-        return False
-    return part.bore >= asked.cutter + 2.0 * LEAST_ROOM
+    return scene.recipe.part.bore is not None and _contour(scene, file) and file.format.bored(scene.recipe)
 
 
 def _drilled(scene: Scene, file: FileRequest) -> bool:
-    """Of a program: where lightening holes find their place is not known beforehand."""
-    part, asked = scene.recipe.part, scene.recipe.manufacture
-    if not file.format.contour:
-        return False
-    holes = [one for one in (part.bolts, part.dowel) if one is not None]
-    if not file.format.program:
-        return bool(holes) or part.lightening is not None
-    hub = 0.0 if part.hub is None else part.hub.diameter
-    least = None if asked is None or not asked.holes else asked.cutter + 2.0 * LEAST_ROOM
-    return least is not None and any(one.circle >= hub and one.hole >= least for one in holes)
+    return _contour(scene, file) and file.format.drilled(scene.recipe)
 
 
 def _with(name: str) -> OfFile:
@@ -376,14 +349,6 @@ REACH = Declared("cutter-reach", ("mm",), of_file=_reached)
 UNITS = Declared("units", ("",), of_file=_drawing, field="units")
 CLOSED = Declared("closed", ("", "faults"), of_file=_drawing)
 WATERTIGHT = Declared("watertight", ("", "faults"), of_file=_solid)
-CUTTER = Declared("cutter", ("mm",), of_file=_program)
-ARCS = Declared("arcs", ("mm",), of_file=_program)
-RAPID = Declared("rapid", ("", "faults"), of_file=_program)
-DEPTH = Declared("depth", ("mm",), of_file=_program)
-FLOOR = Declared("floor", ("mm",), of_file=_pocketed)
-DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
-ENTRY = Declared("entry", ("deg",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
-GOUGE = Declared("gouge", ("mm",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
 BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")

@@ -79,13 +79,6 @@ def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
 
 
-def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
-    if check["value"] is None or recipe.manufacture is None:
-        return ""
-    return "another manufacture.start, or a smaller manufacture.lead_in"
-
-
 def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Tell the preload at which contact holds as intended and with every file.
 

@@ -331,7 +331,7 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerO
     if asked is None or not asked.layer or request.compensation is not None:
         return [], []
     from camgeo.files.layer_outline import LayerOutline
-    from camgeo.machining.milling import path_arcs, reach_checks
+    from camgeo.machining.reach import path_arcs, reach_checks
 
     with job.clock.stage("cutter path"):
         reached = reach_checks(job.recipe, job.design)

@@ -47,11 +47,10 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
             found.append((kind, "left out by --only"))
     if not design.contours:
         found.append(("files", "a check of the exact contour fails"))
-    elif recipe.manufacture is not None and any(FORMATS[kind].program for kind in wanted):
-        from camgeo.machining.milling import unmilled
-
-        left = dict.fromkeys(each for single in design.single for each in unmilled(recipe, single))
-        found += [(name, f"not milled: {why}") for name, why in left]
+        return found
+    for kind in FORMATS:
+        if kind in wanted:
+            found += FORMATS[kind].unmade(recipe, design)
     return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.schema.fields import Field, Kind, Table, either, length
+from camgeo.schema.fields import Field, Kind, Table, length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -131,18 +131,6 @@ MANUFACTURE = Table(
 )
 
 
-NEEDED = ("feed", "plunge", "spindle", "depth_of_cut", "safe_height")
-"""Keys that a program for a machine cannot do without."""
-
-
-SLOWEST, SHORTEST = 0.001, 1e-6
-
-
-LEAST_TOLD = dict.fromkeys(("feed", "plunge", "spindle"), SLOWEST)
-LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in", "allowance"), SHORTEST)
-"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
-
-
 COMPENSATION = (
     length("kerf", "width of the cut: the metal is drawn larger by half of it, openings smaller", default="0"),
     length("clearance", "distance by which the metal is reduced all round; openings become larger", default="0"),
@@ -173,29 +161,6 @@ def check_allowance(milling: Values, reader: Reader) -> None:
         remedy = f"give less than {0.25 * milling['cutter'] / reader.mm:.6g} {reader.units}"
         value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
         reader.fault_at("manufacture.allowance", "not below a quarter of the cutter", value, remedy)
-
-
-def check_milling(path: str, reader: Reader) -> None:
-    """Note what a program for a machine lacks."""
-    if "manufacture" not in reader.marks:
-        remedy = f"give manufacture with cutter, {', '.join(NEEDED[:-1])} and {NEEDED[-1]}, or leave gcode out"
-        reader.fault_at(path, "gcode needs manufacture", None, remedy)
-    elif missing := [name for name in NEEDED if f"manufacture.{name}" not in reader.marks]:
-        remedy = f"give {either(tuple(missing), 'and')}, or leave gcode out"
-        reader.fault_at("manufacture", f"gcode needs {missing[0]}", None, remedy)
-    if "part.thickness" not in reader.marks:
-        reader.fault_at(path, "gcode needs a thickness", None, "give part.thickness, or leave gcode out")
-
-
-def check_slight(values: Values, reader: Reader) -> None:
-    """Note figures so slight that a program would need its digits for them alone."""
-    for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
-        for name, least in least_told.items():
-            unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)
-            value = values.get(table, {}).get(name)
-            if value is not None and value < least * mm:
-                remedy = f"give at least {least:.6g} {unit}"
-                reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
 
 
 def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]:

@@ -7,11 +7,13 @@ types run upwards. Functions import what they need when they are called: a recor
 
 from __future__ import annotations
 
+from collections import ChainMap
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from camgeo.common.on_demand import OnDemand
+from camgeo.registry import registry
 from camgeo.schema.fields import Table
 from kin.numeric.records import dataclass, field
 
@@ -43,6 +45,22 @@ def as_designed(recipe: Recipe, design: Design, /) -> PartIntent:
     from camgeo.synthesis.intent import intended
 
     return intended(recipe, design)
+
+
+def always(_recipe: Recipe, /) -> bool:
+    """Whether there is a thing that every file shows."""
+    return True
+
+
+def with_holes(recipe: Recipe, /) -> bool:
+    """Whether the part has round holes besides its bore."""
+    part = recipe.part
+    return part.bolts is not None or part.dowel is not None or part.lightening is not None
+
+
+def nothing_left(_recipe: Recipe, _design: Design, /) -> Sequence[tuple[str, str]]:
+    """Leave nothing out."""
+    return ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +118,9 @@ class Format:
     make      fits, writes, reads back and judges one file at a path
     foresee   refuses what is certain to be refused, before anything is fitted
     intent    what kin judges its files by
+    bored     whether a file has the bore that the part has
+    drilled   whether a file has round holes besides
+    unmade    what of the part its files leave out, with the reason
     numbers   gives the numbers that a mesh holds
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
     bodies    writes and judges every body of a mechanism, the first file at a path
@@ -122,6 +143,9 @@ class Format:
     make: Callable[[Job, FileRequest, Path], Made] | None = None
     foresee: Callable[[Job, FileRequest], None] = foresee_nothing
     intent: Callable[[Recipe, Design], PartIntent] = as_designed
+    bored: Callable[[Recipe], bool] = always
+    drilled: Callable[[Recipe], bool] = with_holes
+    unmade: Callable[[Recipe, Design], Sequence[tuple[str, str]]] = nothing_left
     numbers: Callable[[], Precision] | None = None
     write: Callable[[Path, Sequence[Item], str, float, str], None] | None = None
     bodies: Callable[[Job, FileRequest, Path, Sequence[Part]], Made] | None = None
@@ -158,17 +182,17 @@ MODULES = {
     "glb": "camgeo.formats.glb",
     "csv": "camgeo.formats.csv",
     "html": "camgeo.formats.html",
-    "gcode": "camgeo.formats.gcode",
 }
-"""Module of each format by its word, in the order in which formats are listed."""
+"""Module of each of the core's formats by its word, in the order in which formats are listed."""
+_ALL = ChainMap(registry.formats(), MODULES)  # in their order: the core's first
 
 
 def _record(name: str) -> Format:
-    record: Format = import_module(MODULES[name]).FORMAT
+    record: Format = import_module(_ALL[name]).FORMAT
     return record
 
 
-FORMATS: Mapping[str, Format] = OnDemand(MODULES, _record)
+FORMATS: Mapping[str, Format] = OnDemand(_ALL, _record)
 """Record of each format by its word."""
 
 

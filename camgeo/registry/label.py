@@ -16,6 +16,7 @@ class Label(NamedTuple):
 
     rank      order wherever capabilities follow one another
     words     keys of a recipe's top level, formats, or `parts: all`, by which a recipe uses the capability
+    formats   words of its formats of files, each with the module of the folder that has its `FORMAT`
     commands  names of its commands, each with its help; the module `command` of the folder has them
     reports   files of the output folder that list others, as `report.json` does
     absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
@@ -27,6 +28,7 @@ class Label(NamedTuple):
 
     rank: int
     words: tuple[str, ...] = ()
+    formats: Mapping[str, str] = NONE
     commands: Mapping[str, str] = NONE
     reports: tuple[str, ...] = ()
     absent: str = ""

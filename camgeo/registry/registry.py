@@ -70,6 +70,15 @@ def names() -> dict[str, str]:
     }
 
 
+def formats() -> dict[str, str]:
+    """Module of each format of files that capabilities add."""
+    return {
+        name: f"{PACKAGE}.{folder}.{module}"
+        for folder, label in labels().items()
+        for name, module in label.formats.items()
+    }
+
+
 def by_words(words: Collection[str]) -> tuple[str, ...]:
     """Names of the recorded capabilities that a recipe with these words uses, see `Label.words`."""
     return tuple(name for name in recorded() if not set(labels()[name].words).isdisjoint(words))

@@ -240,11 +240,14 @@ def _own(name: str, *words: str) -> Format:
     return replace(FORMATS[name], options=Table(fields if words else ()))
 
 
-OF_A_LOBE = ("dxf", "gcode")  # listed to say what to do instead
+DRAWN = "svg"
+OF_A_LOBE = tuple(  # listed to say what to do instead
+    name for name, record in FORMATS.items() if record.contour and not record.solid and name != DRAWN
+)
 SHAFT_FILES = {
     **{name: _plain(name) for name in FORMATS if FORMATS[name].solid},
     "csv": _own("csv", "motion", "events"),
-    "svg": _own("svg", *DIAGRAMS),
+    DRAWN: _own(DRAWN, *DIAGRAMS),
     **{name: replace(FORMATS[name], options=Table(())) for name in ("html", *OF_A_LOBE)},
 }
 SHAFT = Table(

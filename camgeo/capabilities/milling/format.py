@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.milling.keys import check_milling, check_slight
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
-from camgeo.recipe.machining import check_milling, check_slight
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Table
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
@@ -26,15 +27,15 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def _make(job: Job, request: FileRequest, path: Path) -> Made:
-    from camgeo.output.gcode import make_gcode
+    from camgeo.capabilities.milling.program import make_gcode
 
     return make_gcode(job, request, path)
 
 
 def _intent(recipe: Recipe, design: Design) -> PartIntent:
     """Give the part as it is milled; raises RecipeErrors for a recipe that does not say how."""
+    from camgeo.capabilities.milling.milling import milling_intent
     from camgeo.curve.curve import CurveError
-    from camgeo.machining.milling import milling_intent
 
     if recipe.manufacture is None:
         raise recipe.error("manufacture", "missing", None, "give manufacture: a program is judged by its cutter")
@@ -48,6 +49,40 @@ def _intent(recipe: Recipe, design: Design) -> PartIntent:
         raise recipe.error("manufacture.cutter", str(error)) from error
 
 
+def _unmade(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
+    from camgeo.capabilities.milling.milling import unmilled
+
+    if recipe.manufacture is None:
+        return []
+    left = dict.fromkeys(each for single in design.single for each in unmilled(recipe, single))
+    return [(name, f"not milled: {why}") for name, why in left]
+
+
+def _bored(recipe: Recipe) -> bool:
+    """Whether the bore is a round one that is milled."""
+    part, asked = recipe.part, recipe.manufacture
+    if part.bore is None or asked is None or not asked.holes or part.sides or part.keyway or part.flat or part.hub:
+        return False
+    return part.bore >= _least_hole(asked)
+
+
+def _drilled(recipe: Recipe) -> bool:
+    """Whether other holes are milled; where lightening holes find their place is not known beforehand."""
+    part, asked = recipe.part, recipe.manufacture
+    if asked is None or not asked.holes:
+        return False
+    hub = 0.0 if part.hub is None else part.hub.diameter
+    holes = [hole for hole in (part.bolts, part.dowel) if hole is not None]
+    return any(hole.circle >= hub and hole.hole >= _least_hole(asked) for hole in holes)
+
+
+def _least_hole(manufacture: Manufacture) -> float:
+    """Least diameter of a hole that the cutter goes round, mm."""
+    from camgeo.capabilities.milling.milling import LEAST_ROOM
+
+    return manufacture.cutter + 2.0 * LEAST_ROOM
+
+
 FORMAT = Format(
     name="gcode",
     suffix="ngc",
@@ -57,4 +92,7 @@ FORMAT = Format(
     by_disc=True,
     make=_make,
     intent=_intent,
+    unmade=_unmade,
+    bored=_bored,
+    drilled=_drilled,
 )

@@ -1,4 +1,4 @@
-"""What of a part is milled: the cutter's path by the recipe, whether it reaches everything, which holes are milled."""
+"""What of a part is milled, which holes and how deep, and what kin is told of it."""
 
 from __future__ import annotations
 
@@ -6,28 +6,17 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import LEAST_ROOM, REACH
-from camgeo.curve.curve import CurveError
-from camgeo.curve.undercut.causes import UndercutError
-from camgeo.fit.arcs import fit_arcs
-from camgeo.machining.cutter import cutter_path, no_hollow
-from camgeo.synthesis.checks import hollow_radius
+from camgeo.machining.reach import milled, reach_checks
 from camgeo.synthesis.intent import intended
 from camgeo.synthesis.part.as_intent import holes_of
-from kin.judge.check import Check, failed
 
 if TYPE_CHECKING:
-    from camgeo.cams.surface import Surface
-    from camgeo.curve.curve import Curve
-    from camgeo.fit.pieces import ArcSpline
-    from camgeo.machining.cutter import CutterPath, Fit
-    from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
 
 MOST_PASSES = 2000  # through the part
-ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is reported
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
 
 
 class RoundHole(NamedTuple):
@@ -38,74 +27,9 @@ class RoundHole(NamedTuple):
     radius: float
 
 
-def paths_of(recipe: Recipe, design: Design, further: float = 0.0) -> tuple[CutterPath, ...]:
-    """Path of the cutter's centre along each surface, or one `further` off the metal; raises as `cutter_path` does."""
-    contours, asked = _milled(recipe, design)
-    return tuple(cutter_path(contour, asked.radius + further) for _, contour in contours)
-
-
-def _milled(recipe: Recipe, design: Design) -> tuple[tuple[tuple[Surface, Curve], ...], Manufacture]:
-    if not design.contours or recipe.manufacture is None:
-        raise ValueError(f"{recipe.name}: there is nothing to mill")
-    return design.contours, recipe.manufacture
-
-
 def pocket_of(design: Design) -> float | None:
     """Depth of what lies between two surfaces, mm; None of a cam that is cut through."""
     return next((disc.body.pocket for disc in design.discs if disc.body is not None), None)
-
-
-def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
-    """Arcs within a tolerance of the cutter's path; raises RecipeErrors where it stays in a point.
-
-    So it does in a hollow arc of the cutter's own radius.
-    """
-    try:
-        return path.within(tolerance, fitted)
-    except CurveError as error:
-        given = f"{2.0 * path.radius / recipe.mm:.6g} {recipe.units}"
-        remedy = "give one a little larger or smaller"
-        raise recipe.error("manufacture.cutter", f"the path of its centre: {error}", given, remedy) from error
-
-
-def reach_checks(recipe: Recipe, design: Design) -> list[tuple[Check, CutterPath | None]]:
-    """Check of each surface how deep metal is left where the cutter does not reach; its path, None of no single one."""
-    contours, asked = _milled(recipe, design)
-    found = []
-    for surface, contour in contours:
-        check, path = _reached(asked, design, surface, contour)
-        found.append((replace(check, surface=surface.name), path))
-    return found
-
-
-def _reached(
-    manufacture: Manufacture, design: Design, surface: Surface, contour: Curve
-) -> tuple[Check, CutterPath | None]:
-    told = "no hollow"
-    if not no_hollow(contour):
-        radius, at = hollow_radius(surface.side, contour)
-        told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
-    try:
-        path = cutter_path(contour, manufacture.radius)
-    except UndercutError as error:
-        return failed(REACH.name, f"{error}; {told}", unit="mm", limit=manufacture.unreached), None
-    if not path.lost:
-        return Check(REACH.name, True, 0.0, manufacture.unreached, "mm", detail=told), path
-    deepest = max(cut.depth for cut in path.lost)
-    worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
-    first, last = design.motion.shaft_deg(worst.start), design.motion.shaft_deg(worst.end)
-    free = 2.0 * min(cut.free_at for cut in path.lost)
-    detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
-    at_deg = design.motion.shaft_deg(worst.at)
-    return Check(
-        REACH.name,
-        worst.depth <= manufacture.unreached,
-        worst.depth,
-        manufacture.unreached,
-        "mm",
-        at_deg,
-        detail=detail,
-    ), path
 
 
 def clear_of_hub(recipe: Recipe) -> None:
@@ -152,7 +76,7 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
-    _, asked = _milled(recipe, design)
+    _, asked = milled(recipe, design)
     hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
     found: list[RoundHole] = []
     others: list[tuple[str, str]] = []
@@ -174,7 +98,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
     from kin.judge.intent import Milling
 
-    _, asked = _milled(recipe, design)
+    _, asked = milled(recipe, design)
     reached = reach_checks(recipe, design)
     lost = [path is None or bool(path.lost) for _, path in reached]
     meant, pocket = intended(recipe, design), pocket_of(design)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from camgeo.machining.toolpath import Pass
+    from camgeo.capabilities.milling.toolpath import Pass
     from kin.numeric.arrays import Array
 
 SHARE = 0.05  # of the tolerance that is left to the rounding of numbers

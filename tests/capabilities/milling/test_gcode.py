@@ -15,10 +15,10 @@ from support.cases import examples, few
 from support.heavy import shapely
 from support.milled import swept
 
+from camgeo.capabilities.milling.gcode import places, rounding
+from camgeo.capabilities.milling.milling import milling_intent
+from camgeo.capabilities.milling.toolpath import depths
 from camgeo.cli.main import main
-from camgeo.machining.gcode import places, rounding
-from camgeo.machining.milling import milling_intent
-from camgeo.machining.toolpath import depths
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors

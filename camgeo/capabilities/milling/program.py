@@ -6,24 +6,25 @@ import math
 from functools import reduce
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.milling.gcode import Cutting, places, plain, rounding, write_gcode
+from camgeo.capabilities.milling.milling import clear_of_hub, few_passes, milled_holes, pocket_of, unmilled
+from camgeo.capabilities.milling.toolpath import (
+    begun_at,
+    bend_at_begin,
+    circle,
+    depths,
+    led,
+    passes,
+    plunged,
+    side_by_side,
+)
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.fit.bound import Bound
 from camgeo.fit.cache import Fits
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.cutter import CutterPath
-from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.machining.milling import (
-    clear_of_hub,
-    few_passes,
-    milled_holes,
-    path_arcs,
-    paths_of,
-    pocket_of,
-    reach_checks,
-    unmilled,
-)
-from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes, plunged, side_by_side
+from camgeo.machining.reach import path_arcs, paths_of, reach_checks
 from camgeo.output.job import Made
 from kin.judge.check import about
 from kin.numeric.records import replace
@@ -31,8 +32,8 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.machining.milling import RoundHole
-    from camgeo.machining.toolpath import ClosedPath, Pass
+    from camgeo.capabilities.milling.milling import RoundHole
+    from camgeo.capabilities.milling.toolpath import ClosedPath, Pass
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Manufacture

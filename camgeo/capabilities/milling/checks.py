@@ -1,0 +1,44 @@
+"""The checks of programs for machines: what the machine does on the way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.checks.declared import WATERTIGHT, Declared
+
+if TYPE_CHECKING:
+    from camgeo.checks.declared import Scene
+    from camgeo.checks.remedies import Entry
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+
+
+def _program(_: Scene, file: FileRequest) -> bool:
+    return file.format.program
+
+
+def _pocketed(scene: Scene, file: FileRequest) -> bool:
+    """Of a program that mills between two surfaces that one touch runs on."""
+    follower = scene.follower
+    return file.format.program and follower.arrangement.contacts < len(follower.contacts)
+
+
+def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
+    """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
+    if check["value"] is None or recipe.manufacture is None:
+        return ""
+    return "another manufacture.start, or a smaller manufacture.lead_in"
+
+
+_FIELD, _AFTER = "manufacture.start", WATERTIGHT.name
+CHECKS = (
+    Declared("cutter", ("mm",), of_file=_program, after=_AFTER),
+    Declared("arcs", ("mm",), of_file=_program, after=_AFTER),
+    Declared("rapid", ("", "faults"), of_file=_program, after=_AFTER),
+    Declared("depth", ("mm",), of_file=_program, after=_AFTER),
+    Declared("floor", ("mm",), of_file=_pocketed, after=_AFTER),
+    Declared("direction", ("", "faults"), of_file=_program, after=_AFTER),
+    Declared("entry", ("deg",), of_file=_program, field=_FIELD, remedy=other_entry, after=_AFTER),
+    Declared("gouge", ("mm",), of_file=_program, field=_FIELD, remedy=other_entry, after=_AFTER),
+)
+"""All of them, in the order in which they are foreseen."""

@@ -1,0 +1,44 @@
+"""What a program for a machine needs of a recipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.schema.fields import either
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+NEEDED = ("feed", "plunge", "spindle", "depth_of_cut", "safe_height")
+"""Keys that a program for a machine cannot do without."""
+
+
+SLOWEST, SHORTEST = 0.001, 1e-6
+
+
+LEAST_TOLD = dict.fromkeys(("feed", "plunge", "spindle"), SLOWEST)
+LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in", "allowance"), SHORTEST)
+"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
+
+
+def check_milling(path: str, reader: Reader) -> None:
+    """Note what a program for a machine lacks."""
+    if "manufacture" not in reader.marks:
+        remedy = f"give manufacture with cutter, {', '.join(NEEDED[:-1])} and {NEEDED[-1]}, or leave gcode out"
+        reader.fault_at(path, "gcode needs manufacture", None, remedy)
+    elif missing := [name for name in NEEDED if f"manufacture.{name}" not in reader.marks]:
+        remedy = f"give {either(tuple(missing), 'and')}, or leave gcode out"
+        reader.fault_at("manufacture", f"gcode needs {missing[0]}", None, remedy)
+    if "part.thickness" not in reader.marks:
+        reader.fault_at(path, "gcode needs a thickness", None, "give part.thickness, or leave gcode out")
+
+
+def check_slight(values: Values, reader: Reader) -> None:
+    """Note figures so slight that a program would need its digits for them alone."""
+    for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
+        for name, least in least_told.items():
+            unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)
+            value = values.get(table, {}).get(name)
+            if value is not None and value < least * mm:
+                remedy = f"give at least {least:.6g} {unit}"
+                reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
