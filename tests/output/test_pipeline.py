@@ -224,10 +224,10 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
         "heavy |= {'OCP', 'zipfile'}\n"
         "heavy |= {f'kin.{name}' for name in ('clearance', 'dynamics', 'linkage.mechanism', 'judge.milling')}\n"
         "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
-        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page', 'machining.milling')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page')}\n"
         # every run reads the labels of capabilities; their modules are for recipes that use them
         "heavy |= {name for name in sys.modules if name.startswith('camgeo.capabilities.') and name.count('.') > 2}\n"
-        "heavy |= {f'camgeo.output.{name}' for name in ('gcode', 'mechanism', 'parts')}\n"
+        "heavy |= {f'camgeo.output.{name}' for name in ('mechanism', 'parts')}\n"
         f"heavy.add('camgeo.output.drawing' if {kind!r} == 'stl' else 'camgeo.output.solid')\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
@@ -237,8 +237,8 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
 
 UNUSED = {
     "camgeo": "assembly cli.laws cli.report cli.watch machining report.page schema.edit",
-    "camgeo.capabilities": "study.command sweep.record",
-    "camgeo.formats": "gcode glb ply step tables.contacts tables.forces",
+    "camgeo.capabilities": "milling.format milling.record study.command sweep.record",
+    "camgeo.formats": "glb ply step tables.contacts tables.forces",
     "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
     "camgeo.synthesis": "linkage motion_table part.lightening view",
     "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",
