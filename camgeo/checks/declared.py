@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from camgeo.checks import remedies
 from camgeo.recipe.figures import (
     BACKLASH,
-    BACKLASH_LEFT,
     CONTACT_TRAVEL,
     FIGURES,
     LAW_ERROR,
@@ -137,10 +136,6 @@ def _dwells(scene: Scene) -> bool:
     return scene.linked and asked is not None and asked.at_least is not None
 
 
-def _guided(scene: Scene) -> bool:
-    return scene.recipe.dynamics is not None and scene.recipe.dynamics.guide is not None
-
-
 def _ground(scene: Scene) -> bool:
     return scene.recipe.wheel is not None
 
@@ -208,21 +203,6 @@ def _driven(scene: Scene, file: FileRequest) -> bool:
 
 def _dwelling(scene: Scene, file: FileRequest) -> bool:
     return _dwells(scene) and _driven(scene, file)
-
-
-def _sprung(scene: Scene) -> bool:
-    train = scene.recipe.dynamics
-    if train is None or train.backlash is not None:
-        return False
-    return train.stiffness is not None or not scene.follower.closure
-
-
-def _elastic(scene: Scene) -> bool:
-    return _sprung(scene) and scene.recipe.dynamics is not None and scene.recipe.dynamics.stiffness is not None
-
-
-def _loose(scene: Scene) -> bool:
-    return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is not None
 
 
 def run_with(scene: Scene, file: FileRequest) -> bool:
@@ -313,7 +293,6 @@ BREADTH = Declared(
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate)
 FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
-JAM = Declared("guide-jam", ("deg", "mm"), _guided, field="dynamics.guide", strict=True)
 WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
@@ -398,21 +377,6 @@ OUTPUT = Declared(
     why_not=_output_lost,
     field="export.tolerance",
     own_field="verify.output_error",
-)
-FLOAT = Declared(
-    "float",
-    ("N", "N m"),
-    _sprung,
-    lambda scene, file: _elastic(scene) and run_with(scene, file),
-    field="dynamics.preload",
-    remedy=remedies.stronger_spring,
-)
-LEAST_BACKLASH = Declared(
-    BACKLASH_LEFT,
-    ("mm", "deg", "N"),
-    _loose,
-    lambda scene, file: _loose(scene) and run_with(scene, file),
-    strict_at=(0.0,),
 )
 
 _CORE = {one.name: one for one in tuple(globals().values()) if isinstance(one, Declared)}

@@ -14,32 +14,25 @@ from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
     DURATION,
     FIGURES,
-    FORCE_GREATEST,
-    FORCE_LEAST,
-    GUIDE_FORCE,
     HOLLOW_RADIUS,
     INERTIA,
     LAW_ERROR,
-    LEAST_FORCE,
     LEAST_WALL,
     LIFT_AREA,
     MASS,
-    MEAN_FORCE,
     MOTION_ERROR,
     ON_RETURN,
     ON_RISE,
-    PEAK_FORCE,
     PIVOT_CLEARANCE,
     PRELOAD_GREATEST,
     PRELOAD_LEAST,
-    PRESSURE,
     PRESSURE_ANGLE,
     RADIUS,
     RAMP_VELOCITY,
     ROLLER_SPEED,
     SIZE,
-    TORQUE,
 )
+from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,18 +72,6 @@ def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
 
 
-def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell the preload at which contact holds as intended and with every file.
-
-    Against the spring's rate the train's stiffness passes k/(k + k_p) of a preload on to the contact.
-    """
-    train, worst = recipe.dynamics, _worst(check, report)
-    if train is None or train.preload is None or not worst < 0.0:
-        return ""
-    yields = 0.0 if train.stiffness is None else train.rate / train.stiffness
-    return f"a dynamics.preload of {upward(train.preload - worst * (1.0 + yields))}"
-
-
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     """Tell the largest wheel that reaches into the hollows; nothing of a sharp one."""
     value = check["value"]
@@ -104,11 +85,11 @@ def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
     """Tell the dwell that the output has as intended and with every file; nothing of a linkage that does not turn."""
-    worst = _worst(check, report)
-    return f"a dwell.at_least of {downward(worst)} or less, or a wider dwell.band" if worst > 0.0 else ""
+    length = worst(check, report)
+    return f"a dwell.at_least of {downward(length)} or less, or a wider dwell.band" if length > 0.0 else ""
 
 
-def _worst(check: Entry, report: Entry) -> float:
+def worst(check: Entry, report: Entry) -> float:
     """Least value of all checks of the same name, of the design and of files; nan where one has none."""
     values = [one["value"] for one in report["checks"] if one["name"] == check["name"]]
     return math.nan if None in values else min(values)
@@ -196,7 +177,9 @@ def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     value, bound = missed.value / divisor, missed.bound / divisor
     lower = value > bound
     geometry = _to_lower(recipe, limit.figure, missed) if lower else _to_raise(recipe, limit.figure, missed)
-    if remedy := geometry or _of_train(recipe, limit.figure, value, bound) or _of_lobe(recipe, limit, value, bound):
+    owner = FIGURES.owner(limit.figure)
+    own = registry.capability(owner).remedy(recipe, limit.figure, value, bound) if owner else ""
+    if remedy := geometry or own or _of_preload(limit.figure, value, bound) or _of_lobe(recipe, limit, value, bound):
         return remedy
     return f"{limit.field('at_most' if lower else 'at_least')} of {_outward(value, up=lower)}"
 
@@ -258,24 +241,12 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     return own
 
 
-def _of_train(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Tell what would change a force or pressure, SI, to a bound above 0; nothing of others."""
-    if bound <= 0.0:
+def _of_preload(figure: str, value: float, bound: float) -> str:
+    """Tell what would change the force of a preload to a bound above 0; nothing of other figures."""
+    if bound <= 0.0 or value <= 0.0 or figure not in {PRELOAD_LEAST, PRELOAD_GREATEST}:
         return ""
-    if figure in {PRELOAD_LEAST, PRELOAD_GREATEST} and value > 0.0:  # in proportion to it
-        share = upward(bound / value) if value < bound else downward(bound / value)
-        return f"a cam.preload.interference {share} times as large"
-    held = ("dynamics.preload", "dynamics.least_force", "cam.preload.interference")
-    spring = next((path for path in held if path in recipe.marks), "")
-    if figure in {FORCE_LEAST, LEAST_FORCE}:
-        return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
-    if value < bound or figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
-        return ""
-    less = f"a smaller {spring}, less mass or load" if spring else "less mass or load"
-    if figure == PRESSURE:  # with the root of force over width
-        wider = f"contacts {upward((value / bound) ** 2)} times as wide (part.thickness, less chamfer, a deeper groove)"
-        return f"{wider}, a larger radius, {less}"
-    return f"a longer guide, or {less}" if figure == GUIDE_FORCE else less
+    share = upward(bound / value) if value < bound else downward(bound / value)  # in proportion to it
+    return f"a cam.preload.interference {share} times as large"
 
 
 def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:

@@ -9,6 +9,7 @@ from camgeo.common.on_demand import OnDemand
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Form, Format
+from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import Field, Kind, Table, length
 from kin.numeric.records import replace
 
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
 
 MODULES = {
     name: f"camgeo.formats.tables.{name}"
-    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "forces")
+    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace")
 }
-"""Module of each table by its word."""
+"""Module of each of the core's tables by its word."""
 OF_GROUND = ("step", "tolerance", "roller")
 """Options of tables by which a lobe is ground alone."""
 
@@ -36,7 +37,8 @@ def _form(name: str) -> Form:
     return record
 
 
-FORMS = OnDemand(MODULES, _form)
+FORMS = Gathered(OnDemand(MODULES, _form), lambda capability: capability.tables())
+"""Record of each table by its word."""
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
@@ -66,7 +68,7 @@ FORMAT = Format(
     name="csv",
     options=Table(
         (
-            Field("as", Kind.CHOICE, "which table it is", default="motion", choices=tuple(MODULES)),
+            Field("as", Kind.CHOICE, "which table it is", default="motion", choices=FORMS),
             Field(
                 "step",
                 Kind.ANGLE,

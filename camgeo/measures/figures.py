@@ -12,7 +12,6 @@ from camgeo.checks.declared import (
     CLEARANCE,
     COLLISION,
     LAW,
-    LEAST_BACKLASH,
     PRESSURE,
     RATIO,
     STANDS,
@@ -22,7 +21,6 @@ from camgeo.checks.declared import (
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.recipe.figures import (
     AT_LIFT,
-    AT_SPEED,
     BACKLASH,
     BASE_RADIUS,
     DWELL,
@@ -31,15 +29,10 @@ from camgeo.recipe.figures import (
     FIGURES,
     HOLLOW_RADIUS,
     INERTIA,
-    JAM_MARGIN,
     MASS,
     NOTHING,
-    OF_BEARING,
     OF_DWELL,
-    OF_FORCES,
     OF_LINKAGE,
-    OF_MATERIAL,
-    OF_REACTION,
     OFFSET,
     ON_RETURN,
     ON_RISE,
@@ -55,13 +48,12 @@ from camgeo.recipe.figures import (
     UNBALANCE,
 )
 from camgeo.registry import registry
-from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width
+from camgeo.synthesis.checks import hollow_radius, needed_width
 from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from typing import Any
 
     from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
@@ -77,8 +69,7 @@ if TYPE_CHECKING:
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
-_ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
-_IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
+ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
@@ -104,8 +95,7 @@ def of_design(
 ) -> dict[str, Measured]:
     """Measure figures of the exact cam, its motion and mechanism; one that no check of this run has is left out.
 
-    `checks` are all that were made. `speeds` are those, turns a minute, at which figures in time are taken that are not
-    taken at that of the dynamics.
+    `checks` are all that were made. `speeds` are those, turns a minute, at which limits are that say so, by figure.
     """
     wanted = [name for name in names if FIGURES[name].of == "design"]
     found: dict[str, Measured] = {}
@@ -115,27 +105,20 @@ def of_design(
             owned.setdefault(owner, []).append(name)
     for owner, own in owned.items():
         found |= registry.capability(owner).measure(recipe, design, own, speeds or {})
-    motion = [_IN_TIME.get(name, name) for name in wanted if _IN_TIME.get(name, name) in _ORDERS]
+    motion = [name for name in wanted if name in ORDERS]
     if design.driven is not None:
         found |= _of_linkage(design.driven, wanted)
     elif motion:
-        found |= _of_motion(design, max(_ORDERS[name] for name in motion))
-    if any(FIGURES[name].needs in (OF_FORCES, OF_MATERIAL, OF_REACTION, OF_BEARING) for name in wanted):
-        from camgeo.measures.force_figures import figures_of
-
-        found |= figures_of(recipe, design)
+        found |= of_motion(design, max(ORDERS[name] for name in motion))
     for name in wanted:
         if name in _OF_CHECKS:
             same = [check for check in checks if check.name == name and check.file is None]
             if same:
-                found[name] = _of_check(max(same, key=_nearness))
+                found[name] = of_check(max(same, key=_nearness))
             elif name == PRESSURE.name:
                 found[name] = Measured(0.0, "deg", detail="a flat face is pushed along its normal")
         elif name in _OF_CURVE:
             found[name] = _OF_CURVE[name](recipe, design)
-        elif name in _IN_TIME:
-            rpm = (speeds or {}).get(name) or (recipe.dynamics.rpm if recipe.dynamics is not None else 0.0)
-            found[name] = _in_time(found[_IN_TIME[name]], name, rpm)
     return {name: found[name] for name in wanted if name in found}
 
 
@@ -146,7 +129,8 @@ def _nearness(check: Check) -> float:
     return -check.value if check.sense == "at_least" else check.value
 
 
-def _of_check(check: Check) -> Measured:
+def of_check(check: Check) -> Measured:
+    """Give the figure that a check holds against its limit."""
     detail = "" if check.value is not None else check.detail
     return Measured(check.value, check.unit, check.at_deg, detail, check.surface)
 
@@ -166,7 +150,7 @@ def _radius(_: Recipe, design: Design) -> Measured:
 
 def _pitch_radius(_: Recipe, design: Design) -> Measured:
     """What the check of that name holds: of the places where the cam may undercut, the hollows of a ring."""
-    return _least(_of_check(made.bent) for made in design.surfaces)
+    return _least(of_check(made.bent) for made in design.surfaces)
 
 
 def _hollow_radius(_: Recipe, design: Design) -> Measured:
@@ -250,13 +234,6 @@ def _face_width(_: Recipe, design: Design) -> Measured:
     return _greatest(Measured(value, "mm", at, surface=name) for name, value, at in widths)
 
 
-def _jam_margin(recipe: Recipe, design: Design) -> Measured:
-    if recipe.dynamics is None or recipe.dynamics.guide is None:
-        return Measured(None, "deg")
-    value, limit, at = jam_angle(design.exact, recipe.dynamics.guide)
-    return Measured(limit - value, "deg", at)
-
-
 def _base_radius(recipe: Recipe, _: Design) -> Measured:
     base, *_others = recipe.cam.circles()
     return Measured(base.radius, "mm")
@@ -324,7 +301,6 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     PIVOT_CLEARANCE: _pivot_clearance,
     ROLLER_SPEED: _roller_speed,
     FACE_WIDTH: _face_width,
-    JAM_MARGIN: _jam_margin,
     PRELOAD_LEAST: _of_preload(0),
     PRELOAD_GREATEST: _of_preload(1),
     MASS: _of_mass(lambda disc: disc.mass, "kg"),
@@ -338,13 +314,13 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 # --- of the motion ----------------------------------------------------------------------------------------------------
 
 
-def _of_motion(design: Design, order: int) -> dict[str, Measured]:
+def of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
     from kin.numeric.monotone import RoughError, between, cells, pieces
 
     position = design.motion
     unit, scale = position.unit, position.shown(1.0)
-    names = [name for name, k in _ORDERS.items() if k <= order]
+    names = [name for name, k in ORDERS.items() if k <= order]
     try:
         made = cells(
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
@@ -353,7 +329,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         return {name: Measured(None, unit + FIGURES[name].per, detail=ABRUPT) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
-        row = pieces(made, _ORDERS[name])
+        row = pieces(made, ORDERS[name])
         low, high = row.least(), row.greatest()
         if name == "swing":
             found[name] = Measured(scale * (high[0] - low[0]), unit)
@@ -361,14 +337,6 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         value, at = max(low, high, key=lambda place: abs(place[0]))
         found[name] = Measured(scale * abs(value), unit + FIGURES[name].per, position.shaft_deg(at % TURN))
     return found
-
-
-def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
-    """A derivative by the shaft angle as one by time, the shaft turning evenly."""
-    order = _ORDERS[_IN_TIME[name]]
-    unit = figure.unit.partition("/")[0] + FIGURES[name].per
-    value = None if figure.value is None else figure.value * (rpm * TURN / 60.0) ** order
-    return Measured(value, unit, figure.at_deg, figure.detail)
 
 
 def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
@@ -403,7 +371,7 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
     return found
 
 
-# --- of files and of the dynamics -------------------------------------------------------------------------------------
+# --- of files -------------------------------------------------------------------------------------
 
 
 def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
@@ -425,7 +393,7 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
             one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash
         ]
         lost = "a single flat face has no backlash, and of a trimmed contour it is not judged"
-        return _of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
+        return of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
     dwell = name == "dwell-error"
     return _greatest(_of_motion_error(one, dwell=dwell) for one in surfaces)
 
@@ -445,16 +413,3 @@ def _of_motion_error(surface: SurfaceVerdict, *, dwell: bool) -> Measured:
     if dwell:
         return Measured(motion.dwell_flatness, motion.unit, None, "the motion has no dwell", surface.name)
     return Measured(motion.max, motion.unit, motion.at_deg, surface=surface.name)
-
-
-def of_dynamics(name: str, section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str | None, Measured]:
-    """Measure a figure of each run of the dynamics, by the file that drives it, None for the intended motion."""
-    if name == LEAST_BACKLASH.name:
-        return {check.file: _of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
-    kind, found = name.partition("-")[0], {}
-    for run in section["runs"]:
-        steady = run.get("steady") or {}
-        value, at = steady.get(f"{kind}_force"), steady.get(f"{kind}_at_deg")
-        lost = "" if value is not None else "there is no steady state"
-        found[None if run["from"] == "intended" else run["from"]] = Measured(value, section["force_unit"], at, lost)
-    return found

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import LIMIT, Scene, declaration
 from camgeo.checks.remedies import Missed, of_limit
-from camgeo.measures.figures import of_design, of_dynamics, of_file
+from camgeo.measures.figures import of_design, of_file
 from camgeo.recipe.figures import AT_LIFT, FIGURES
-from camgeo.registry.capability import EMPTY
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from typing import Any
 
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
@@ -31,14 +29,12 @@ def limit_checks(
     design: Design,
     checks: Sequence[Check],
     files: Sequence[FileResult],
-    dynamics: Mapping[str, Any] | None,
-    *,
-    runs: Mapping[str, Mapping[str | None, Measured]] = EMPTY,
+    runs: Mapping[str, Mapping[str | None, Measured]] | None = None,
 ) -> list[Check]:
     """Hold every figure that the recipe limits against its bounds.
 
-    `checks` are all that were made, `dynamics` the report's section, `runs` figures of runs (`Results`).
-    A figure that cannot be had fails, and says why.
+    `checks` are all that were made, `runs` figures of runs (`Results`). A figure that cannot be had fails, and says
+    why.
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
@@ -53,11 +49,8 @@ def limit_checks(
             found += _held(recipe, limit, lobe_figure(name, design.exact, limit.lift))
         elif name in measured:
             found += _held(recipe, limit, measured[name])
-        elif name in runs:
+        elif runs is not None and name in runs:
             for run, value in runs[name].items():
-                found += _held(recipe, limit, value, run)
-        elif of == "run" and dynamics is not None:
-            for run, value in of_dynamics(name, dynamics, checks).items():
                 found += _held(recipe, limit, value, run)
         elif of == "file":
             declared = declaration(LIMIT + name)

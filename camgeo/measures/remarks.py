@@ -53,7 +53,6 @@ RemarkName = Literal[
     "dwell-shorter",
     "large-cutter",
     "large-roller",
-    "lost-contact",
     "loose-motion-error",
     "loose-output-error",
     "metric-keyway",
@@ -99,7 +98,6 @@ def remarks_of(
         "sharp-corner": [_corner(recipe, design)],
         "large-cutter": [_cutter(recipe, design)],
         "pivot-clearance": [_pivot(recipe, design)],
-        "lost-contact": [_lost(recipe, design)],
         "motion": _motion(recipe, design),
         "table": _table(design),
         "wanted-law": [_law_error(recipe, design)],
@@ -278,24 +276,6 @@ def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remar
         f"a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
     )
     return Remark("no-play", play.least, 0.0, play.unit, told, play.least_at_deg)
-
-
-def _lost(recipe: Recipe, design: Design) -> Remark | None:
-    """A contact under preload that the follower's own inertia and load lift off at its speed: then there is play."""
-    if recipe.dynamics is None or design.exact.preload is None:
-        return None
-    from camgeo.measures.running_forces import running_of
-
-    running = running_of(recipe, design)
-    if running is None or running.jam_deg is not None:
-        return None
-    lost = [(one.rpm, one) for one in running.lost_rpm() if one.rpm is not None]
-    if not lost or min(lost)[0] > running.train.rpm:
-        return None
-    rpm, one = min(lost)
-    begins = f"from {rpm:.6g} rpm" if rpm > 0.0 else "by its load alone"
-    told = f"the preload does not hold {one.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
-    return Remark("lost-contact", rpm, running.train.rpm, "rpm", told, one.at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:

@@ -229,21 +229,6 @@ def _findings(
 
         with clock.stage("figures of the linkage"):
             linkage = linkage_section(recipe, design.driven, files)
-    train = None
-    if recipe.dynamics is not None and recipe.dynamics.stiffness is not None:
-        from camgeo.measures.dynamics import dynamics_of
-
-        with clock.stage("dynamics"):
-            train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
-        checks = [*checks, *train.checks]
-    forces = None
-    if recipe.dynamics is not None:
-        from camgeo.measures.force_figures import found_forces
-
-        with clock.stage("forces"):
-            forces = found_forces(recipe, design)
-        if forces is not None and train is None:
-            checks = [*checks, *forces.checks]
     results = []
     for capability in registry.in_order(recipe.uses):
         result = capability.examine(recipe, design, [file for file in files if file.shows_cam], clock)
@@ -259,9 +244,8 @@ def _findings(
         from camgeo.measures.limits import limit_checks
 
         with clock.stage("limits"):
-            section = None if train is None else train.section
             runs = {name: values for result in results for name, values in result.runs.items()}
-            checks = [*checks, *limit_checks(recipe, design, checks, files, section, runs=runs)]
+            checks = [*checks, *limit_checks(recipe, design, checks, files, runs)]
     balances: tuple[Balance, ...] = ()
     if recipe.part.density is not None:
         from camgeo.measures.balance import balances_of
@@ -281,9 +265,7 @@ def _findings(
         skipped,
         design.follower.name,
         linkage=linkage,
-        dynamics=None if train is None else train.section,
         preload=preload,
-        forces=None if forces is None else forces.section,
         sections={name: section for result in results for name, section in result.sections.items()},
         remarks=remarks,
         joints=design.exact.joints,

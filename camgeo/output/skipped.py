@@ -19,8 +19,6 @@ Skipped = tuple[str, str]
 def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
     """Name what was left out of a run that was asked for these files, and say why."""
     found = _files(recipe, requests, design)
-    if recipe.dynamics is None:
-        found.append(("dynamics", "dynamics is not given"))
     absent = ((name, label.absent) for name, label in registry.labels().items() if name not in recipe.uses)
     found += [(name, why) for name, why in absent if why]
     if not any(request.parts == "all" for request in requests):

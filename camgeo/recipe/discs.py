@@ -21,6 +21,3 @@ def check_discs(values: Values, reader: Reader) -> None:
     for name in ("hub", "set_screw"):
         if name in part:
             reader.fault_at(f"part.{name}", "belongs to a cam of one disc", None, "leave it out, or cam.conjugate")
-    if "stiffness" in values.get("dynamics", {}) and "preload" not in values["cam"]:
-        remedy = "leave it out: the forces of a rigid follower are found"
-        reader.fault_at("dynamics.stiffness", "two conjugate discs have no elastic train", None, remedy)

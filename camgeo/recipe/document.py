@@ -36,7 +36,7 @@ class Document:
     @property
     def tables(self) -> tuple[str, ...]:
         """Fields that name a file which is read with the recipe, from the folder that it stands in."""
-        return tuple(path for path in self.marks if path.startswith(("cam.", "dynamics.")) and path.endswith(".table"))
+        return tuple(path for path in self.marks if path.endswith(".table"))
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the recipe's text to a file, in place of what is there.

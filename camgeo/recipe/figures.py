@@ -64,38 +64,6 @@ OF_WANTED_LAW = Need("cam.delta.law", _given("cam.delta.law"))
 OF_STIFFNESS = Need("cam.preload.stiffness", _given("cam.preload.stiffness"))
 OF_DENSITY = Need("part.density, and in a sweep no linkage", _given("part.density"), part=True)
 
-# of the follower train
-OF_SPRING = Need("dynamics.preload and its stiffness", lambda _, paths: {"dynamics.preload", _STIFF} <= paths)
-OF_BACKLASH = Need("dynamics.backlash", lambda _, paths: {"dynamics.backlash", _STIFF} <= paths)
-OF_GUIDE = Need(
-    "dynamics.guide of a round follower", lambda offers, paths: "dynamics.guide" in paths and "stem" in offers
-)
-OF_SPEED = Need(
-    "a follower without a linkage, and dynamics.rpm",
-    lambda _, paths: "linkage" not in paths and "dynamics.rpm" in paths,
-)
-OF_FORCES = Need("dynamics without stiffness", lambda _, paths: _is_rigid(paths))
-OF_MATERIAL = Need(
-    "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
-    lambda _, paths: (
-        not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
-        and "dynamics.material" in paths
-        and _is_rigid(paths)
-    ),
-    part=True,
-)
-OF_REACTION = Need("dynamics.guide, and no stiffness", lambda _, paths: "dynamics.guide" in paths and _is_rigid(paths))
-OF_BEARING = Need(
-    "a roller that a cam turns, and dynamics without stiffness",
-    lambda offers, paths: "rolling" in offers and _is_rigid(paths),
-)
-_STIFF = "dynamics.stiffness"
-
-
-def _is_rigid(paths: AbstractSet[str]) -> bool:
-    return "dynamics" in paths and _STIFF not in paths
-
-
 # Names that stand in programs too.
 DWELL, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "size", "contact-travel", "wall"
 
@@ -107,7 +75,7 @@ PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio
 LAW_ERROR = "law-error"
 
 
-BACKLASH, BACKLASH_LEFT = "backlash", "least-backlash"
+BACKLASH = "backlash"
 
 
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
@@ -126,25 +94,13 @@ AT_LIFT = {DURATION: 1.27, LOBE_CENTRE: 1.27, RAMP_VELOCITY: 0.1524, LIFT_AREA: 
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
-FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
-
-
-FORCE_LEAST, FORCE_GREATEST, TORQUE = "contact-force-least", "contact-force-greatest", "shaft-torque"
-
-
-PRESSURE, GUIDE_FORCE, MEAN_FORCE = "contact-pressure", "guide-force", "mean-roller-force"
+FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE = "face-width", "roller-speed", "pivot-clearance"
 
 
 PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
 
 
-LEAST_FORCE, PEAK_FORCE = "least-force", "peak-force"
-
-
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
-
-
-AT_SPEED = tuple(f"{name}-at-speed" for name in PEAKS)
 
 
 _RETURN = Field(
@@ -156,7 +112,6 @@ _RETURN = Field(
     at_most=MOST**2,
     unit=Kind.ANGLE,
 )
-_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
 
 
 def _at_lift(name: str) -> tuple[Field]:
@@ -226,36 +181,6 @@ _CORE: dict[str, Figure] = {
         dear=True,
         eased_by="motion",
     ),
-    AT_SPEED[0]: Figure(
-        "peak-velocity a second, at the shaft's speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-    ),
-    AT_SPEED[1]: Figure(
-        "peak-acceleration a second squared, at that speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s^2",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-    ),
-    AT_SPEED[2]: Figure(
-        "peak-jerk a second cubed, at that speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s^3",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-    ),
     PRESSURE_ANGLE: Figure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
@@ -274,13 +199,6 @@ _CORE: dict[str, Figure] = {
     ),
     ON_RETURN: Figure(
         "the same on the return, greatest below 0", Kind.ANGLE, "least", OF_GUIDED, dear=True, eased_by="size"
-    ),
-    JAM_MARGIN: Figure(
-        "by how much the pressure angle stays below that at which the stem jams in its guide",
-        Kind.ANGLE,
-        "most",
-        OF_GUIDE,
-        dear=True,
     ),
     VELOCITY_RATIO: Figure(
         "greatest angular velocity of the arm over that of the shaft",
@@ -326,20 +244,6 @@ _CORE: dict[str, Figure] = {
         dear=True,
     ),
     PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", OF_STIFFNESS, dear=True),
-    FORCE_LEAST: Figure("least normal force of any contact at the speed, N", Kind.FORCE, "most", OF_FORCES, dear=True),
-    FORCE_GREATEST: Figure(
-        "greatest normal force of any contact at the speed, N", Kind.FORCE, "least", OF_FORCES, dear=True
-    ),
-    TORQUE: Figure(
-        "greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", OF_FORCES, dear=True
-    ),
-    PRESSURE: Figure(
-        "greatest pressure of the contacts (Hertz), N/mm²", Kind.PRESSURE, "least", OF_MATERIAL, per="N/mm^2", dear=True
-    ),
-    GUIDE_FORCE: Figure("greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION, dear=True),
-    MEAN_FORCE: Figure(
-        "mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", OF_BEARING, dear=True
-    ),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
     "force-angle": Figure(
         "least angle between the force at the joint and the rocker", Kind.ANGLE, "most", OF_LINKAGE, dear=True
@@ -409,20 +313,6 @@ _CORE: dict[str, Figure] = {
     ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, OF_LINKAGE),
     "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
-    LEAST_FORCE: Figure(
-        "least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING, of="run", swept=False
-    ),
-    PEAK_FORCE: Figure(
-        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING, of="run", swept=False
-    ),
-    BACKLASH_LEFT: Figure(
-        "least backlash that the dynamics leave between the faces",
-        Kind.ERROR,
-        "most",
-        OF_BACKLASH,
-        of="run",
-        swept=False,
-    ),
 }
 
 

@@ -9,7 +9,6 @@ from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
-from camgeo.recipe.dynamics import DYNAMICS, check_guide, check_train, check_width
 from camgeo.recipe.export import EXPORT, check_files
 from camgeo.recipe.figures import ALL
 from camgeo.recipe.limits import LIMITS, check_limits
@@ -87,13 +86,6 @@ CORE = Table(
         LIMITS,
         mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
-        Field(
-            "dynamics",
-            Kind.TABLE,
-            "the follower train, whose forces, float and impacts at a speed are found",
-            default="none",
-            table=DYNAMICS,
-        ),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
 )
@@ -195,9 +187,6 @@ def _check(values: Values, reader: Reader) -> None:
     check_preload(values, reader)
     check_discs(values, reader)
     check_files(values, reader)
-    check_train(values.get("dynamics", {}), reader)
-    check_width(values, reader)
-    check_guide(values, reader)
     check_cutter(reader)
     check_allowance(values.get("manufacture", {}), reader)
     check_limits(values.get("limits", []), reader)

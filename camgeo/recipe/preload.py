@@ -17,23 +17,13 @@ SIDES = 2.0  # of a contour, each of which may be off by the tolerance
 
 def check_preload(values: Values, reader: Reader) -> None:
     """Note what does not go with metal that both contacts overlap, and tolerances in which the overlap is lost."""
-    cam, dynamics = values.get("cam", {}), values.get("dynamics", {})
+    cam = values.get("cam", {})
     preload = cam.get("preload")
     if preload is None:
         return
     if cam.get("undercut") == "trim":
         remedy = "leave it out, or cam.preload: where metal is cut off nothing is preloaded"
         reader.fault_at("cam.undercut", "a preloaded cam is not trimmed", "trim", remedy)
-    spring = next((name for name in ("preload", "least_force") if name in dynamics), None)
-    if "backlash" in dynamics:
-        remedy = "leave cam.preload out, or dynamics"
-        reader.fault_at("dynamics.backlash", "clearance beside an interference", None, remedy)
-    elif spring is not None and not reader.kinds["linkage"]:  # under which it acts on the output
-        remedy = "leave cam.preload out, or dynamics"
-        reader.fault_at(f"dynamics.{spring}", "a spring beside a second contact that is preloaded", None, remedy)
-    elif "stiffness" in dynamics:
-        remedy = "leave it out; cam.preload.stiffness has that of the contacts"
-        reader.fault_at("dynamics.stiffness", "an elastic train beside preloaded contacts", None, remedy)
     listed = values.get("export", {}).get("files", [])
     for file in listed:
         kind, path = file["kind"], file["path"]

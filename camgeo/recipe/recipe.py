@@ -17,7 +17,6 @@ from camgeo.common.errors import CallError
 from camgeo.recipe.assembly import MechanismAsked
 from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
-from camgeo.recipe.dynamics import Dynamics, build_train
 from camgeo.recipe.export import build_export
 from camgeo.recipe.keys import UNITS, read_values, recipe_table, words_of
 from camgeo.recipe.limits import Limit, build_limits
@@ -120,7 +119,6 @@ class Recipe(Order):
     part: Part
     linkage: Linkage | None = None
     dwell: DwellAsked | None = None
-    dynamics: Dynamics | None = None
     manufacture: Manufacture | None = None
     wheel: float | None = None
     mechanism: MechanismAsked | None = None
@@ -311,7 +309,6 @@ def _built(values: Values, document: Document, words: set[str]) -> Recipe:
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         linkage=linkage,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
-        dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,
         manufacture=milling,
         wheel=wheel,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,

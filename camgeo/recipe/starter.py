@@ -132,7 +132,7 @@ _CORE = {
             "motion": _DWELLS.format("24"),
         },
         {"part": {"thickness": "12", "bore": "20"}},
-        unfit=("track", "length", "angle", "arm", "hub", "set_screw", "dynamics", "mechanism"),
+        unfit=("track", "length", "angle", "arm", "hub", "set_screw", "mechanism"),
     ),
     "disc-ring": Starter(
         "A ring for a roller that runs inside it, on a stem.",
@@ -156,7 +156,7 @@ _CORE = {
             "motion": _DWELLS.format("20"),
         },
         {"part": {"thickness": "12", "bore": "16", "outer": "160"}},
-        unfit=("undercut", "chamfer", "dynamics"),
+        unfit=("undercut", "chamfer"),
     ),
     "constant-diameter": Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",

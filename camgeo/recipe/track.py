@@ -65,9 +65,6 @@ def _check_groove(values: Values, reader: Reader) -> None:
     if "depth" in groove and not groove["depth"] < part.get("thickness", groove["depth"] + 1.0):
         reader.fault_at(depth, "not below the thickness", None, "give a depth below part.thickness")
     _check_cutter(values, groove.get("clearance", 0.0), reader)
-    if "stiffness" in values.get("dynamics", {}):
-        remedy = "leave it out: the forces of a rigid follower are found"
-        reader.fault_at("dynamics.stiffness", "a groove has no elastic train", None, remedy)
     for file in values.get("export", {}).get("files", []):
         kind, path = file["kind"], file["path"]
         for name in ("kerf", "clearance", "shrinkage"):

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.starter import Starter
+    from camgeo.registry.formats import Form
     from camgeo.registry.root import Root
     from camgeo.report.page.curves import Plot
     from camgeo.schema.fields import Field
@@ -145,6 +146,11 @@ def no_figures(
     return EMPTY
 
 
+def no_remedy(_recipe: Recipe, _figure: str, _value: float, _bound: float, /) -> str:
+    """Know no remedy."""
+    return ""
+
+
 def no_panel(_report: dict[str, Any], /) -> str:
     """Show nothing."""
     return ""
@@ -153,6 +159,11 @@ def no_panel(_report: dict[str, Any], /) -> str:
 def no_plots(_recipe: Recipe, _design: Design, /) -> Sequence[Plot]:
     """Plot nothing."""
     return ()
+
+
+def no_tables() -> Mapping[str, Form]:
+    """Give no tables."""
+    return EMPTY
 
 
 def no_estimates() -> Mapping[str, Estimate]:
@@ -184,15 +195,17 @@ class Capability:
     estimates figures of many cams at once for a sweep, by name
     checks    declarations of all its checks; every check that it makes is one of them
     exact     checks that need no file: (recipe, exact cam, each surface with its contour)
+    remedy    what would bring a figure of its own to a bound that it misses; empty: nothing that is known
     demand    raises SurroundingsError where a library is missing that it needs, before anything is designed
     look      checks of files beside the judge's: (recipe, design, all files, checks of them so far, clock)
     examine   checks, sections of the report and figures of runs, when all files were judged
 
-    Of what is shown:
+    Of what is shown and written:
 
     remarks   by the core's group of remarks behind which they stand, see `remarks_of`: (recipe, design) -> remarks
     panel     HTML on the page, from the report
     plots     on the page, over a turn
+    tables    forms of CSV by their words
     """
 
     fields: Callable[[], Sequence[Field]] = no_fields
@@ -207,9 +220,11 @@ class Capability:
     estimates: Callable[[], Mapping[str, Estimate]] = no_estimates
     checks: Callable[[], Sequence[Declared]] = no_declarations
     exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = no_exact_checks
+    remedy: Callable[[Recipe, str, float, float], str] = no_remedy
     demand: Callable[[Recipe], None] = no_demand
     look: Callable[[Recipe, Design, Sequence[FileResult], Sequence[Check], Clock], Results] = no_opinion
     examine: Callable[[Recipe, Design, Sequence[FileResult], Clock], Results] = no_results
     remarks: Mapping[str, Callable[[Recipe, Design], Sequence[Remark]]] = EMPTY
     panel: Callable[[dict[str, Any]], str] = no_panel
     plots: Callable[[Recipe, Design], Sequence[Plot]] = no_plots
+    tables: Callable[[], Mapping[str, Form]] = no_tables

@@ -74,6 +74,7 @@ class Form:
     ground    whether it is a table by which a lobe is ground, whose contour is judged
     check     notes what a recipe that asks for it lacks: (values of the file, values of the recipe, reader)
     make      writes and judges it, where the format has no one way for all its forms
+    after     name of the core's form behind which that of a capability stands; empty: behind all
     """
 
     name: str = ""
@@ -84,6 +85,7 @@ class Form:
     ground: bool = False
     check: Callable[[Values, Values, Reader], None] = no_fault
     make: Callable[[Job, FileRequest, Path], Made] | None = None
+    after: str = ""
 
 
 WHOLE: Mapping[str, Form] = MappingProxyType({"": Form(surfaces=2, discs=2)})

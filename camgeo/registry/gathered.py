@@ -33,7 +33,7 @@ class Gathered(Mapping[str, E]):
         """Make the table of the core's entries; `of` gives those of a capability."""
         self._core = core
         self._of = of
-        self._every: dict[str, E] = {}
+        self._every: list[str] = []
 
     def __getitem__(self, name: str) -> E:
         """Entry of this name; raises KeyError."""
@@ -56,6 +56,12 @@ class Gathered(Mapping[str, E]):
         """Number of entries."""
         return len(self._whole())
 
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same table: two are not compared entry by entry."""
+        return self is other
+
     def owner(self, name: str) -> str:
         """Name of the capability that an entry comes from, empty for the core; raises KeyError where there is none."""
         if name in self._core:
@@ -68,16 +74,22 @@ class Gathered(Mapping[str, E]):
 
     def among(self, capabilities: Collection[str]) -> dict[str, E]:
         """Entries of the core and of these capabilities, in order."""
-        groups: dict[str, list[tuple[str, E]]] = {"": []}
-        for name, entry in self._core.items():
-            groups[name] = [(name, entry)]
-        for capability in registry.in_order(capabilities):
-            for name, entry in self._of(capability).items():
-                groups[entry.after].append((name, entry))
-        last = groups.pop("")
-        return dict(entry for group in (*groups.values(), last) for entry in group)
+        added = {name: entry for capability in self._added(capabilities) for name, entry in capability.items()}
+        return {name: added[name] if name in added else self._core[name] for name in self._ordered(capabilities)}
 
-    def _whole(self) -> dict[str, E]:
+    def _added(self, capabilities: Collection[str]) -> Iterator[Mapping[str, E]]:
+        return (self._of(capability) for capability in registry.in_order(capabilities))
+
+    def _ordered(self, capabilities: Collection[str]) -> list[str]:
+        """Names in order; no entry of the core is asked for."""
+        groups: dict[str, list[str]] = {"": [], **{name: [name] for name in self._core}}
+        for entries in self._added(capabilities):
+            for name, entry in entries.items():
+                groups[entry.after].append(name)
+        last = groups.pop("")
+        return [name for group in (*groups.values(), last) for name in group]
+
+    def _whole(self) -> list[str]:
         if not self._every:
-            self._every = self.among(registry.recorded())
+            self._every = self._ordered(registry.recorded())
         return self._every

@@ -49,9 +49,7 @@ class Findings:
     follower: str
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
-    dynamics: dict[str, Any] | None = None
     preload: dict[str, object] | None = None
-    forces: dict[str, object] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
     table: Kept | None = None
@@ -69,7 +67,6 @@ class Findings:
 def document(recipe: Order, findings: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
     linkage = {} if findings.linkage is None else {"linkage": findings.linkage}
-    dynamics = {} if findings.dynamics is None else {"dynamics": findings.dynamics}
     preload = {} if findings.preload is None else {"preload": findings.preload}
     return {
         "recipe": recipe.name,
@@ -89,9 +86,7 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         "files": [_file(recipe, file) for file in findings.files]
         + [{"path": name, "stale": True} for name in findings.kept],
         **linkage,
-        **dynamics,
         **preload,
-        **({} if findings.forces is None else {"forces": findings.forces}),
         **findings.sections,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in findings.stages],
         "skipped": [{"what": what, "why": why} for what, why in findings.skipped],

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 from kin.numeric.records import KW_ONLY, dataclass, field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from camgeo.schema.yaml_source import Node
 
@@ -34,8 +34,9 @@ MOST_STEPS = 1_000_000  # of one axis
 MOST_DESIGNS = 100_000_000  # of a sweep
 
 
-def either(words: tuple[str, ...], conjunction: str = "or") -> str:
+def either(words: Iterable[str], conjunction: str = "or") -> str:
     """Join words: `a, b or c`."""
+    words = tuple(words)
     return f" {conjunction} ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
@@ -111,7 +112,7 @@ class Field:
     at_least: float | None = None
     at_most: float | None = None
     odd: bool = False
-    choices: tuple[str, ...] = ()
+    choices: Collection[str] = ()
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
     unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import SAME_BREADTH, spread
-from camgeo.checks.declared import DIAMETER, FACE_WIDTH, JAM, PRESSURE, TRAVEL, WHEEL
+from camgeo.checks.declared import DIAMETER, FACE_WIDTH, PRESSURE, TRAVEL, WHEEL
 from kin.judge.check import Check
 from kin.numeric.angles import degrees
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam, Proof
     from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
-    from camgeo.recipe.dynamics import StemGuide
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
@@ -54,7 +53,7 @@ def _face_length(exact: ExactCam, surface: Surface) -> Check:
     if place is None:
         raise TypeError("no contact travels along a face")
     t = spread(exact.breaks, 2.0 * math.pi)
-    low, high = _greatest(lambda u: np.array([-1.0, 1.0])[:, None] * place(u), t)
+    low, high = greatest(lambda u: np.array([-1.0, 1.0])[:, None] * place(u), t)
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
@@ -67,7 +66,7 @@ def _pressure_angle(exact: ExactCam, surface: Surface) -> Check:
         worst = max(proved, key=lambda one: abs(one.value))
         value, at = math.degrees(math.atan(abs(worst.value) + worst.slack)), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
-    ((value, at),) = _greatest(
+    ((value, at),) = greatest(
         lambda t: np.degrees(np.abs(surface.pressure(t)))[None], spread(exact.breaks, 2.0 * math.pi)
     )
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", exact.motion.shaft_deg(at))
@@ -100,51 +99,10 @@ def needed_width(surface: Surface) -> tuple[float, float]:
     return 2.0 * (abs(worst.value) + worst.slack), degrees(worst.at)
 
 
-def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
-    """Pressure angle with which the stem is pushed on, the one at which it jams, degrees, and the shaft angle.
-
-    On the rise the former is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot. Of
-    two contacts it is the one that is nearer to jamming; the second stands beyond the shaft.
-    """
-    first, angles = exact.follower.contacts[0], []
-    surfaces = {surface.name: surface for surface in exact.surfaces}
-    for contact in exact.follower.contacts:
-        if (slope := surfaces[contact.surface].extremes("slope")) is not None:
-            beyond = first.zero + contact.zero if contact.turned else 0.0
-            steepest = max(slope[1].value + slope[1].slack, exact.follower.lean)
-            later = 0.0 if contact.surface else contact.turned  # on one surface the second is where the first was
-            at = degrees(math.fmod(slope[1].at + later, 2.0 * math.pi))
-            angles.append((math.degrees(math.atan(steepest)), math.degrees(guide.jam(beyond)), at))
-    if not angles:
-        raise TypeError("no stem is led in a guide")
-    return max(angles, key=lambda angle: angle[0] - angle[1])
-
-
-def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | None:
-    """The same of a face without tilt, by how far from its stem's axis it is pushed, mm; None of other touches.
-
-    The contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins. Of a yoke
-    one of its faces pushes on wherever it moves.
-    """
-    proved = [along[1] for surface in exact.surfaces if (along := surface.extremes("contact")) is not None]
-    place = exact.surfaces[0].place
-    if not proved and place is not None:
-        pushed: Callable[[Array], Array] = place if exact.follower.breadth is None else lambda t: np.abs(place(t))
-        ((farthest, at),) = _greatest(lambda t: pushed(t)[None], spread(exact.breaks, 2.0 * math.pi))
-        return max(farthest, 0.0), guide.reach, exact.motion.shaft_deg(at)
-    if not proved:
-        return None
-    most = max(proved, key=lambda one: one.value + one.slack)
-    return max(most.value + most.slack, abs(exact.follower.offset)), guide.reach, degrees(most.at)
-
-
-def guide_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
-    """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
-    found, train, wheel = [], recipe.dynamics, recipe.wheel
-    if train is not None and train.guide is not None:
-        aside = _aside(exact, train.guide)
-        value, limit, at = aside or jam_angle(exact, train.guide)
-        found.append(Check(JAM.name, value < limit, value, limit, "mm" if aside else "deg", at))
+def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
+    """Whether a grinding wheel reaches into the hollows."""
+    found: list[Check] = []
+    wheel = recipe.wheel
     if wheel is None:
         return found
     for surface, contour in contours:
@@ -164,7 +122,7 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
     return least_hollow(contour) if side > 0 else least_radius(contour)
 
 
-def _greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
+def greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
     """Greatest values of k continuous functions of period 2 pi, looked at at t (n,) and closely about the best; where.
 
     `function` gives the values (k, n). Of places that are equal but for rounding the first.

@@ -163,14 +163,14 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, exact)) from error
     with clock.stage("figures"):
-        from camgeo.synthesis.checks import guide_checks, motion_checks
+        from camgeo.synthesis.checks import motion_checks, wheel_checks
 
         checks = [check for surface in sounded for check in surface.checks]
         contours = [(made.surface, made.contour) for made in sounded if made.contour is not None]
         checks += motion_checks(exact)
         for capability in registry.in_order(recipe.uses):
             checks += capability.exact(recipe, exact, contours)
-        checks += guide_checks(recipe, exact, contours)
+        checks += wheel_checks(recipe, exact, contours)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

@@ -16,6 +16,7 @@ from support.cases import examples, few
 from support.starters import OF_CAMS
 from support.sweepers import evaluate
 
+from camgeo.capabilities.dynamics import figures as train
 from camgeo.capabilities.sweep.figures import REASONS, asked_of
 from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
@@ -299,20 +300,20 @@ def test_a_figure_that_a_recipe_has_not() -> None:
         needs.OF_FACE: ROLLER,
         needs.OF_WALL: ROLLER,
         needs.OF_BODIES: FLAT,
-        needs.OF_SPRING: FLAT,
-        needs.OF_BACKLASH: FLAT,
+        train.OF_SPRING: FLAT,
+        train.OF_BACKLASH: FLAT,
         needs.OF_GUIDED: ROLLER,
         needs.OF_ROLLING: ROLLER,
         needs.OF_ARM: STEM,
         needs.OF_STEM: ARM,
         needs.OF_STEM_FACE: FLAT,
-        needs.OF_GUIDE: FLAT,
-        needs.OF_SPEED: FLAT,
+        train.OF_GUIDE: FLAT,
+        train.OF_SPEED: FLAT,
         needs.OF_STIFFNESS: FLAT,
-        needs.OF_FORCES: FLAT,
-        needs.OF_MATERIAL: FLAT,
-        needs.OF_BEARING: FLAT,
-        needs.OF_REACTION: FLAT,
+        train.OF_FORCES: FLAT,
+        train.OF_MATERIAL: FLAT,
+        train.OF_BEARING: FLAT,
+        train.OF_REACTION: FLAT,
         needs.OF_WANTED_LAW: ROLLER,
         needs.OF_DENSITY: FLAT,
     }

@@ -237,8 +237,8 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
 
 UNUSED = {
     "camgeo": "assembly cli.laws cli.report cli.watch machining report.page schema.edit",
-    "camgeo.capabilities": "milling.format milling.record study.command sweep.record",
-    "camgeo.formats": "glb ply step tables.contacts tables.forces",
+    "camgeo.capabilities": "dynamics.keys dynamics.record milling.format milling.record study.command sweep.record",
+    "camgeo.formats": "glb ply step tables.contacts tables.polar",
     "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
     "camgeo.synthesis": "linkage motion_table part.lightening view",
     "kin": "clearance dynamics follower.faces_on_arm follower.roller judge.milling law.transmission linkage",

@@ -423,9 +423,6 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     assert any(one.shrinkage for one in apart)
     assert any(file.overlays for file in files)
     assert [name for name, recipe in recipes.items() if recipe.cam.undercut == "trim"] == ["disc-trim"]
-    assert [name for name, recipe in recipes.items() if recipe.dynamics and recipe.dynamics.transient] == [
-        "disc-transient"
-    ]
     tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace", "forces"}
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", *tables, None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}

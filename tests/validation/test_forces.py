@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from camgeo.capabilities.dynamics.force_figures import extremes_of, forces_section, forces_table
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.measures.figures import of_design
-from camgeo.measures.force_figures import extremes_of, forces_section, forces_table
-from camgeo.measures.running_forces import running_of
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -238,7 +238,7 @@ def test_the_table_of_two_surfaces(text, contacts, tmp_path):
 
 def test_contact_that_a_weak_spring_loses():
     recipe = read((LOBE + "dynamics: {mass: 1.2, rate: 8000, rpm: 900, preload: 100}\n").encode(), Path("lobe.yaml"))
-    from camgeo.measures.force_figures import found_forces
+    from camgeo.capabilities.dynamics.force_figures import found_forces
 
     (check,) = found_forces(recipe, designed(recipe)).checks
     assert not check.ok

@@ -18,10 +18,10 @@ from support.cases import examples
 from support.page_tables import Row
 from support.square_frame import Bars, axes, solve
 
+from camgeo.capabilities.dynamics.force_figures import extremes_of, forces_section
+from camgeo.capabilities.dynamics.frame_forces import REACTIONS
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.measures.figures import of_design
-from camgeo.measures.force_figures import extremes_of, forces_section
-from camgeo.measures.frame_forces import REACTIONS
-from camgeo.measures.running_forces import running_of
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors

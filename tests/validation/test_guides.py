@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camgeo.measures.force_figures import extremes_of, found_forces
-from camgeo.measures.running_forces import running_of
+from camgeo.capabilities.dynamics.force_figures import extremes_of, found_forces
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import camgeo
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.cli.main import main
 from camgeo.measures.figures import of_design
 from camgeo.measures.forces import preload_section
-from camgeo.measures.running_forces import running_of
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from support.cases import examples
 
-from camgeo.measures.running_forces import running_of
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors

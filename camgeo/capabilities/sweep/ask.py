@@ -11,7 +11,7 @@ from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Sweep
 from camgeo.capabilities.sweep.plan import Axis, Plan, steps
 from camgeo.recipe.export import Export
-from camgeo.recipe.figures import FIGURES, OF_GUIDE, OF_SPEED
+from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
@@ -129,7 +129,6 @@ class Ask:
         was computed as it is.
         """
         owners = {"sweep", *(FIGURES.owner(name) for name in figures)}
-        timed = any(FIGURES[name].needs in (OF_SPEED, OF_GUIDE) for name in figures)
         whole = any(FIGURES[name].needs.part for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
@@ -139,7 +138,6 @@ class Ask:
             part=self.recipe.part if whole else Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
-            dynamics=self.recipe.dynamics if timed else None,
             path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
         )
         return Scene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))

@@ -5,11 +5,9 @@ function, with each law of the catalogue, at 360 angles.
 """
 
 from camgeo.recipe.figures import (
-    AT_SPEED,
     CONTACT_TRAVEL,
     FACE_WIDTH,
     HOLLOW_RADIUS,
-    JAM_MARGIN,
     ON_RETURN,
     ON_RISE,
     PEAKS,
@@ -23,7 +21,7 @@ from camgeo.recipe.figures import (
 
 DESIGNS = 1000
 
-DEGREES = frozenset({PRESSURE_ANGLE, ON_RISE, ON_RETURN, JAM_MARGIN})
+DEGREES = frozenset({PRESSURE_ANGLE, ON_RISE, ON_RETURN})
 """Figures whose errors are told in degrees; those of others are shares of the value."""
 
 _PEAKS = (1.3e-5, 5.5e-5, 6.3e-6)
@@ -31,11 +29,9 @@ _PEAKS = (1.3e-5, 5.5e-5, 6.3e-6)
 ERRORS: dict[str, float] = {
     "swing": 8.3e-6,
     **dict(zip(PEAKS, _PEAKS, strict=True)),
-    **dict(zip(AT_SPEED, _PEAKS, strict=True)),
     PRESSURE_ANGLE: 3.7e-4,
     ON_RISE: 3.7e-4,
     ON_RETURN: 3.7e-4,
-    JAM_MARGIN: 3.7e-4,
     ROLLER_SPEED: 2.5e-6,
     RADIUS: 3.2e-4,
     HOLLOW_RADIUS: 1.2e-3,

@@ -18,12 +18,10 @@ from camgeo.capabilities.sweep.estimate_errors import DEGREES, ERRORS
 from camgeo.capabilities.sweep.keys import varied
 from camgeo.capabilities.sweep.samples import Template, shot_of
 from camgeo.recipe.figures import (
-    AT_SPEED,
     BASE_RADIUS,
     CONTACT_TRAVEL,
     FACE_WIDTH,
     HOLLOW_RADIUS,
-    JAM_MARGIN,
     OFFSET,
     ON_RETURN,
     ON_RISE,
@@ -40,7 +38,6 @@ from camgeo.recipe.loading import load_text
 from camgeo.registry import registry
 from camgeo.schema.errors import RecipeErrors
 from kin.law.programme import IntentError
-from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -151,24 +148,11 @@ class Cams:
         """Greatest derivative of the motion by the shaft angle, or at a speed, rad/s, by time."""
         return self.scale * speed**order * self.greatest(self.sampled.rows[order])
 
-    def jam(self) -> Array:
-        """By how much the pressure angle stays below that at which the stem jams, degrees."""
-        train, lean = self.recipe.dynamics, self.contours.lean
-        if train is None or train.guide is None or lean is None:
-            raise TypeError("no stem is led in a guide")
-        steepest = np.maximum(self.most(self.contours.slope), lean[:, 0])
-        return math.degrees(train.guide.jam()) - np.degrees(np.arctan(steepest))
-
     def spin(self) -> Array:
         """Greatest speed of the roller."""
         if self.contours.spin is None:
             raise TypeError("no roller turns")
         return self.greatest(self.contours.spin)
-
-    @property
-    def rate(self) -> float:
-        """Speed of the shaft, rad/s."""
-        return 0.0 if self.recipe.dynamics is None else self.recipe.dynamics.rpm * TURN / 60.0
 
 
 def _degrees(slope: Array) -> Array:
@@ -180,13 +164,9 @@ _CORE: dict[str, Callable[[Cams], Array]] = {
     PEAKS[0]: lambda cams: cams.peak(1),
     PEAKS[1]: lambda cams: cams.peak(2),
     PEAKS[2]: lambda cams: cams.peak(3),
-    AT_SPEED[0]: lambda cams: cams.peak(1, cams.rate),
-    AT_SPEED[1]: lambda cams: cams.peak(2, cams.rate),
-    AT_SPEED[2]: lambda cams: cams.peak(3, cams.rate),
     PRESSURE_ANGLE: lambda cams: _degrees(cams.greatest(cams.contours.slope)),
     ON_RISE: lambda cams: _degrees(cams.most(cams.contours.slope)),
     ON_RETURN: lambda cams: _degrees(cams.most(-cams.contours.slope)),
-    JAM_MARGIN: Cams.jam,
     RADIUS: lambda cams: cams.pitch - cams.touch,
     PITCH_RADIUS: lambda cams: cams.pitch,
     HOLLOW_RADIUS: lambda cams: cams.hollow,

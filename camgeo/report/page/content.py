@@ -76,7 +76,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     groups = outline.together(files, len(design.discs))
     drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots += curves.preload(recipe, design) + curves.forces(recipe, design)
+    plots += curves.preload(recipe, design)
     for capability in registry.in_order(recipe.uses):
         plots += capability.plots(recipe, design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]

@@ -10,22 +10,9 @@ import numpy as np
 from camgeo.common.units import INCH
 from camgeo.curve.support import is_sharp
 from camgeo.measures.units import in_pounds
-from camgeo.recipe.figures import (
-    AT_SPEED,
-    BACKLASH,
-    BACKLASH_LEFT,
-    FORCE_GREATEST,
-    FORCE_LEAST,
-    ON_RETURN,
-    ON_RISE,
-    PEAKS,
-    PITCH_RADIUS,
-    PRESSURE,
-    PRESSURE_ANGLE,
-    RADIUS,
-    TORQUE,
-)
+from camgeo.recipe.figures import BACKLASH, FIGURES, ON_RETURN, ON_RISE, PITCH_RADIUS, PRESSURE_ANGLE, RADIUS
 from camgeo.report.page.followers import SHAFT
+from camgeo.schema.fields import Kind
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
@@ -138,16 +125,27 @@ def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot
     for order, name in enumerate(DERIVATIVES[1:], start=1):
         factor, power, note = per(recipe, order)
         series = (Series(name, factor * rows[order]),)
-        peak = PEAKS[order - 1] if recipe.dynamics is None else AT_SPEED[order - 1]
         scale = recipe.mm if unit == length_unit(recipe) else 1.0
-        lines = limits(recipe, {peak: (1.0, -1.0)}, series, 1.0 / scale)
+        lines = limits(recipe, _peaks(recipe, power), series, 1.0 / scale)
         found.append(Plot(name.capitalize(), unit + power, series, limits=lines, dwells=True, note=note))
     return found
 
 
+def _peaks(recipe: Recipe, power: str) -> dict[str, tuple[float, float]]:
+    """Return the sides on which limits of a motion's peaks stand, of the figures that are told by this power."""
+    limited = {limit.figure: FIGURES[limit.figure] for limit in recipe.limits}
+    peaks = {name for name, figure in limited.items() if figure.kind is Kind.MOTION and raised(figure.per) == power}
+    return dict.fromkeys(peaks, (1.0, -1.0))
+
+
+def raised(unit: str) -> str:
+    """Return a unit with its powers as they are read."""
+    return unit.replace("^2", "²").replace("^3", "³")
+
+
 def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
     """Return factor, unit and note of a derivative: by radian, or by second where the shaft's speed is given."""
-    rpm = recipe.rpm if recipe.dynamics is None else recipe.dynamics.rpm
+    rpm = recipe.rpm
     if rpm is None:
         return 1.0, POWERS[order - 1], ""
     return (rpm * TURN / 60.0) ** order, TIMES[order - 1], f"at {rpm:g} rpm"
@@ -209,7 +207,7 @@ def limits(
     `scale` is a plot's values over the limits'. A limit of a peak at a speed that is not the plotted one has no line.
     """
     values = np.concatenate([row.values for row in series])
-    rpm = None if recipe.dynamics is None else recipe.dynamics.rpm
+    rpm = recipe.rpm
     lines = []
     for limit in recipe.limits:
         for side in sides.get(limit.figure, ()) if limit.rpm in {None, rpm} else ():
@@ -229,53 +227,10 @@ def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note, axis="lever")
 
 
-def forces(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return the plots of load, forces at the contacts and of the shaft's torque; none but of a rigid train.
-
-    Of a recipe in inches they are in pounds.
-    """
-    from camgeo.measures.running_forces import running_of
-
-    running = None if recipe.dynamics is None else running_of(recipe, design)
-    if running is None or running.jam_deg is not None:
-        return []
-    state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
-
-    def plot(title: str, axis: str, si: str, rows: Mapping[str, Array], sides: Mapping[str, Sequence[float]]) -> Plot:
-        factor, unit = shown_in(recipe, si)
-        series = tuple(Series(name, factor * row) for name, row in rows.items())
-        lines = limits(recipe, sides, series, factor)
-        return Plot(title, unit, series, limits=lines, dwells=True, note=note, axis=axis, holds=(0.0,))
-
-    def opposite(title: str, axis: str, si: str, rows: Array, sides: Mapping[str, Sequence[float]]) -> list[Plot]:
-        """Return a plot for one contact, or for two that stand opposite each other."""
-        named = list(zip(running.turn.names, rows, strict=True))
-        step = max(1, len(named) // 2)
-        groups = [dict(named[k::step]) for k in range(step)]
-        titles = [title if step == 1 else f"{title}, {' and '.join(group)}" for group in groups]
-        return [plot(name, axis, si, group, sides) for name, group in zip(titles, groups, strict=True)]
-
-    load = running.load(SHAFT)
-    plots = [plot("Load", "load", running.turn.unit, {"load against the follower": load}, {})] if load.any() else []
-    plots += opposite("Contact force", "force", "N", state.normal, {FORCE_GREATEST: (1.0,), FORCE_LEAST: (1.0,)})
-    plots.append(plot("Torque of the shaft", "torque", "N m", {"torque": state.torque}, {TORQUE: (1.0, -1.0)}))
-    if recipe.linkage is not None:
-        across, along, *joints = state.reactions.items()
-        plots.append(plot("Forces of the frame", "force", "N", dict([across, along]), {}))
-        if joints:
-            plots.append(plot("Forces at joint D", "force", "N", dict(joints), {}))
-    if state.pressure is not None:
-        pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
-        most, (factor, _) = running.most_pressure, shown_in(recipe, "N/mm^2")
-        borne = () if most is None else ((factor * most, f"material {short(factor * most)}"),)
-        plots += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
-    return plots
-
-
 def shown_in(recipe: Recipe, si: str) -> tuple[float, str]:
     """Return how many of the shown unit one SI unit of force, moment or pressure is, and the unit as it is read."""
     factor, unit = in_pounds(recipe.units, 1.0, si)
-    return factor, unit.replace("^2", "²")
+    return factor, raised(unit)
 
 
 def preload(recipe: Recipe, design: Design) -> list[Plot]:
@@ -382,7 +337,7 @@ def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot
         names = " and ".join(file.name for file in files)
         note = f"of the follower between {closure.pushes} and {closure.stops}; below 0 they interfere"
         series = (Series("backlash", scale * values),)
-        sides = {BACKLASH: (1.0,), BACKLASH_LEFT: (1.0,)}
+        sides = {BACKLASH: (1.0,)}
         lines = ((0.0, ""), *limits(recipe, sides, series, scale if unit != "°" else 1.0))
         plot = Plot(
             f"Backlash, {names}", unit, series, limits=lines, dwells=True, note=note, axis="backlash", holds=(0.0,)

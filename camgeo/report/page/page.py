@@ -35,7 +35,7 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
-        "panels": tables.preload(report) + tables.forces(report) + tables.dynamics(report) + _panels(recipe, report),
+        "panels": tables.preload(report) + _panels(recipe, report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
         "script": asset("page.js"),

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from camgeo.checks.declared import declaration
-from camgeo.measures.frame_forces import REACTIONS
 from camgeo.measures.units import in_pounds
 from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import sign, title
@@ -16,7 +15,7 @@ from camgeo.report.document import measured, pieces_word, value_text
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    _Row = tuple[str, float | None, str, float | None]
+    Row = tuple[str, float | None, str, float | None]
 
 NONE = "–"
 MANY = 40  # checks, beyond which those of files that hold are folded up
@@ -45,11 +44,11 @@ def checks(report: dict[str, Any]) -> str:
     head = ("", "check", "value", "unit", "limit", "at", "file")
     failing_first = sum(not check["ok"] for check in shown)
     rows = [_check(check, linked=linked) for check in shown]
-    text = _table("Checks", head, [*rows[:failing_first], *noted, *rows[failing_first:]], "checks")
+    text = html_table("Checks", head, [*rows[:failing_first], *noted, *rows[failing_first:]], "checks")
     for file, held in folded.items():
         rows = [_check(check, linked=linked) for check in held]
         told = f"{len(held)} check{'s' * (len(held) != 1)} of {escape(file)} hold{'s' * (len(held) == 1)}"
-        table = _table(f"Checks of {escape(file)}", head, rows, "checks")
+        table = html_table(f"Checks of {escape(file)}", head, rows, "checks")
         text += f'<details class="file"><summary>{told}</summary>{table}</details>'
     return text
 
@@ -80,8 +79,8 @@ def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, t
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
-        f"<td>{_beside(shown['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
-        f"{_cell(_place(check['at_deg'], over))}"
+        f"<td>{beside(shown['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
+        f"{_cell(place_button(check['at_deg'], over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
@@ -118,7 +117,7 @@ def written(report: dict[str, Any]) -> str:
         return "<p>No files were made.</p>"
     unit = "in" if report["units"] == "inch" else "mm"
     head = ("file", "size", "pieces", f"tolerance, {unit}", "proved", "measured", "motion error", "rms")
-    return _table("Files", head, rows)
+    return html_table("Files", head, rows)
 
 
 def linkage(report: dict[str, Any]) -> str:
@@ -128,7 +127,7 @@ def linkage(report: dict[str, Any]) -> str:
         return ""
     text = [
         f'<tr><th scope="row">{name}</th><td class="number">{_error(value, {})}</td><td>{_unit(unit)}</td>'
-        f"<td>{_place(at, 'shaft')}</td></tr>"
+        f"<td>{place_button(at, 'shaft')}</td></tr>"
         for name, value, unit, at in _linkage_rows(section)
     ]
     spans = [("binds", section["binds_at_deg"]), ("would turn the shaft back", section["reverses_at_deg"])]
@@ -137,14 +136,14 @@ def linkage(report: dict[str, Any]) -> str:
         for what, found in spans
         for a, b in found
     )
-    head = _table(f"Linkage: {section['kind']}", ("figure", "value", "unit", "at"), text)
+    head = html_table(f"Linkage: {section['kind']}", ("figure", "value", "unit", "at"), text)
     return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{told}{head}</section>'
 
 
-def _linkage_rows(section: dict[str, Any]) -> list[_Row]:
+def _linkage_rows(section: dict[str, Any]) -> list[Row]:
     """Figures of a linkage: name, value, unit and shaft angle in degrees."""
     margin, rate = section["margin"], section["shaft_rate"]
-    rows: list[_Row] = [
+    rows: list[Row] = [
         ("margin from binding", margin["value"], margin["unit"], None),
         ("least rate of the shaft", rate["min"], "", None),
     ]
@@ -189,102 +188,19 @@ def preload(report: dict[str, Any]) -> str:
             (f"load that lifts {one['contact']} off", one["load"], one["unit"], one["at_deg"])
             for one in section["lost"]
         ]
-        table = _figures("Preload", cells, report["units"])
+        table = figure_table("Preload", cells, report["units"])
     return f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{told}</p>{table}</section>'
 
 
-def forces(report: dict[str, Any]) -> str:
-    """Return the extremes of the forces of a rigid follower at its speed; nothing without them."""
-    section = report.get("forces")
-    if section is None:
-        return ""
-    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
-    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
-    if "jams_at_deg" in section:
-        return f"{head}<p>{told} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
-    rows: list[_Row] = []
-    ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
-    ranges += [("torque of the shaft", section["torque"])]
-    ranges += [(f"reaction at the {one['end']} end of the guide", one) for one in section.get("guide", ())]
-    ranges += [(REACTIONS[one["reaction"]], one) for one in section.get("reactions", ())]
-    for name, one in ranges:
-        for word, key in (("least", "min"), ("greatest", "max")):
-            rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
-    if (width := section.get("width")) is not None:
-        rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
-    rows += [
-        (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
-        for one in section.get("pressure", ())
-    ]
-    rows += [
-        (
-            "that pressure over the {:.6g} {} that the material bears".format(
-                *in_pounds(report["units"], one["limit"], "N/mm^2")
-            ),
-            one["share_of_limit"],
-            "",
-            None,
-        )
-        for one in section.get("pressure", ())
-        if "limit" in one
-    ]
-    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section.get("rollers", ())]
-    rows += [
-        (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
-    ]
-    return f"{head}<p>{told}</p>{_figures('Forces', rows, report['units'])}</section>"
-
-
-def _figures(title: str, figures: Sequence[_Row], units: str) -> str:
+def figure_table(title: str, figures: Sequence[Row], units: str) -> str:
     """Return a table of figures with their units and places; of a recipe in inches in pounds, N behind."""
     rows = []
     for name, si_value, si, at in figures:
         value, unit = in_pounds(units, si_value, si)
-        cells = f'<td class="number">{number(value)}</td><td>{_beside(unit, si_value, si)}</td>'
-        cells += f"<td>{_place(at, 'shaft')}</td>"
+        cells = f'<td class="number">{number(value)}</td><td>{beside(unit, si_value, si)}</td>'
+        cells += f"<td>{place_button(at, 'shaft')}</td>"
         rows.append(f'<tr><th scope="row">{escape(name)}</th>{cells}</tr>')
-    return _table(title, ("figure", "value", "unit", "at"), rows)
-
-
-def dynamics(report: dict[str, Any]) -> str:
-    """Return what drives the follower train to what, as intended and by each file; nothing without a train."""
-    section = report.get("dynamics")
-    if section is None:
-        return ""
-    unit, rows = section["force_unit"], list[str]()
-    shown = in_pounds(report["units"], None, unit)[1]
-    for run in section["runs"]:
-        steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
-        cells = [
-            *(_force(steady, name, unit, report["units"]) for name in ("peak", "least")),
-            number(run.get("float_rpm")),
-            NONE if impacts.get("count") is None else str(impacts["count"]),
-            number(impacts.get("greatest_velocity")),
-        ]
-        body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
-        rows.append(f'<tr><th scope="row">{escape(run["from"])}</th>{body}</tr>')
-    head = (
-        "driven by",
-        f"peak force, {shown}",
-        f"least force, {shown}",
-        "floats from, rpm",
-        "impacts a turn",
-        "fastest",
-    )
-    told = (
-        f"At {number(section['rpm'])} rpm; the train's own frequency is {number(section['natural_ratio'])} times the "
-        f"shaft's, its damping ratio {number(section['damping_ratio'])}."
-    )
-    table = _table("Dynamics", head, rows)
-    return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
-
-
-def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
-    """Return an extreme of a train's force with the place where it is; of a recipe in inches in pounds."""
-    value, angle = steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")
-    if value is None or angle is None:
-        return number(value)
-    return f"{number(in_pounds(units, value, si)[0])} {_place(angle, 'shaft')}"
+    return html_table(title, ("figure", "value", "unit", "at"), rows)
 
 
 def skipped(report: dict[str, Any]) -> str:
@@ -322,7 +238,8 @@ def _hinted(short: str, value: float) -> str:
     return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
-def _place(angle: float | None, over: str) -> str:
+def place_button(angle: float | None, over: str) -> str:
+    """Return a button that turns the shaft to an angle, degrees; a dash without one."""
     if angle is None:
         return NONE
     name = "relative angle" if over == "relative" else "shaft angle"
@@ -340,7 +257,7 @@ def _cell(text: str, kind: str = "") -> str:
     return f'<td class="{name}">{text}</td>' if name else f"<td>{text}</td>"
 
 
-def _beside(unit: str, value: float | None, si: str) -> str:
+def beside(unit: str, value: float | None, si: str) -> str:
     """Return a unit as it is read, behind one of pounds the value in N, N m or N/mm²."""
     behind = "" if unit == si or value is None else f" ({value:.6g} {si})"
     return escape(_unit(f"{unit}{behind}"))
@@ -355,7 +272,8 @@ def _bytes(count: int) -> str:
     return f'<span title="{count} bytes">{count / 1000.0:.1f} kB</span>' if count >= 1000 else f"{count} B"
 
 
-def _table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
+def html_table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
+    """Return a table with its caption, the heads of its columns and its rows, HTML each."""
     cells = "".join(f'<th scope="col">{name}</th>' if name else "<td></td>" for name in head)
     region = f'<div class="wide" tabindex="0" role="region" aria-label="{caption}">'
     body = f"<thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody>"

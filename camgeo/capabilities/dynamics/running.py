@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.motions.load_table import MOST_LOAD
-from camgeo.recipe.dynamics import contact_width
+from camgeo.capabilities.dynamics.keys import contact_width
+from camgeo.capabilities.dynamics.load_table import MOST_LOAD
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from camgeo.capabilities.dynamics.keys import Dynamics, Width
     from camgeo.measures.forces import Turn
-    from camgeo.recipe.dynamics import Dynamics, Width
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine

@@ -9,7 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from camgeo.checks.declared import FLOAT, LEAST_BACKLASH, STANDS
+from camgeo.capabilities.dynamics.checks import FLOAT, LEAST_BACKLASH
+from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.checks.declared import STANDS
 from kin.judge.check import Check, about, failed
 from kin.numeric.angles import degrees
 
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.measures.file_result import FileResult
-    from camgeo.recipe.dynamics import Dynamics
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.dynamics.cycle import Turn
@@ -79,7 +80,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     from kin.dynamics.train import DynamicsError, Train
     from kin.follower.motion_error import ContactError
 
-    asked = recipe.dynamics
+    asked = recipe.of(Dynamics)
     if asked is None or asked.stiffness is None:
         raise ValueError("the recipe has no elastic train")
     sources: list[FileResult | None] = [None]

@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.measures.force_figures import extremes_of
-from camgeo.measures.running import Running
-from camgeo.measures.running_forces import running_of
-from camgeo.motions.load_table import LoadTable
+from camgeo.capabilities.dynamics.force_figures import extremes_of
+from camgeo.capabilities.dynamics.load_table import LoadTable
+from camgeo.capabilities.dynamics.running import Running
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.output.pipeline import export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.capabilities.sweep.keys import Sweep
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
@@ -18,7 +19,6 @@ from camgeo.schema.json_schema import json_schema
 from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
-    from camgeo.recipe.dynamics import Dynamics
     from camgeo.recipe.recipe import Recipe
 
 CAM = """\
@@ -49,7 +49,7 @@ def made(train: str, cam: str = STEM, more: str = "") -> Recipe:
 
 
 def train(text: str, cam: str = STEM) -> Dynamics:
-    found = made(text, cam).dynamics
+    found = made(text, cam).of(Dynamics)
     assert found is not None
     return found
 
@@ -87,7 +87,7 @@ def test_bare_numbers_stay_si_in_inches() -> None:
         "units: inch\n" + STEM.replace("40", "2").replace("10}", "0.5}").replace(" 20,", " 0.5,")
         + "dynamics: {rpm: 300, mass: 1, preload: 80, rate: 2000, load: 30}\n", "a.yaml"
     )  # fmt: skip
-    assert inches.dynamics == train("mass: 1, preload: 80, rate: 2000, load: 30")
+    assert inches.of(Dynamics) == train("mass: 1, preload: 80, rate: 2000, load: 30")
 
 
 def test_what_turns_takes_moments() -> None:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.output import pipeline
-from camgeo.recipe.dynamics import Dynamics
 from camgeo.recipe.loading import read
 from camgeo.report.document import encoded
 from camgeo.schema.errors import RecipeErrors
@@ -54,13 +54,13 @@ def section(recipe: Recipe) -> dict[str, Any]:
 
 
 def test_what_a_recipe_says_of_its_train() -> None:
-    assert recipe().dynamics == Dynamics(0.4, 2e5, 600.0, 20.0, 150.0, 0.0, None)
+    assert recipe().of(Dynamics) == Dynamics(0.4, 2e5, 600.0, 20.0, 150.0, 0.0, None)
     play = recipe(
         "units: inch\ndynamics: {mass: 1, stiffness: 1e6, backlash: 0.001, rpm: 60}\n",
         CAM.replace("rise: 20", "rise: 1"),
     )
-    assert play.dynamics == Dynamics(1.0, 1e6, 60.0, 0.0, None, 0.0, pytest.approx(0.0254))
-    assert recipe("").dynamics is None
+    assert play.of(Dynamics) == Dynamics(1.0, 1e6, 60.0, 0.0, None, 0.0, pytest.approx(0.0254))
+    assert recipe("").of(Dynamics) is None
 
 
 def test_the_report_of_a_train_under_a_spring() -> None:
@@ -209,7 +209,7 @@ def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pyte
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", ["2.0e5", "1.0e12"])
 def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from camgeo.measures import dynamics
+    from camgeo.capabilities.dynamics import elastic as dynamics
     from kin.dynamics import impacts
 
     monkeypatch.setattr(dynamics, "MOST_PLACES", 300_000)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from camgeo.capabilities.dynamics import panel
 from camgeo.capabilities.sweep.ask import Ask
 from camgeo.measures.units import in_pounds, pounds
 from camgeo.output.pipeline import check, export
@@ -83,7 +84,7 @@ def test_text_and_page() -> None:
     assert both in headline(failed)
     assert f"N ({failed['value'] / PER_LBF:.6g} lbf)" in table(inches)
     force, pressure = inches["forces"]["contacts"][0]["max"], inches["forces"]["pressure"][0]["max"]
-    page = tables.forces(inches) + tables.checks(inches)
+    page = panel.forces(inches) + tables.checks(inches)
     for value, told in (
         (force / PER_LBF, f"lbf ({force:.6g} N)"),
         (pressure / PER_PSI, f"psi ({pressure:.6g} N/mm²)"),
@@ -91,7 +92,7 @@ def test_text_and_page() -> None:
     ):
         assert f"{value:.6g}" in page
         assert told in page
-    for text in (summary(mm), table(mm), tables.forces(mm), tables.checks(mm)):
+    for text in (summary(mm), table(mm), panel.forces(mm), tables.checks(mm)):
         assert "lbf" not in text
 
 
@@ -101,7 +102,7 @@ def test_the_page_of_an_elastic_train() -> None:
     ]
     found = report(elastic + "export: {files: [csv]}\n")
     peak = found["dynamics"]["runs"][0]["steady"]["peak_force"]
-    table = tables.dynamics(found)
+    table = panel.dynamics(found)
     assert "peak force, lbf" in table
     assert f">{peak / PER_LBF:.6g}<" in table
 
@@ -140,7 +141,7 @@ def test_sweeps_name_the_unit_of_forces() -> None:
 
 
 def test_plots_are_in_pounds() -> None:
-    from camgeo.report.page.curves import forces
+    from camgeo.capabilities.dynamics.plots import plots as forces
     from camgeo.synthesis.design import designed
 
     recipe = read(INCHES.encode(), "pounds.yaml")

@@ -1,12 +1,13 @@
-"""The follower train whose dynamics are requested."""
+"""The follower train whose dynamics are found: its key, the faults of that and beside others, its value."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from camgeo.capabilities.dynamics.load_table import LOAD
 from camgeo.common.rounding import downward
-from camgeo.motions.load_table import LOAD
+from camgeo.recipe.discs import is_pair
 from camgeo.recipe.linkage import TURNING
 from camgeo.recipe.track import is_groove
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
@@ -15,7 +16,7 @@ from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.motions.load_table import LoadTable
+    from camgeo.capabilities.dynamics.load_table import LoadTable
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
@@ -270,7 +271,22 @@ DYNAMICS = Table(
 )
 
 
-def check_train(train: Values, reader: Reader) -> None:
+def fields() -> tuple[Field, ...]:
+    """Give the key `dynamics` of a recipe."""
+    about = "the follower train, whose forces, float and impacts at a speed are found"
+    return (Field("dynamics", Kind.TABLE, about, default="none", table=DYNAMICS, after="dwell"),)
+
+
+def check(values: Values, reader: Reader) -> None:
+    """Note the faults of a follower train, and what does not go with it."""
+    _check_train(values.get("dynamics", {}), reader)
+    _check_guide(values, reader)
+    _check_width(values, reader)
+    _check_preloaded(values, reader)
+    _check_elastic(values, reader)
+
+
+def _check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
     _check_spring(train, reader)
     _check_coupler(train, reader)
@@ -288,7 +304,7 @@ def check_train(train: Values, reader: Reader) -> None:
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
 
 
-def check_width(values: Values, reader: Reader) -> None:
+def _check_width(values: Values, reader: Reader) -> None:
     """Note contacts that are wider than the metal."""
     width, part = values.get("dynamics", {}).get("width"), values.get("part", {})
     cam = values.get("cam", {})
@@ -301,7 +317,7 @@ def check_width(values: Values, reader: Reader) -> None:
         reader.fault_at("dynamics.width", what, f"{width / reader.mm:.9g} {reader.units}", remedy)
 
 
-def check_guide(values: Values, reader: Reader) -> None:
+def _check_guide(values: Values, reader: Reader) -> None:
     """Note a guide that is not found for the follower of a cam."""
     if "dynamics.guide" not in reader.marks:
         return
@@ -356,8 +372,40 @@ def _check_spring(train: Values, reader: Reader) -> None:
         reader.fault_at("dynamics.least_force", "no spring holds a square frame on the cam", None, remedy)
 
 
-def build_train(train: Values) -> Dynamics:
-    """Make the train of values in which there is no fault."""
+def _check_preloaded(values: Values, reader: Reader) -> None:
+    """Note what a train cannot have where both contacts are preloaded."""
+    train = values.get("dynamics", {})
+    if values.get("cam", {}).get("preload") is None:
+        return
+    spring = next((name for name in ("preload", "least_force") if name in train), None)
+    if "backlash" in train:
+        remedy = "leave cam.preload out, or dynamics"
+        reader.fault_at("dynamics.backlash", "clearance beside an interference", None, remedy)
+    elif spring is not None and not reader.kinds["linkage"]:  # under which it acts on the output
+        remedy = "leave cam.preload out, or dynamics"
+        reader.fault_at(f"dynamics.{spring}", "a spring beside a second contact that is preloaded", None, remedy)
+    elif "stiffness" in train:
+        remedy = "leave it out; cam.preload.stiffness has that of the contacts"
+        reader.fault_at("dynamics.stiffness", "an elastic train beside preloaded contacts", None, remedy)
+
+
+def _check_elastic(values: Values, reader: Reader) -> None:
+    """Note an elastic train of a cam that has none."""
+    cam = values.get("cam", {})
+    if "stiffness" not in values.get("dynamics", {}):
+        return
+    remedy = "leave it out: the forces of a rigid follower are found"
+    if is_groove(cam):
+        reader.fault_at("dynamics.stiffness", "a groove has no elastic train", None, remedy)
+    if is_pair(values) and "preload" not in cam:
+        reader.fault_at("dynamics.stiffness", "two conjugate discs have no elastic train", None, remedy)
+
+
+def build(values: Values) -> Dynamics | None:
+    """Make the train of a recipe's values in which there is no fault, where there is one."""
+    train: Values | None = values.get("dynamics")
+    if train is None:
+        return None
     guide, coupler = train.get("guide"), train.get("coupler")
     bodies = {
         "guide": None if guide is None else StemGuide(**guide),

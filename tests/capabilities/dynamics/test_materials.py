@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import camgeo
+from camgeo.capabilities.dynamics.keys import MATERIALS, Dynamics, Material
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.cli.main import main
-from camgeo.measures.running_forces import running_of
 from camgeo.output.pipeline import check
-from camgeo.recipe.dynamics import MATERIALS, Material
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -74,7 +74,7 @@ def test_a_limit_is_told_and_not_judged() -> None:
 
 
 def test_the_page_tells_the_share() -> None:
-    from camgeo.report.page.tables import forces
+    from camgeo.capabilities.dynamics.panel import forces
 
     shown = forces(report(f"{OWN}, limit: 1200}}"))
     assert "that pressure over the 1200 N/mm^2 that the material bears" in shown
@@ -275,8 +275,9 @@ def test_pressures_carry_their_units(stated: str, mega: float) -> None:
     own = f"material: {{E: 206 GPa, nu: 0.3, limit: {stated}}}"
     text = CAM.replace("MATERIAL", own) + f"limits: {{contact-pressure: {{at_most: {stated}}}}}\n"
     recipe = read(text.encode(), Path("cam.yaml"))
-    assert recipe.dynamics is not None
-    assert recipe.dynamics.material == Material(206_000.0, 0.3, pytest.approx(mega, rel=1e-15))
+    train = recipe.of(Dynamics)
+    assert train is not None
+    assert train.material == Material(206_000.0, 0.3, pytest.approx(mega, rel=1e-15))
     assert recipe.limits[0].at_most == pytest.approx(mega, rel=1e-15)
     with pytest.raises(
         RecipeErrors, match=r"'lbf' is no unit of a pressure, .* give N/mm\^2, N/mm², MPa, GPa, psi or ksi"

@@ -22,8 +22,8 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def _columns(job: Job, request: FileRequest) -> Columns:
-    from camgeo.measures.force_figures import forces_table
-    from camgeo.measures.running_forces import running_of
+    from camgeo.capabilities.dynamics.force_figures import forces_table
+    from camgeo.capabilities.dynamics.running_forces import running_of
 
     running = running_of(job.recipe, job.design)
     if running is None:

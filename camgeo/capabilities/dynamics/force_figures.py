@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import FLOAT
+from camgeo.capabilities.dynamics.checks import FLOAT
+from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
+from camgeo.capabilities.dynamics.keys import BOUNDS
+from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.measures.forces import Extreme
 from camgeo.measures.measured import ABRUPT, Measured
-from camgeo.measures.running_forces import running_of
 from camgeo.measures.units import pounds
-from camgeo.recipe.dynamics import BOUNDS
-from camgeo.recipe.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from kin.judge.check import Check
 from kin.numeric.angles import TURN
 from kin.numeric.monotone import RoughError
@@ -21,7 +21,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.measures.running import Running
+    from camgeo.capabilities.dynamics.running import Running
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.dynamics.running import Lost, Pull, Running, State, lost
 from camgeo.measures.forces import PER_MM, Turn
-from camgeo.measures.running import Lost, Pull, Running, State, lost
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.recipe.dynamics import Dynamics
+    from camgeo.capabilities.dynamics.keys import Dynamics
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven

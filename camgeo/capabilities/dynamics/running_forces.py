@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.dynamics.frame_forces import frame_running
+from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.running import Lost, Pull, Running, State, lost
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
-from camgeo.measures.frame_forces import frame_running
-from camgeo.measures.running import Lost, Pull, Running, State, lost
 from kin.dynamics.contact_forces import Guided
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -255,7 +256,7 @@ def running_of(recipe: Recipe, design: Design) -> Running | None:
 
     Raises RecipeErrors for one contact that nothing holds on the cam, and a linkage that does not turn.
     """
-    train = recipe.dynamics
+    train = recipe.of(Dynamics)
     if train is None or train.stiffness is not None:
         return None
     if design.driven is not None:

@@ -1,0 +1,152 @@
+"""Figures of a follower train at its speed: peaks in time, the guide of the stem, forces, float."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST, Figure, Need
+from camgeo.schema.fields import MOST, Field, Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
+AT_SPEED = tuple(f"{name}-at-speed" for name in PEAKS)
+JAM_MARGIN = "jam-margin"
+FORCE_LEAST, FORCE_GREATEST, TORQUE = "contact-force-least", "contact-force-greatest", "shaft-torque"
+PRESSURE, GUIDE_FORCE, MEAN_FORCE = "contact-pressure", "guide-force", "mean-roller-force"
+LEAST_FORCE, PEAK_FORCE, BACKLASH_LEFT = "least-force", "peak-force", "least-backlash"
+
+_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
+
+OF_SPRING = Need("dynamics.preload and its stiffness", lambda _, paths: {"dynamics.preload", _STIFF} <= paths)
+OF_BACKLASH = Need("dynamics.backlash", lambda _, paths: {"dynamics.backlash", _STIFF} <= paths)
+OF_GUIDE = Need(
+    "dynamics.guide of a round follower", lambda offers, paths: "dynamics.guide" in paths and "stem" in offers
+)
+OF_SPEED = Need(
+    "a follower without a linkage, and dynamics.rpm",
+    lambda _, paths: "linkage" not in paths and "dynamics.rpm" in paths,
+)
+OF_FORCES = Need("dynamics without stiffness", lambda _, paths: _is_rigid(paths))
+OF_MATERIAL = Need(
+    "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
+    lambda _, paths: (
+        not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
+        and "dynamics.material" in paths
+        and _is_rigid(paths)
+    ),
+    part=True,
+)
+OF_REACTION = Need("dynamics.guide, and no stiffness", lambda _, paths: "dynamics.guide" in paths and _is_rigid(paths))
+OF_BEARING = Need(
+    "a roller that a cam turns, and dynamics without stiffness",
+    lambda offers, paths: "rolling" in offers and _is_rigid(paths),
+)
+_STIFF = "dynamics.stiffness"
+
+
+def _is_rigid(paths: AbstractSet[str]) -> bool:
+    return "dynamics" in paths and _STIFF not in paths
+
+
+FIGURES: dict[str, Figure] = {
+    AT_SPEED[0]: Figure(
+        "peak-velocity a second, at the shaft's speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+        after=PEAKS[2],
+    ),
+    AT_SPEED[1]: Figure(
+        "peak-acceleration a second squared, at that speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s^2",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+        after=PEAKS[2],
+    ),
+    AT_SPEED[2]: Figure(
+        "peak-jerk a second cubed, at that speed",
+        Kind.MOTION,
+        "least",
+        OF_SPEED,
+        per="/s^3",
+        dear=True,
+        eased_by="motion",
+        keys=(_RPM,),
+        after=PEAKS[2],
+    ),
+    JAM_MARGIN: Figure(
+        "by how much the pressure angle stays below that at which the stem jams in its guide",
+        Kind.ANGLE,
+        "most",
+        OF_GUIDE,
+        dear=True,
+        after=ON_RETURN,
+    ),
+    FORCE_LEAST: Figure(
+        "least normal force of any contact at the speed, N",
+        Kind.FORCE,
+        "most",
+        OF_FORCES,
+        dear=True,
+        after=PRELOAD_GREATEST,
+    ),
+    FORCE_GREATEST: Figure(
+        "greatest normal force of any contact at the speed, N",
+        Kind.FORCE,
+        "least",
+        OF_FORCES,
+        dear=True,
+        after=PRELOAD_GREATEST,
+    ),
+    TORQUE: Figure(
+        "greatest torque of the shaft at the speed, either way, N m",
+        Kind.MOMENT,
+        "least",
+        OF_FORCES,
+        dear=True,
+        after=PRELOAD_GREATEST,
+    ),
+    PRESSURE: Figure(
+        "greatest pressure of the contacts (Hertz), N/mm²",
+        Kind.PRESSURE,
+        "least",
+        OF_MATERIAL,
+        per="N/mm^2",
+        dear=True,
+        after=PRELOAD_GREATEST,
+    ),
+    GUIDE_FORCE: Figure(
+        "greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION, dear=True, after=PRELOAD_GREATEST
+    ),
+    MEAN_FORCE: Figure(
+        "mean force of a roller over its own turns, exponent 10/3, N",
+        Kind.FORCE,
+        "least",
+        OF_BEARING,
+        dear=True,
+        after=PRELOAD_GREATEST,
+    ),
+    LEAST_FORCE: Figure(
+        "least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING, of="run", swept=False
+    ),
+    PEAK_FORCE: Figure(
+        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING, of="run", swept=False
+    ),
+    BACKLASH_LEFT: Figure(
+        "least backlash that the dynamics leave between the faces",
+        Kind.ERROR,
+        "most",
+        OF_BACKLASH,
+        of="run",
+        swept=False,
+    ),
+}

@@ -1,0 +1,67 @@
+"""What the figures of a follower train are, in mm, degrees and SI, with their places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.dynamics.checks import LEAST_BACKLASH
+from camgeo.capabilities.dynamics.figures import AT_SPEED, FIGURES, JAM_MARGIN
+from camgeo.capabilities.dynamics.guide import jam_angle
+from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.measures.figures import of_check, of_motion
+from camgeo.measures.measured import Measured
+from camgeo.recipe.figures import PEAKS
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.judge.check import Check
+
+ORDERS = {name: order for order, name in enumerate(AT_SPEED, 1)}
+
+
+def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mapping[str, float]) -> dict[str, Measured]:
+    """Measure figures of the exact cam and its follower; `speeds`, turns a minute, stand in for the train's own."""
+    train, found = recipe.of(Dynamics), dict[str, Measured]()
+    timed = [name for name in names if name in ORDERS]
+    if timed and design.driven is None:
+        peaks = of_motion(design, max(ORDERS[name] for name in timed))
+        for name in timed:
+            rpm = speeds.get(name) or (0.0 if train is None else train.rpm)
+            found[name] = _in_time(peaks[PEAKS[ORDERS[name] - 1]], name, rpm)
+    if JAM_MARGIN in names and train is not None and train.guide is not None:
+        value, limit, at = jam_angle(design.exact, train.guide)
+        found[JAM_MARGIN] = Measured(limit - value, "deg", at)
+    if not {*names} <= {*ORDERS, JAM_MARGIN}:
+        from camgeo.capabilities.dynamics.force_figures import figures_of
+
+        found |= figures_of(recipe, design)
+    return found
+
+
+def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
+    """A derivative by the shaft angle as one by time, the shaft turning evenly."""
+    unit = figure.unit.partition("/")[0] + FIGURES[name].per
+    value = None if figure.value is None else figure.value * (rpm * TURN / 60.0) ** ORDERS[name]
+    return Measured(value, unit, figure.at_deg, figure.detail)
+
+
+def of_runs(section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str, dict[str | None, Measured]]:
+    """Measure each figure of the runs of an elastic train, by the file that drives it, None for the intended motion."""
+    names = [name for name, figure in FIGURES.items() if figure.of == "run" and name != LEAST_BACKLASH.name]
+    found = {name: {_file(run): _of_run(name, run, section) for run in section["runs"]} for name in names}
+    left = {check.file: of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
+    return {**found, LEAST_BACKLASH.name: left}
+
+
+def _file(run: Mapping[str, Any]) -> str | None:
+    return None if run["from"] == "intended" else str(run["from"])
+
+
+def _of_run(name: str, run: Mapping[str, Any], section: Mapping[str, Any]) -> Measured:
+    kind, steady = name.partition("-")[0], run.get("steady") or {}
+    value, at = steady.get(f"{kind}_force"), steady.get(f"{kind}_at_deg")
+    return Measured(value, section["force_unit"], at, "" if value is not None else "there is no steady state")

@@ -1,0 +1,101 @@
+"""A follower train on the page: forces of a rigid one, what an elastic one comes to."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.dynamics.frame_forces import REACTIONS
+from camgeo.measures.units import in_pounds
+from camgeo.report.page.tables import NONE, figure_table, html_table, number, place_button
+
+if TYPE_CHECKING:
+    from camgeo.report.page.tables import Row
+
+
+def panel(report: dict[str, Any]) -> str:
+    """Return the sections of the page, empty where the report has none."""
+    return forces(report) + dynamics(report)
+
+
+def forces(report: dict[str, Any]) -> str:
+    """Return the extremes of the forces of a rigid follower at its speed; nothing without them."""
+    section = report.get("forces")
+    if section is None:
+        return ""
+    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
+    head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
+    if "jams_at_deg" in section:
+        return f"{head}<p>{told} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
+    rows: list[Row] = []
+    ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
+    ranges += [("torque of the shaft", section["torque"])]
+    ranges += [(f"reaction at the {one['end']} end of the guide", one) for one in section.get("guide", ())]
+    ranges += [(REACTIONS[one["reaction"]], one) for one in section.get("reactions", ())]
+    for name, one in ranges:
+        for word, key in (("least", "min"), ("greatest", "max")):
+            rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
+    if (width := section.get("width")) is not None:
+        rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
+    rows += [
+        (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
+        for one in section.get("pressure", ())
+    ]
+    rows += [
+        (
+            "that pressure over the {:.6g} {} that the material bears".format(
+                *in_pounds(report["units"], one["limit"], "N/mm^2")
+            ),
+            one["share_of_limit"],
+            "",
+            None,
+        )
+        for one in section.get("pressure", ())
+        if "limit" in one
+    ]
+    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section.get("rollers", ())]
+    rows += [
+        (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
+    ]
+    return f"{head}<p>{told}</p>{figure_table('Forces', rows, report['units'])}</section>"
+
+
+def dynamics(report: dict[str, Any]) -> str:
+    """Return what drives the follower train to what, as intended and by each file; nothing without a train."""
+    section = report.get("dynamics")
+    if section is None:
+        return ""
+    unit, rows = section["force_unit"], list[str]()
+    shown = in_pounds(report["units"], None, unit)[1]
+    for run in section["runs"]:
+        steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
+        cells = [
+            *(_force(steady, name, unit, report["units"]) for name in ("peak", "least")),
+            number(run.get("float_rpm")),
+            NONE if impacts.get("count") is None else str(impacts["count"]),
+            number(impacts.get("greatest_velocity")),
+        ]
+        body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
+        rows.append(f'<tr><th scope="row">{escape(run["from"])}</th>{body}</tr>')
+    head = (
+        "driven by",
+        f"peak force, {shown}",
+        f"least force, {shown}",
+        "floats from, rpm",
+        "impacts a turn",
+        "fastest",
+    )
+    told = (
+        f"At {number(section['rpm'])} rpm; the train's own frequency is {number(section['natural_ratio'])} times the "
+        f"shaft's, its damping ratio {number(section['damping_ratio'])}."
+    )
+    table = html_table("Dynamics", head, rows)
+    return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
+
+
+def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
+    """Return an extreme of a train's force with the place where it is; of a recipe in inches in pounds."""
+    value, angle = steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")
+    if value is None or angle is None:
+        return number(value)
+    return f"{number(in_pounds(units, value, si)[0])} {place_button(angle, 'shaft')}"

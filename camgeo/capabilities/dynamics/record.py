@@ -1,0 +1,113 @@
+"""What the dynamics of a follower train add: a key, checks and figures, two sections, panels, plots, a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.dynamics.figures import FIGURES
+from camgeo.capabilities.dynamics.keys import Dynamics, build, check, fields
+from camgeo.registry.capability import Capability
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.cams.family import ExactCam
+    from camgeo.cams.surface import Surface
+    from camgeo.checks.declared import Declared
+    from camgeo.common.clock import Clock
+    from camgeo.curve.curve import Curve
+    from camgeo.measures.file_result import FileResult
+    from camgeo.measures.measured import Measured
+    from camgeo.measures.remarks import Remark
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import Estimate, Results
+    from camgeo.registry.formats import Form
+    from camgeo.report.page.curves import Plot
+    from camgeo.synthesis.design import Design
+    from kin.judge.check import Check
+
+
+def _speed(recipe: Recipe) -> float | None:
+    train = recipe.of(Dynamics)
+    return None if train is None else train.rpm
+
+
+def _measure(
+    recipe: Recipe, design: Design, names: Sequence[str], speeds: Mapping[str, float]
+) -> Mapping[str, Measured]:
+    from camgeo.capabilities.dynamics.measure import measure
+
+    return measure(recipe, design, names, speeds)
+
+
+def _estimates() -> Mapping[str, Estimate]:
+    from camgeo.capabilities.dynamics.estimates import ESTIMATES
+
+    return ESTIMATES
+
+
+def _checks() -> Sequence[Declared]:
+    from camgeo.capabilities.dynamics.checks import CHECKS
+
+    return CHECKS
+
+
+def _exact(recipe: Recipe, exact: ExactCam, _contours: Sequence[tuple[Surface, Curve]]) -> Sequence[Check]:
+    from camgeo.capabilities.dynamics.guide import guide_checks
+
+    return guide_checks(recipe, exact)
+
+
+def _examine(recipe: Recipe, design: Design, files: Sequence[FileResult], clock: Clock) -> Results:
+    from camgeo.capabilities.dynamics.examine import examine
+
+    return examine(recipe, design, files, clock)
+
+
+def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    from camgeo.capabilities.dynamics.remedies import of_limit
+
+    return of_limit(recipe, figure, value, bound)
+
+
+def _lost(recipe: Recipe, design: Design) -> Sequence[Remark]:
+    from camgeo.capabilities.dynamics.remarks import lost_contact
+
+    return lost_contact(recipe, design)
+
+
+def _panel(report: dict[str, Any]) -> str:
+    from camgeo.capabilities.dynamics.panel import panel
+
+    return panel(report)
+
+
+def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
+    from camgeo.capabilities.dynamics.plots import plots
+
+    return plots(recipe, design)
+
+
+def _tables() -> Mapping[str, Form]:
+    from camgeo.capabilities.dynamics.table import FORM
+
+    return {FORM.name: FORM}
+
+
+CAPABILITY = Capability(
+    fields=fields,
+    check=check,
+    build=build,
+    speed=_speed,
+    figures=FIGURES,
+    measure=_measure,
+    estimates=_estimates,
+    checks=_checks,
+    exact=_exact,
+    examine=_examine,
+    remedy=_remedy,
+    remarks={"pivot-clearance": _lost},
+    panel=_panel,
+    plots=_plots,
+    tables=_tables,
+)

@@ -1,0 +1,28 @@
+"""Remarks on a follower train: what an engineer would look at twice, and that fails nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.dynamics.running_forces import running_of
+from camgeo.measures.remarks import Remark
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+
+def lost_contact(recipe: Recipe, design: Design) -> list[Remark]:
+    """A contact under preload that the follower's own inertia and load lift off at its speed: then there is play."""
+    if design.exact.preload is None:
+        return []
+    running = running_of(recipe, design)
+    if running is None or running.jam_deg is not None:
+        return []
+    lost = [(one.rpm, one) for one in running.lost_rpm() if one.rpm is not None]
+    if not lost or min(lost)[0] > running.train.rpm:
+        return []
+    rpm, one = min(lost)
+    begins = f"from {rpm:.6g} rpm" if rpm > 0.0 else "by its load alone"
+    told = f"the preload does not hold {one.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
+    return [Remark("lost-contact", rpm, running.train.rpm, "rpm", told, one.at_deg)]

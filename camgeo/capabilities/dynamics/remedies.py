@@ -1,0 +1,52 @@
+"""What would let checks and limits of a follower train hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.dynamics.figures import (
+    FORCE_GREATEST,
+    FORCE_LEAST,
+    GUIDE_FORCE,
+    LEAST_FORCE,
+    MEAN_FORCE,
+    PEAK_FORCE,
+    PRESSURE,
+    TORQUE,
+)
+from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.checks.remedies import worst
+from camgeo.common.rounding import upward
+
+if TYPE_CHECKING:
+    from camgeo.checks.remedies import Entry
+    from camgeo.recipe.recipe import Recipe
+
+
+def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
+    """Tell the preload at which contact holds as intended and with every file.
+
+    Against the spring's rate the train's stiffness passes k/(k + k_p) of a preload on to the contact.
+    """
+    train, least = recipe.of(Dynamics), worst(check, report)
+    if train is None or train.preload is None or not least < 0.0:
+        return ""
+    yields = 0.0 if train.stiffness is None else train.rate / train.stiffness
+    return f"a dynamics.preload of {upward(train.preload - least * (1.0 + yields))}"
+
+
+def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Tell what would change a force or pressure, SI, to a bound above 0; nothing of others."""
+    if bound <= 0.0:
+        return ""
+    held = ("dynamics.preload", "dynamics.least_force", "cam.preload.interference")
+    spring = next((path for path in held if path in recipe.marks), "")
+    if figure in {FORCE_LEAST, LEAST_FORCE}:
+        return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
+    if value < bound or figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
+        return ""
+    less = f"a smaller {spring}, less mass or load" if spring else "less mass or load"
+    if figure == PRESSURE:  # with the root of force over width
+        wider = f"contacts {upward((value / bound) ** 2)} times as wide (part.thickness, less chamfer, a deeper groove)"
+        return f"{wider}, a larger radius, {less}"
+    return f"a longer guide, or {less}" if figure == GUIDE_FORCE else less
