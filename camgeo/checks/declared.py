@@ -206,7 +206,7 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
 
 
 def run_with(scene: Scene, file: FileRequest) -> bool:
-    """Whether dynamics are found with a file: of a linkage the intended output alone drives."""
+    """Whether a file drives what runs behind it: of a linkage the intended output alone does."""
     return not scene.linked and file.format.part and file.compensation is None
 
 

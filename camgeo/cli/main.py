@@ -22,9 +22,6 @@ from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from typing import NoReturn
-
-    from _typeshed import SupportsWrite
 
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Order
@@ -37,7 +34,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     open_streams()
     try:
         words = sys.argv[1:] if argv is None else argv
-        arguments = _parser(words).parse_args(words)
+        try:
+            arguments = _parser(words).parse_args(words)
+        except SystemExit:  # after help, the version, or what is wrong with the call
+            sys.stdout.flush()
+            raise
         command: Callable[[argparse.Namespace], int] = arguments.run
         status = command(arguments)
         sys.stdout.flush()
@@ -54,35 +55,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     return status
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose help and complaints go the way of all others, that they cannot be written too."""
-
-    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
-        if file is None:
-            say(self.format_help().removesuffix("\n"), at_once=True)
-        else:
-            file.write(self.format_help())
-
-    def error(self, message: str) -> NoReturn:
-        complain(f"{self.format_usage()}{self.prog}: error: {message}")
-        raise SystemExit(WRONG)
-
-
-class _Version(argparse.Action):
-    """Say the version, and end."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        say(f"{parser.prog} {self.const}", at_once=True)
-        parser.exit()
-
-
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Make the parser of a call in these words; commands that are not among them have no arguments yet."""
     from camgeo.version import __version__
 
-    # asking how wide the terminal is imports what unpacks archives: it is asked for help alone
+    # asking how wide the terminal is imports what unpacks archives, 13 ms of 200: it is asked for help alone
     help_form = partial(argparse.HelpFormatter, width=None if {"-h", "--help"} & {*words} else 78)
-    parser = _Parser(
+    parser = argparse.ArgumentParser(
         prog="camgeo",
         formatter_class=help_form,
         description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
@@ -90,7 +69,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
         "(disk, missing extra); 130 interrupted.",
     )
-    parser.add_argument("--version", action=_Version, nargs=0, const=__version__, help="the version")
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}", help="the version")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
@@ -98,7 +77,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         added.set_defaults(run=run)
         return added
 
-    def wing(name: str, text: str, module_name: str) -> None:
+    def of_module(name: str, text: str, module_name: str) -> None:
         """Add a command that has a module of its own, which is imported where it is called."""
         added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
         if name in words:
@@ -130,15 +109,15 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
-    wing("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
-    wing("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
+    of_module("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
+    of_module("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
     schema.add_argument(
         "order", nargs="?", choices=(root.CAM, *root.folders()), default=root.CAM, help="of which recipe"
     )
     for folder, label in registry.labels().items():
         for name, text in label.commands.items():
-            wing(name, text, f"{registry.PACKAGE}.{folder}.command")
+            of_module(name, text, f"{registry.PACKAGE}.{folder}.command")
     return parser
 
 

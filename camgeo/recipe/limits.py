@@ -26,9 +26,9 @@ MOST_LIFTS = 20  # at which a recipe bounds one figure
 class Limit:
     """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle.
 
-    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `at_lift`
-    is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is
-    the recipe's key of the upper bound below `limits`, empty for the figure's own; `place` the entry of the figure's
+    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for the speed that the recipe gives.
+    `at_lift` is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is the recipe's key of the
+    upper bound below `limits`, empty for the figure's own; `place` the entry of the figure's
     list, such as duration[1], empty where it has none.
     """
 

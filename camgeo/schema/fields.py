@@ -28,10 +28,6 @@ MOST_DYADS = 20
 MOST_COEFFICIENTS = 20
 MOST_COEFFICIENT = 1e6
 MOST_FILES = 20
-MOST_AXES = 20  # of a sweep
-MOST_VALUES = 1000  # listed for one axis
-MOST_STEPS = 1_000_000  # of one axis
-MOST_DESIGNS = 100_000_000  # of a sweep
 
 
 def either(words: Iterable[str], conjunction: str = "or") -> str:

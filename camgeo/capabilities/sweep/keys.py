@@ -9,17 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from camgeo.recipe.figures import FIGURES, Figure
 from camgeo.recipe.limits import Limit, build_limits, limits_form
 from camgeo.schema.errors import shown, suggestion
-from camgeo.schema.fields import (
-    MOST_AXES,
-    MOST_DESIGNS,
-    MOST_STEPS,
-    MOST_VALUES,
-    Field,
-    Form,
-    Kind,
-    Table,
-    field_at,
-)
+from camgeo.schema.fields import Field, Form, Kind, Table, field_at
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, is_empty, join, scalars
 from kin.numeric.records import dataclass
@@ -29,6 +19,11 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
+
+MOST_AXES = 20
+MOST_VALUES = 1000  # listed for one axis
+MOST_STEPS = 1_000_000  # of one axis
+MOST_DESIGNS = 100_000_000
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo.capabilities.sweep.keys import Axis, Sweep, swept, varied
+from camgeo.capabilities.sweep.keys import MOST_AXES, MOST_VALUES, Axis, Sweep, swept, varied
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import MOST_AXES, MOST_VALUES, field_at
+from camgeo.schema.fields import field_at
 from camgeo.schema.yaml_source import join
 
 if TYPE_CHECKING:
