@@ -11,4 +11,4 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.library import CamshaftDesign
     from camgeo.capabilities.sweep.library import Candidate, Search, search
 
-    __all__ = ["CamshaftDesign", "CamshaftRecipe", "Candidate", "Search", "search"]
+    __all__: list[str] = ["CamshaftDesign", "CamshaftRecipe", "Candidate", "Search", "search"]
