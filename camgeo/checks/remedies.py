@@ -12,17 +12,32 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
+    BACKLASH,
+    BASE_RADIUS,
+    CLEARANCE,
+    CONTOUR_ERROR,
     DURATION,
+    DWELL,
+    DWELL_ERROR,
+    DWELL_RELATIVE,
+    ECCENTRICITY,
     FIGURES,
     HOLLOW_RADIUS,
     INERTIA,
     LAW_ERROR,
     LEAST_WALL,
     LIFT_AREA,
+    LOBE_CENTRE,
     MASS,
     MOTION_ERROR,
+    OF_LINKS,
+    OFFSET,
     ON_RETURN,
     ON_RISE,
+    OUTPUT_ERROR,
+    PIECES,
+    PITCH_RADIUS,
+    PIVOT,
     PIVOT_CLEARANCE,
     PRELOAD_GREATEST,
     PRELOAD_LEAST,
@@ -31,6 +46,7 @@ from camgeo.recipe.figures import (
     RAMP_VELOCITY,
     ROLLER_SPEED,
     SIZE,
+    UNBALANCE,
 )
 from camgeo.registry import registry
 
@@ -176,10 +192,13 @@ def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
     value, bound = missed.value / divisor, missed.bound / divisor
     lower = value > bound
-    geometry = _to_lower(recipe, limit.figure, missed) if lower else _to_raise(recipe, limit.figure, missed)
-    owner = FIGURES.owner(limit.figure)
-    own = registry.capability(owner).remedy(recipe, limit.figure, value, bound) if owner else ""
-    if remedy := geometry or own or _of_preload(limit.figure, value, bound) or _of_lobe(recipe, limit, value, bound):
+    figure = limit.figure
+    geometry = _to_lower(recipe, figure, missed) if lower else _to_raise(recipe, figure, missed)
+    owner = FIGURES.owner(figure)
+    own = registry.capability(owner).remedy(recipe, figure, value, bound) if owner else ""
+    others = (own, _of_preload(figure, value, bound), _of_lobe(recipe, limit, value, bound))
+    places = (_of_place(recipe, figure, value, bound), _of_files(recipe, figure, missed))
+    if remedy := next(filter(None, (geometry, *others, *places)), ""):
         return remedy
     return f"{limit.field('at_most' if lower else 'at_least')} of {_outward(value, up=lower)}"
 
@@ -194,7 +213,9 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         return MORE_HARMONICS
     if figure == ROLLER_SPEED:
         return "a larger roller"
-    if figure in {SIZE, MASS, INERTIA}:
+    if figure == ECCENTRICITY:  # metal about the shaft draws the centre of mass to it
+        return "a wider or a higher part.hub, or a smaller bore"
+    if figure in {SIZE, MASS, INERTIA, UNBALANCE}:
         return "a smaller cam" if figure == SIZE else "a thinner or a smaller part"
     eased_by = FIGURES[figure].eased_by
     if not eased_by:
@@ -230,6 +251,12 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
             own += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:
         own = advice.rounder(0.0, by, unit)
+    elif figure == PITCH_RADIUS:
+        own = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))
+    elif figure in OF_LINKS:
+        own = "longer links, all in one proportion, about the same cam"
+    elif figure in {DWELL, DWELL_RELATIVE}:
+        own = "a wider dwell.band"
     elif figure == PIVOT_CLEARANCE:
         own = "a pivot farther from the shaft"
     elif figure == LEAST_WALL and lone_ring(recipe):
@@ -247,6 +274,37 @@ def _of_preload(figure: str, value: float, bound: float) -> str:
         return ""
     share = upward(bound / value) if value < bound else downward(bound / value)  # in proportion to it
     return f"a cam.preload.interference {share} times as large"
+
+
+def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Tell what would bring a size or a place that the recipe gives, in its unit, to a bound."""
+    more, unit = value < bound, "in" if recipe.units == "inch" else "mm"
+    if figure == CLEARANCE:
+        return f"a {'larger' if more else 'smaller'} mechanism.clearance"
+    if figure == LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
+        nose = f"a cam.motion.lobe.nose {'larger' if more else 'smaller'} by"
+        return f"{nose} {upward(abs(bound - value))} deg"
+    keys = {BASE_RADIUS: "cam.base_radius", OFFSET: "cam.follower.offset", PIVOT: "cam.follower.arm.pivot"}
+    if figure not in keys:
+        return ""
+    if figure == BASE_RADIUS and recipe.cam.sizes:
+        angle, limited = "pressure-angle", "cam.sizing.pressure-angle" in recipe.marks
+        return f"a {'smaller' if more else 'greater'} {angle} under sizing" if limited else ""
+    return f"a {keys[figure]} of {bound:.9g} {unit} or {'more' if more else 'less'}"
+
+
+def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
+    """Tell which tolerance would bring a figure of a file to its bound: errors are in proportion to it."""
+    less = missed.bound < missed.value
+    if figure == PIECES:
+        return f"a {'larger' if less else 'smaller'} tolerance"
+    if not less or missed.bound <= 0.0 or missed.tolerance is None:
+        return ""
+    if figure == CONTOUR_ERROR:
+        return f"a tolerance of {missed.bound / recipe.mm:.6g}"
+    if figure in {BACKLASH, DWELL_ERROR, OUTPUT_ERROR}:
+        return f"a tolerance of about {missed.tolerance * missed.bound / missed.value / recipe.mm:.2g}"
+    return ""
 
 
 def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:

@@ -23,12 +23,17 @@ from camgeo.recipe.figures import (
     AT_LIFT,
     BACKLASH,
     BASE_RADIUS,
+    CONTOUR_ERROR,
     DWELL,
+    DWELL_ERROR,
+    DWELL_RELATIVE,
     ECCENTRICITY,
     FACE_WIDTH,
     FIGURES,
+    FORCE_ANGLE,
     HOLLOW_RADIUS,
     INERTIA,
+    MARGIN,
     MASS,
     NOTHING,
     OF_DWELL,
@@ -36,7 +41,9 @@ from camgeo.recipe.figures import (
     OFFSET,
     ON_RETURN,
     ON_RISE,
+    OUTPUT_ERROR,
     PEAKS,
+    PIECES,
     PITCH_RADIUS,
     PIVOT,
     PIVOT_CLEARANCE,
@@ -44,7 +51,9 @@ from camgeo.recipe.figures import (
     PRELOAD_LEAST,
     RADIUS,
     ROLLER_SPEED,
+    SHAFT_RATE,
     SIZE,
+    TRANSMISSION_ANGLE,
     UNBALANCE,
 )
 from camgeo.registry import registry
@@ -344,8 +353,8 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
     mobility, unit = driven.mechanism.mobility(), driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
     found = {
-        "margin": Measured(mobility.margin, "mm"),
-        "shaft-rate": Measured(None if math.isnan(mobility.least_rate) else mobility.least_rate, "", detail=STANDS),
+        MARGIN: Measured(mobility.margin, "mm"),
+        SHAFT_RATE: Measured(None if math.isnan(mobility.least_rate) else mobility.least_rate, "", detail=STANDS),
     }
     if driven.figures is None:
         of = (NOTHING, OF_DWELL, OF_LINKAGE)
@@ -360,10 +369,10 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
         "swing": Measured(made.swing * scale, unit),
         PEAKS[0]: placed(made.velocity, scale, f"{unit}/rad"),
         PEAKS[1]: placed(made.acceleration, scale, f"{unit}/rad^2"),
-        "transmission-angle": placed(made.transmission_least, turn, "deg"),
-        "force-angle": placed(made.force_least, turn, "deg"),
+        TRANSMISSION_ANGLE: placed(made.transmission_least, turn, "deg"),
+        FORCE_ANGLE: placed(made.force_least, turn, "deg"),
     }
-    for name, over in ((DWELL, "shaft"), ("dwell-relative", "relative")):
+    for name, over in ((DWELL, "shaft"), (DWELL_RELATIVE, "relative")):
         longest = [dwell for key, dwells in driven.dwells.items() if key == over for dwell in dwells[:1]]
         for dwell in longest:
             at = math.degrees(dwell.start) % 360.0 if over == "shaft" else None
@@ -377,11 +386,11 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
 def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     """Measure a figure of a file that has a contour; `checks` are all that were made."""
     unread, surfaces = "the file could not be judged", file.surfaces or (UNREAD,)
-    if name == "contour-error":
+    if name == CONTOUR_ERROR:
         return _greatest(Measured(one.measured_error, "mm", detail=unread, surface=one.name) for one in surfaces)
-    if name == "pieces":
+    if name == PIECES:
         return Measured(None if file.pieces is None else float(file.pieces), "", detail=unread)
-    if name == "output-error":
+    if name == OUTPUT_ERROR:
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
     if name == BACKLASH and file.closures:
@@ -394,7 +403,7 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         ]
         lost = "a single flat face has no backlash, and of a trimmed contour it is not judged"
         return of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
-    dwell = name == "dwell-error"
+    dwell = name == DWELL_ERROR
     return _greatest(_of_motion_error(one, dwell=dwell) for one in surfaces)
 
 

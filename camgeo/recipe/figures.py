@@ -65,14 +65,25 @@ OF_STIFFNESS = Need("cam.preload.stiffness", _given("cam.preload.stiffness"))
 OF_DENSITY = Need("part.density, and in a sweep no linkage", _given("part.density"), part=True)
 
 # Names that stand in programs too.
-DWELL, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "size", "contact-travel", "wall"
+DWELL, DWELL_RELATIVE, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "dwell-relative", "size", "contact-travel", "wall"
 
 
 RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"
 
 
 PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
-LAW_ERROR = "law-error"
+LAW_ERROR, DWELL_ERROR, CONTOUR_ERROR, OUTPUT_ERROR = "law-error", "dwell-error", "contour-error", "output-error"
+
+
+PIECES, CLEARANCE = "pieces", "clearance"
+
+
+OF_LINKS = TRANSMISSION_ANGLE, FORCE_ANGLE, MARGIN, SHAFT_RATE = (
+    "transmission-angle",
+    "force-angle",
+    "margin",
+    "shaft-rate",
+)
 
 
 BACKLASH = "backlash"
@@ -152,7 +163,7 @@ def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> Figure:
 
 _CORE: dict[str, Figure] = {
     DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", OF_DWELL),
-    "dwell-relative": Figure(
+    DWELL_RELATIVE: Figure(
         "longest dwell over the relative angle, at that band", Kind.ANGLE, "most", OF_DWELL, dear=True
     ),
     "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
@@ -244,12 +255,12 @@ _CORE: dict[str, Figure] = {
         dear=True,
     ),
     PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", OF_STIFFNESS, dear=True),
-    "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
-    "force-angle": Figure(
+    TRANSMISSION_ANGLE: Figure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
+    FORCE_ANGLE: Figure(
         "least angle between the force at the joint and the rocker", Kind.ANGLE, "most", OF_LINKAGE, dear=True
     ),
-    "margin": Figure("least distance from binding", Kind.LENGTH, "most", OF_LINKAGE),
-    "shaft-rate": Figure(
+    MARGIN: Figure("least distance from binding", Kind.LENGTH, "most", OF_LINKAGE),
+    SHAFT_RATE: Figure(
         "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", OF_LINKAGE
     ),
     RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
@@ -303,16 +314,16 @@ _CORE: dict[str, Figure] = {
         "lift over the turn, times cam degrees", Kind.LENGTH, "most", OF_STEM, " deg", keys=_at_lift(LIFT_AREA)
     ),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
-    "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False),
+    CLEARANCE: Figure("least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False),
     "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False),
-    "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
+    CONTOUR_ERROR: _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
-    "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
+    DWELL_ERROR: _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
     BACKLASH: _of_file(
         "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
     ),
-    "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, OF_LINKAGE),
-    "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
+    OUTPUT_ERROR: _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, OF_LINKAGE),
+    PIECES: _of_file("number of pieces of a file's contour", Kind.NUMBER),
 }
 
 

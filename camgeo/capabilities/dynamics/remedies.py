@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.dynamics.figures import (
+    BACKLASH_LEFT,
     FORCE_GREATEST,
     FORCE_LEAST,
     GUIDE_FORCE,
+    JAM_MARGIN,
     LEAST_FORCE,
     MEAN_FORCE,
     PEAK_FORCE,
@@ -36,9 +38,15 @@ def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
 
 
 def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Tell what would change a force or pressure, SI, to a bound above 0; nothing of others."""
+    """Tell what would change a figure, forces and pressures in SI, to a bound above 0; nothing of others."""
     if bound <= 0.0:
         return ""
+    if figure == BACKLASH_LEFT:
+        return "a greater dynamics.backlash, or a lower dynamics.rpm" if value < bound else ""
+    if figure == JAM_MARGIN:
+        advice, less = recipe.cam.advice, "a longer guide, less overhang or friction of it"
+        larger = f", or {advice.larger}, {advice.less_steep}" if advice.larger and not recipe.cam.sizes else ""
+        return less + larger if value < bound else ""
     held = ("dynamics.preload", "dynamics.least_force", "cam.preload.interference")
     spring = next((path for path in held if path in recipe.marks), "")
     if figure in {FORCE_LEAST, LEAST_FORCE}:
