@@ -1,4 +1,7 @@
-"""What systems do differently: locks, files that a program holds open, interrupts."""
+"""What systems do differently: locks, second names of a file, files that a program holds open, interrupts.
+
+Python in a browser is the platform `emscripten`: one process on a file system of its own, without locks and links.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 
 if sys.platform == "win32":
     import msvcrt
-else:
+elif sys.platform != "emscripten":
     import fcntl
 
 WINDOWS = sys.platform == "win32"
@@ -107,6 +110,8 @@ def _taken(lock: int) -> bool:
         except PermissionError:
             return False
         return True
+    if sys.platform == "emscripten":
+        return True  # no other process sees the file
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

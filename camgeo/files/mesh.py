@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.files.errors import RegionError
+from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def settled(points: Array, triangles: Triangles, precision: Precision) -> Mesh:
     a, b, c = corners.T
     corners = corners[(a != b) & (b != c) & (c != a)]
     start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    way, back = np.sort(start * len(points) + end), np.sort(end * len(points) + start)
+    way, back = (np.sort(paired(*ends, len(points))) for ends in ((start, end), (end, start)))
     if not np.array_equal(way, back) or bool((way[1:] == way[:-1]).any()):
         raise RegionError(f"the solid does not close in {precision.name}")
     mesh = Mesh(points, corners)

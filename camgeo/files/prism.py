@@ -213,7 +213,7 @@ def _standing(loops: list[Array], triangles: Triangles, thickness: float) -> Mes
     parts = np.split(here, np.cumsum([len(loop) for loop in loops])[:-1])
     following = np.concatenate([np.roll(part, -1) for part in parts])
 
-    index = np.empty((2 * faces + 2 * n, 3), dtype=np.int64)
+    index = np.empty((2 * faces + 2 * n, 3), dtype=np.intp)
     index[:faces] = triangles[:, ::-1]
     index[faces : 2 * faces] = triangles + n
     walls = index[2 * faces :]

@@ -155,7 +155,7 @@ def meshed(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN4
 def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d has no types
     mesh = part.to_mesh64()
     points = np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3]
-    return points, np.asarray(mesh.tri_verts, dtype=np.int64)
+    return points, np.asarray(mesh.tri_verts, dtype=np.intp)
 
 
 def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:

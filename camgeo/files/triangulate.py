@@ -17,38 +17,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.files.ears import alternate, clip_ears
 from camgeo.files.errors import RegionError
+from camgeo.files.sides import sides
+from kin.numeric.arrays import paired
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from kin.numeric.arrays import Array, Indices
 
-    from kin.numeric.arrays import Array
-
-    Triangles = NDArray[np.int64]
+    Triangles = Indices
 
 
 _TURNS = 10  # of edges for each flat triangle: more go round in circles
-
-
-def sides(a: Array, b: Array, c: Array) -> NDArray[np.int64]:
-    """Exact side of line a b on which c lies, (n,): 1 left, -1 right, 0 on it. Points (n, 2).
-
-    The determinant is evaluated in doubles; where rounding could turn its sign (Shewchuk 1997, bound A of orient2d,
-    taken three times as wide), it is evaluated in fractions.
-    """
-    left = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
-    right = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    determinant = left - right
-    for i in np.flatnonzero(np.abs(determinant) <= 1e-15 * (np.abs(left) + np.abs(right))):
-        from fractions import Fraction
-
-        (ax, ay), (bx, by), (cx, cy) = (map(Fraction, point[i].tolist()) for point in (a, b, c))
-        first, second = (bx - ax) * (cy - ay), (by - ay) * (cx - ax)
-        determinant[i] = (first > second) - (first < second)
-    sign: NDArray[np.int64] = np.sign(determinant).astype(np.int64)
-    return sign
 
 
 def ring(outer: Array, inner: Array) -> Triangles:
@@ -103,15 +85,16 @@ def star_shaped(loop: Array, centre: Array | None = None) -> bool:
 def clipped(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
     """Triangles, counter-clockwise, of any simple loop (n, 2) with any holes (m, 2); all counter-clockwise.
 
-    The ears are clipped by manifold3d, on these very doubles. It takes vertices in line for ears, and leaves flat
-    triangles where holes line up: `_turned` makes them part of their neighbours. Indices as in `region`. Raises
-    RegionError where a loop is not simple, or a hole does not lie strictly inside or reaches another.
+    The ears are clipped by manifold3d, on these very doubles, and where that is not installed by `clip_ears`. It takes
+    vertices in line for ears, and leaves flat triangles where holes line up: `_turned` makes them part of their
+    neighbours. Indices as in `region`. Raises RegionError where a loop is not simple, or a hole does not lie strictly
+    inside or reaches another.
     """
     points = np.concatenate((outer, *inners))
     loops = np.split(np.arange(len(points)), np.cumsum([len(outer), *map(len, inners)])[:-1])
     ways = [loops[0], *(loop[::-1] for loop in loops[1:])]  # the metal lies left of each
     if len(np.unique(points, axis=0)) == len(points):
-        triangles = _turned(points, np.concatenate(ways)[_ears([points[way] for way in ways])])
+        triangles = _turned(points, _ears(points, ways))
         if triangles is not None and _bounded(triangles, ways):
             return triangles
     reached = ("", "the bore reaches the contour, or ", "a hole reaches another or the contour, or ")[
@@ -149,7 +132,7 @@ def _angles(points: Array) -> Array:
     return angle
 
 
-def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np.int64]]:
+def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], Indices]:
     """Cut ears off a star-shaped loop until three vertices are left or none can go; returns them and what is left."""
     left = np.arange(len(loop))
     cut: list[Triangles] = []
@@ -157,14 +140,7 @@ def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np
         before, after = np.roll(left, 1), np.roll(left, -1)
         a, b, c = loop[before], loop[left], loop[after]
         ear = (sides(a, b, c) > 0) & (sides(np.broadcast_to(centre, a.shape), a, c) > 0)
-        # every other one of each run of ears; a run that closes on itself starts anywhere
-        start = int(np.argmin(ear))
-        turned = np.roll(ear, -start)
-        place = np.arange(left.size)
-        since = place - np.maximum.accumulate(np.where(turned, 0, place))
-        chosen = turned & (since % 2 == 1)
-        chosen = np.roll(chosen, start)
-        chosen[np.flatnonzero(chosen)[left.size - 3 :]] = False
+        chosen = alternate(ear, left.size - 3)
         if not chosen.any():
             break
         cut.append(np.column_stack((before, left, after))[chosen])
@@ -172,13 +148,16 @@ def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np
     return cut, left
 
 
-def _ears(loops: list[Array]) -> Triangles:
-    """Triangles of loops whose region lies left of each, as manifold3d clips them: flat ones may be among them."""
-    if len(loops) == 1 and len(loops[0]) == 3:
-        return np.array([[2, 0, 1]])
-    import manifold3d
-
-    return np.asarray(manifold3d.triangulate(loops, 0.0), dtype=np.int64).reshape(-1, 3)
+def _ears(points: Array, ways: list[Indices]) -> Triangles:
+    """Triangles of the region left of loops: by manifold3d, flat ones among them; where that is not there by numpy."""
+    if len(points) == 3:
+        return ways[0][[[2, 0, 1]]]
+    try:
+        import manifold3d
+    except ModuleNotFoundError:
+        return clip_ears(points, ways)
+    found = manifold3d.triangulate([points[way] for way in ways], 0.0)
+    return np.concatenate(ways)[np.asarray(found, dtype=np.intp).reshape(-1, 3)]
 
 
 def _turned(points: Array, triangles: Triangles) -> Triangles | None:
@@ -212,7 +191,7 @@ def _turned(points: Array, triangles: Triangles) -> Triangles | None:
             if sides(x, y, z)[0] <= 0 and place not in flat:
                 flat.append(place)
         if not flat:
-            return np.array(corners, dtype=np.int64)
+            return np.array(corners, dtype=np.intp)
     return None
 
 
@@ -228,10 +207,10 @@ def _longest_last(points: Array, triangle: list[int]) -> list[int]:
     return triangle[first:] + triangle[:first]
 
 
-def _bounded(triangles: Triangles, ways: list[NDArray[np.int64]]) -> bool:
+def _bounded(triangles: Triangles, ways: list[Indices]) -> bool:
     """Whether each edge of triangles runs once, and those that do not run back as well are those of the loops."""
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     size = sum(map(len, ways))
-    edges, backs = np.sort(start * size + end), end * size + start
-    rim = np.concatenate([way * size + np.roll(way, -1) for way in ways])
+    edges, backs = np.sort(paired(start, end, size)), paired(end, start, size)
+    rim = np.concatenate([paired(way, np.roll(way, -1), size) for way in ways])
     return bool((edges[1:] > edges[:-1]).all()) and np.array_equal(np.setdiff1d(edges, backs), np.sort(rim))

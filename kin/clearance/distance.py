@@ -25,6 +25,7 @@ import numpy as np
 
 from kin.contour.arcs import dot, left, turned
 from kin.contour.region import gaps, moved
+from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -268,7 +269,8 @@ def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: 
             r, k = np.divmod(np.arange(len(cells) * len(own.reach)), len(own.reach))
         else:
             wanted = row[pairs.cell] >= 0
-            r, k = np.divmod(np.unique(row[pairs.cell[wanted]] * len(own.reach) + feature[wanted]), len(own.reach))
+            codes = paired(row[pairs.cell[wanted]], feature[wanted], len(own.reach))
+            r, k = np.divmod(np.unique(codes), len(own.reach))
         arcs = moved(own.arcs.take(k), seen.place[cells[r]], seen.angle[cells[r]])
         depth, point = _deepest(other, arcs, r, value, precision)
         if seen is back:

@@ -14,3 +14,11 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 else:  # numpy.typing is for type checkers, and slow to import
     Array = Indices = Mask = np.ndarray
+
+
+def paired(first: Indices, second: Indices, size: int) -> NDArray[np.int64]:
+    """Return one number for each ordered pair of indices below `size`.
+
+    It takes 64 bits, also where an index has 32 (Python in a browser): the product would overflow there.
+    """
+    return first.astype(np.int64, copy=False) * size + second

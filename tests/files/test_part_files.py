@@ -13,8 +13,9 @@ from support.parts import files_of, found, recipe_of
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import DECIMALS, SINGLE
 from camgeo.files.prism import bore_polygon, loop_polygon
+from camgeo.files.sides import sides
 from camgeo.files.solid import inset
-from camgeo.files.triangulate import region, sides
+from camgeo.files.triangulate import region
 from camgeo.synthesis.part.shapes import disc, flattened, keyed, polygonal, slot
 from kin.contour.contour import Contour
 

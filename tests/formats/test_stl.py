@@ -15,7 +15,8 @@ from support.outlines import bored
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
-from camgeo.files.triangulate import clipped, disc, ring, sides, star_shaped
+from camgeo.files.sides import sides
+from camgeo.files.triangulate import clipped, disc, ring, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.formats import stl

@@ -19,7 +19,7 @@ from camgeo.cli.main import main
 from camgeo.files.mesh import Item, Mesh
 from camgeo.files.precision import DECIMALS
 from camgeo.files.prism import extruded
-from camgeo.files.triangulate import sides
+from camgeo.files.sides import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.formats.three_mf import write_3mf

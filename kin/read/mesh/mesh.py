@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
+from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -38,10 +39,9 @@ class Mesh:
     points: Array
     corners: Indices
 
-    def code(self, a: Indices, b: Indices) -> Indices:
+    def code(self, a: Indices, b: Indices) -> NDArray[np.int64]:
         """One number for each ordered pair of corners."""
-        numbers: Indices = a * len(self.points) + b
-        return numbers
+        return paired(a, b, len(self.points))
 
     @cached_property
     def edges(self) -> tuple[Indices, Indices]:
