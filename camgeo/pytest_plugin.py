@@ -201,7 +201,7 @@ class RecipeRun:
             self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
             self._refused(errors)
-        except (SurroundingsError, OSError, ModuleNotFoundError) as error:
+        except (SurroundingsError, OSError) as error:
             self.fault = f"{self.shown}: {error}"
 
     def _refused(self, errors: RecipeErrors) -> None:
@@ -314,6 +314,9 @@ class CheckItem(pytest.Item):
 
         recipe = self.run.recipe
         assert isinstance(recipe, Recipe)  # none is foreseen of another kind
+        for entry in report["skipped"]:
+            if entry.get("missing") and entry["what"] == foreseen.file:
+                _fail(f"{foreseen}: not judged: {entry['why']}")
         cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, foreseen.file)]
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 from camgeo.api.loading import order_of
 from camgeo.api.log import tell_checks
+from camgeo.common.errors import with_packages
 from camgeo.registry.root import root_of
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def design(recipe: Recipe) -> Design: ...
 def design(recipe: Order | str | PathLike[str]) -> Designed: ...
 
 
+@with_packages()
 def design(recipe: OrderSource) -> Designed:
     """Design the cam of a recipe, or all cams of one of another kind: no file is made, and no contour fitted.
 

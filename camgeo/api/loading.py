@@ -7,6 +7,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.common.arguments import is_a, path_of
+from camgeo.common.errors import with_packages
 from camgeo.recipe.loading import load as load_file
 from camgeo.recipe.loading import load_order, load_order_text
 from camgeo.recipe.recipe import Order, Recipe
@@ -24,6 +25,7 @@ NAME = "recipe"  # of what has no file
 OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `str`
 
 
+@with_packages()
 def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 

@@ -105,6 +105,11 @@ class Report(Mapping[str, JSON]):
         entries = [entry for entry in self._document["files"] if not entry.get("stale")]
         return tuple(self._file(entry, i) for i, entry in enumerate(entries))
 
+    @property
+    def missing(self) -> Mapping[str, str]:
+        """Why each file that a missing package would make was left out, by its name."""
+        return {entry["what"]: entry["why"] for entry in self._document["skipped"] if entry.get("missing")}
+
     def _file(self, entry: dict[str, Any], index: int) -> File:
         name = entry["path"]
         path = self._paths[index] if self._paths else None if self.path is None else self.path / name

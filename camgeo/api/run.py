@@ -9,6 +9,7 @@ from camgeo.api.loading import order_of
 from camgeo.api.log import heard, staged, tell_checks
 from camgeo.api.report import Report
 from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
+from camgeo.common.errors import with_packages
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.registry import registry
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order
 
 
+@with_packages()
 def export(
     recipe: OrderSource,
     out: str | PathLike[str],
@@ -56,6 +58,7 @@ def export(
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
+@with_packages()
 def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
     recipe = order_of(recipe)
@@ -66,6 +69,7 @@ def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None,
     return _told(Report(recipe, outcome.report))
 
 
+@with_packages()
 def verify(
     recipe: OrderSource,
     file: str | PathLike[str],

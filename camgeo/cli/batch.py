@@ -102,9 +102,8 @@ def result(recipe: Order, task: Task, progress: Progress | None = None) -> Resul
         return Result(None, str(errors), WRONG, errors.errors)
     except (SurroundingsError, OSError) as error:
         return Result(None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS)
-    except ModuleNotFoundError as error:
-        return Result(None, f"camgeo: {recipe.name}: the package {error.name} is missing", SURROUNDINGS)
     finally:
         if progress is not None:
             progress.clear()
-    return Result(report, "", OK if report.ok else FAILED)
+    left_out = "\n".join(f"camgeo: {recipe.name}: {name} is left out: {why}" for name, why in report.missing.items())
+    return Result(report, left_out, FAILED if not report.ok else SURROUNDINGS if left_out else OK)

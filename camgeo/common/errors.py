@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterator
+
+DISTRIBUTIONS = {"yaml": "PyYAML"}  # packages that are installed by another name than they are imported by
 
 
 class CallError(CamgeoError, ValueError):
@@ -33,3 +38,14 @@ class SurroundingsError(CamgeoError):
 
 class BusyError(SurroundingsError):
     """Another run of the same name is at work; `path` is its folder."""
+
+
+@contextmanager
+def with_packages() -> Iterator[None]:
+    """Turn an import that fails meanwhile into a SurroundingsError, which names the package."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        name = (error.name or "").partition(".")[0]
+        text = f"the package {name} is missing: pip install {DISTRIBUTIONS.get(name, name)}"
+        raise SurroundingsError(text, Path(sys.prefix)) from error

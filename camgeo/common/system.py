@@ -75,6 +75,17 @@ def unlock(lock: int, path: Path) -> None:
         os.close(lock)
 
 
+def linked(source: Path, target: Path) -> None:
+    """Give a file a second name; on systems and file systems without hard links, a copy."""
+    if sys.platform != "emscripten":
+        with suppress(OSError, NotImplementedError):  # the second where a system knows no link to a link
+            os.link(source, target, follow_symlinks=False)
+            return
+    import shutil
+
+    shutil.copy2(source, target, follow_symlinks=False)
+
+
 @contextmanager
 def uninterrupted() -> Iterator[None]:
     """Put an interrupt off to the end; a process that is begun meanwhile is deaf from its start, where a system can.

@@ -1,5 +1,7 @@
 """What a writer refuses: a library that is not installed, a region that has no triangles."""
 
+from importlib.util import find_spec
+
 from kin.numeric.errors import CamgeoError
 
 
@@ -9,6 +11,12 @@ class MissingExtraError(CamgeoError, ImportError):
 
 class RegionError(CamgeoError, ValueError):
     """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
+
+
+def demand_package(name: str, reason: str) -> None:
+    """Raise MissingExtraError where a package is not installed; the message begins with what needs it."""
+    if find_spec(name) is None:
+        raise MissingExtraError(f"{reason}: pip install {name}")
 
 
 def install(extra: str) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.files.errors import RegionError
+from camgeo.files.errors import RegionError, demand_package
 from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import disc
@@ -126,6 +126,11 @@ def hubbed(
     besides = Bound(off, off)
     triangles = len(mesh.triangles)
     return mesh, replace(facts, triangles=triangles, displacement=moved, bound=bound, bore_bound=besides)
+
+
+def need_booleans() -> None:
+    """Raise MissingExtraError where manifold3d is not installed, which joins and cuts solids."""
+    demand_package("manifold3d", "this part needs solids to be joined and cut")
 
 
 def manifold(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.files.errors import demand_package
 from camgeo.fit.pieces import BSpline, Outline, Polygon
 from camgeo.formats.options import OF_DRAWING
 from camgeo.registry.formats import Form, Format
@@ -368,6 +369,10 @@ def _reference(job: Job, tolerance: float) -> list[Reference]:
     return found
 
 
+def _foresee(_job: Job, _request: FileRequest) -> None:
+    demand_package("ezdxf", "a DXF file needs ezdxf")
+
+
 def _check(file: Values, _: Values, reader: Reader) -> None:
     if file.get("as") == "spline" and file.get("version") == "R12":
         remedy = "give arcs or polyline, or a later version"
@@ -403,4 +408,5 @@ FORMAT = Format(
     by_disc=True,
     path=True,
     make=make_dxf,
+    foresee=_foresee,
 )

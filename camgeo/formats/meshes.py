@@ -59,7 +59,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def foresee_mesh(job: Job, request: FileRequest) -> None:
-    """Refuse a tolerance that the numbers of the format cannot hold; raises RecipeErrors."""
+    """Refuse what `camgeo.output.solid.foresee` refuses, and raise as it does."""
     from camgeo.output.solid import foresee
 
     foresee(job, request)

@@ -228,6 +228,11 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
     return judged(request, path, bound, sum(outline.count for contours in drawn for outline in contours))
 
 
+def _foresee(_job: Job, _request: FileRequest) -> None:
+    """Raise MissingExtraError without the kernel."""
+    need_kernel()
+
+
 def _check(file: Values, _: Values, reader: Reader) -> None:
     if file.get("as", "arcs") != "arcs" and "part.chamfer" in reader.marks:
         remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
@@ -254,6 +259,7 @@ FORMAT = Format(
         for name, pieces in (("arcs", "arcs"), ("spline", "spans"))
     },
     check=_check,
+    foresee=_foresee,
     solid=True,
     make=make_step,
 )

@@ -67,7 +67,10 @@ def demand_capacity(recipe: Recipe, design: Design, request: FileRequest) -> Non
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
+    """Refuse what is certain to be refused, before anything is fitted.
+
+    Raises RecipeErrors as `make` does; MissingExtraError where a package is missing that makes such a file.
+    """
     demand_capacity(job.recipe, job.design, request)
     if request.parts == "all":
         from camgeo.output.mechanism import foresee_mechanism

@@ -9,6 +9,7 @@ from camgeo.assembly.build import assembly_of
 from camgeo.assembly.interference import collision_checks
 from camgeo.assembly.shaft import drives
 from camgeo.assembly.sizes import BodyError, runs
+from camgeo.files.solid import need_booleans
 from camgeo.fit.pieces import ArcSpline
 from camgeo.output.job import Made
 from camgeo.output.parts import make_parts
@@ -46,8 +47,9 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
 def foresee_mechanism(job: Job, request: FileRequest) -> None:
     """Refuse clearances that the file's tolerance takes away, and a shaft that does not turn the cam.
 
-    Raises RecipeErrors.
+    Raises RecipeErrors; MissingExtraError without the package that joins bodies.
     """
+    need_booleans()
     recipe, off = job.recipe, job.tolerance(request)
     clearance = (recipe.mechanism or MechanismAsked()).clearance
     with _told(recipe):

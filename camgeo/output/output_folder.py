@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING, Self
 
 from camgeo.common import system
 from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.common.system import locked, patient, unlock
+from camgeo.common.system import linked, locked, patient, unlock
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -189,7 +189,7 @@ class RunFolder:
         before = tuple(name for name in last if name not in keep or name in come)
         (self.folder / _OLD).mkdir()
         for name in before:
-            _linked(folder / name, self.folder / _OLD / name)
+            linked(folder / name, self.folder / _OLD / name)
         journal = {"target": folder.name, "come": come, "go": sorted(set(before) - set(come)), "before": before}
         (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
 
@@ -308,16 +308,6 @@ def _move(source: Path, target: Path) -> None:
 def _removed(path: Path) -> None:
     """Remove a file if it is there."""
     patient(lambda: path.unlink(missing_ok=True))
-
-
-def _linked(source: Path, target: Path) -> None:
-    """Give a file a second name; on file systems without hard links, a copy."""
-    try:
-        os.link(source, target, follow_symlinks=False)
-    except (OSError, NotImplementedError):  # the second where a system knows no link to a link
-        import shutil
-
-        shutil.copy2(source, target, follow_symlinks=False)
 
 
 def _is_file(path: Path) -> bool:

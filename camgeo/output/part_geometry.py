@@ -52,6 +52,16 @@ def remarks(body: Body, mm: float) -> list[str]:
     return found
 
 
+def needs_booleans(body: Body) -> bool:
+    """Whether the mesh of a body is joined and cut of several solids: it is no prism, nor one with a pocket alone."""
+    return not (body.prism or (body.pocket is not None and _plain(body)))
+
+
+def _plain(body: Body) -> bool:
+    """Whether nothing stands on a disc, and nothing is engraved."""
+    return body.hub is None and all(opening.depth is None for opening in body.openings)
+
+
 def part_mesh(
     outlines: Sequence[LayerOutline], body: Body, *, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
@@ -68,7 +78,7 @@ def part_mesh(
     if body.pocket is not None:
         from camgeo.files.prism import pocketed
 
-        plain = body.hub is None and all(opening.depth is None for opening in body.openings)
+        plain = _plain(body)
         kept = outlines if plain else outlines[: len(outlines) - len(body.openings)]
         mesh, facts = pocketed(
             kept, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision

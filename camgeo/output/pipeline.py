@@ -2,7 +2,7 @@
 
 Each stage runs only where something asks for it, and imports what it needs when it runs; what nothing asks for is
 listed as skipped, with the reason. Files are written into a private folder, read back there by kin, and put in their
-place only when every check holds.
+place only when every check holds. A file that a missing package would make is left out before anything is fitted.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.clock import Clock
+from camgeo.common.errors import SurroundingsError
+from camgeo.files.errors import MissingExtraError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.registry import registry
@@ -53,8 +55,9 @@ def export(
 ) -> Outcome:
     """Write and judge a recipe's files under `out`/<name>; see the module.
 
-    Raises RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk does
-    not do what it should. A failed check raises nothing: the set goes to `out`/<name>.rejected.
+    A file that a missing package would make is left out. Raises RecipeErrors where no such curve exists or a tolerance
+    cannot be held, SurroundingsError where the disk does not do what it should, or none of the files can be made. A
+    failed check raises nothing: the set goes to `out`/<name>.rejected.
     """
     from camgeo.output.output_folder import RunFolder
 
@@ -62,6 +65,7 @@ def export(
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with RunFolder(out, recipe.name) as run:
         _, found = _produced(recipe, requests, run.folder, clock)
+        _demand_any(recipe, found)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
@@ -77,7 +81,14 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> O
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
+        _demand_any(recipe, found)
         return Outcome(document(recipe, found), found.ok, None)
+
+
+def _demand_any(recipe: Recipe, findings: Findings) -> None:
+    """Raise SurroundingsError where packages are missing for every file."""
+    if findings.missing and not findings.files:
+        raise SurroundingsError(findings.missing[0][1], recipe.path)
 
 
 def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
@@ -173,6 +184,7 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     design = designed(recipe, clock)
     checks = list(design.checks)
     files: list[FileResult] = []
+    missing: dict[FileRequest, str] = {}
     pages = [request for request in requests if request.format.summary]  # they tell of all the others
     if design.contours:
         from camgeo.output.dispatch import foresee, make
@@ -181,8 +193,13 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
         job = Job.of(recipe, design, clock)
         others = [request for request in requests if not request.format.summary]
         for request in others:
-            foresee(job, request)
+            try:
+                foresee(job, request)
+            except MissingExtraError as error:
+                missing[request] = str(error)
         for request in others:
+            if request in missing:
+                continue
             made = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
             files += made.files
             checks += made.checks
@@ -190,6 +207,8 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     for result in _looked(recipe, design, files, checks, clock):
         checks, skipped = [*checks, *result.checks], (*skipped, *result.skipped)
     found = _findings(recipe, design, checks, files, clock, skipped=skipped)
+    names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
+    found = replace(found, missing=tuple((names[request], why) for request, why in missing.items()))
     for request in pages:
         path = folder / request.filename(recipe.name, recipe.export.files)
         found = _with_page(recipe, design, found, FileResult(path, request), clock)

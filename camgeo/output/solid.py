@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.files.mesh import Item
+from camgeo.files.solid import need_booleans
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
-from camgeo.output.part_geometry import contours_of, openings_of, part_mesh, rim_of
+from camgeo.output.part_geometry import contours_of, needs_booleans, openings_of, part_mesh, rim_of
 from camgeo.registry.formats import numbers_of
 from kin.numeric.records import replace
 
@@ -39,9 +40,14 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse a tolerance that the numbers of the file cannot hold; raises RecipeErrors."""
+    """Refuse a tolerance that the numbers of the file cannot hold, and a part that a missing package would join.
+
+    Raises RecipeErrors; MissingExtraError for the package.
+    """
     for single in job.single:
         aim(single, request)
+        if needs_booleans(single.body):
+            need_booleans()
 
 
 def numbers(job: Job, request: FileRequest) -> Precision:

@@ -118,7 +118,8 @@ class Format:
     What makes them:
 
     make      fits, writes, reads back and judges one file at a path
-    foresee   refuses what is certain to be refused, before anything is fitted
+    foresee   refuses what is certain to be refused, before anything is fitted; raises MissingExtraError where a package
+              is missing that makes its files, which are then left out
     intent    what kin judges its files by
     bored     whether a file has the bore that the part has
     drilled   whether a file has round holes besides

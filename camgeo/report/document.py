@@ -39,7 +39,8 @@ DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part
 class Findings:
     """Everything a run found, before it is put in the recipe's units; all sections already are.
 
-    `displacements` are factor and unit in which those of the follower are told.
+    `displacements` are factor and unit in which those of the follower are told. `missing` names the files that could
+    not be made, each with the package that is missing and how to get it.
     """
 
     checks: tuple[Check, ...]
@@ -47,6 +48,7 @@ class Findings:
     stages: tuple[tuple[str, float], ...]
     skipped: tuple[tuple[str, str], ...]
     follower: str
+    missing: tuple[tuple[str, str], ...] = ()
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     preload: dict[str, object] | None = None
@@ -89,7 +91,8 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         **preload,
         **findings.sections,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in findings.stages],
-        "skipped": [{"what": what, "why": why} for what, why in findings.skipped],
+        "skipped": [{"what": what, "why": why, "missing": True} for what, why in findings.missing]
+        + [{"what": what, "why": why} for what, why in findings.skipped],
     }
 
 

@@ -1,0 +1,95 @@
+"""The Python of a browser: every shipped recipe has the verdicts and the figures there that it has here.
+
+Where a recipe's part needs solids, its files that are solids are left out there, and compared is what is left.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import pytest
+from support import pyodide
+from support.places import SHIPPED, TESTS
+
+import camgeo
+
+AGREE = 1e-9  # of figures in mm and degrees, absolute, and relative of those above 1
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(pyodide.why_not()), reason=pyodide.why_not())]
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    folder = tmp_path_factory.mktemp("pyodide")
+    pyodide.gather(folder / "pure")
+    done = pyodide.run(TESTS / "support/in_pyodide.py", folder / "pure", folder / "answer.json", *SHIPPED)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads((folder / "answer.json").read_text("utf-8"))
+    return found
+
+
+def test_indices_are_narrow_there_and_pairs_of_them_are_not(answers: dict[str, Any]) -> None:
+    assert answers["index"] == 4
+    assert answers["large"] == 131_070 + 131_072
+
+
+def test_a_set_takes_the_place_of_another_one(answers: dict[str, Any]) -> None:
+    assert answers["again"] == ["again.svg", "report.json"]
+
+
+def test_what_needs_solids_is_left_out_and_said(answers: dict[str, Any]) -> None:
+    found = answers["left out"]
+    assert found["ok"]
+    assert found["files"] == ["hubbed.dxf"]
+    assert list(found["missing"]) == ["hubbed.stl", "hubbed.step"]
+    assert "this part needs solids" in found["missing"]["hubbed.stl"]
+
+
+def test_a_missing_package_is_an_error_of_the_surroundings(answers: dict[str, Any]) -> None:
+    assert answers["none"]["error"] == answers["second"]["error"] == "SurroundingsError"
+    assert "this part needs solids" in answers["none"]["text"]
+    assert "a second opinion needs" in answers["second"]["text"]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_every_shipped_recipe_has_the_same_verdicts_and_figures(answers: dict[str, Any], path: Any) -> None:
+    there = answers["recipes"][path.stem]
+    if "error" in there:
+        assert there["error"] == "SurroundingsError", there
+        return
+    here = json.loads(camgeo.check(path).to_json())
+    missing = {entry["what"] for entry in there["report"]["skipped"] if entry.get("missing")}
+    differences = compared(judged(here, missing), judged(there["report"], missing))
+    figures = {name: figure.value for name, figure in camgeo.design(path).figures.items()}
+    differences += compared(figures, there["figures"])
+    assert there["report"]["ok"] is here["ok"] is True
+    assert not differences
+
+
+def judged(report: dict[str, Any], missing: set[str]) -> dict[str, Any]:
+    """Give what a report says of the design and of the files that both runs made."""
+    kept = {file["path"] for file in report["files"]} - missing
+    return {
+        **{key: value for key, value in report.items() if key not in {"stages", "skipped"}},
+        "checks": [check for check in report["checks"] if check.get("file") in {*kept, None}],
+        "files": [file for file in report["files"] if file["path"] in kept],
+    }
+
+
+PLACES = ("_deg", "detail", "sentence", "centre")  # where an extreme is, which may be attained at several places
+MACHINE = {"bytes", "sha256"}  # of a file: digits at rounding, triangles as they were clipped
+
+
+def compared(here: Any, there: Any, where: str = "") -> list[str]:
+    """Say where two documents differ, by more than rounding where they hold numbers; of places nothing is asked."""
+    if isinstance(here, dict) and isinstance(there, dict):
+        names = sorted(name for name in {*here, *there} - MACHINE if not name.endswith(PLACES))
+        return [line for name in names for line in compared(here.get(name), there.get(name), f"{where}.{name}")]
+    if isinstance(here, list) and isinstance(there, list) and len(here) == len(there):
+        pairs = enumerate(zip(here, there, strict=True))
+        return [line for i, pair in pairs for line in compared(*pair, f"{where}[{i}]")]
+    if isinstance(here, float) and isinstance(there, float):
+        return [] if math.isclose(here, there, rel_tol=AGREE, abs_tol=AGREE) else [f"{where}: {here!r}, {there!r}"]
+    return [] if here == there else [f"{where}: {here!r}, {there!r}"]
