@@ -200,6 +200,7 @@ def assert_motion(
     *,
     limit: float | None = None,
     tolerance: float | None = None,
+    gap: float | None = None,
     angles: int | None = None,
     **options: bool,
 ) -> Motion:
@@ -207,11 +208,12 @@ def assert_motion(
 
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
-    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `options` are those of `camgeo.verify`,
-    whose checks are asserted too. Returns the motion error, of several surfaces the greatest.
+    name, else `export.tolerance`. `gap` and `options` are those of `camgeo.verify`, whose checks are asserted too: ends
+    in drawings within the gap of one other are joined. `angles` takes the place of `verify.angles`. Returns the motion
+    error, of several surfaces the greatest.
     """
     names = {MOTION.name, *BACKLASH}
-    rows = _judged(recipe, path, names, options, limit=limit, tolerance=tolerance, angles=angles)
+    rows = _judged(recipe, path, names, options, limit=limit, tolerance=tolerance, gap=gap, angles=angles)
     if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     motion = max((row["motion"] for row in rows), key=lambda found: float(found["max"]))
@@ -219,13 +221,15 @@ def assert_motion(
 
 
 @_ending_here
-def assert_contour(recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, **options: bool) -> float:
+def assert_contour(
+    recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, gap: float | None = None, **options: bool
+) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `options` as in
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance`, `gap` and `options` as in
     `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
-    rows = _judged(recipe, path, {CONTOUR.name}, options, tolerance=tolerance)
+    rows = _judged(recipe, path, {CONTOUR.name}, options, tolerance=tolerance, gap=gap)
     return max(float(row["measured_error"]) for row in rows)
 
 
@@ -237,6 +241,7 @@ def _judged(
     *,
     limit: float | None = None,
     tolerance: float | None,
+    gap: float | None,
     angles: int | None = None,
 ) -> list[Entry]:
     """Judge a file and assert the checks of those names; what the report says of each of its surfaces."""
@@ -254,7 +259,7 @@ def _judged(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report: Entry = dict(judged(recipe, path, tolerance=tolerance, **options))
+    report: Entry = dict(judged(recipe, path, tolerance=tolerance, gap=gap, **options))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))

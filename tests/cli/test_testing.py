@@ -139,6 +139,18 @@ def test_closed(tmp_path, vertices):
     assert testing.assert_closed(stl(tmp_path, vertices)) == 0.0
 
 
+@pytest.mark.parametrize(
+    "assertion", [testing.assert_closed, testing.assert_watertight, testing.assert_constant_breadth]
+)
+def test_a_solid_without_walls(tmp_path, assertion):
+    """Two triangles at two heights, as a lid and a floor whose walls another program has dropped."""
+    corners = np.array([[[0, 0, z], [9, 0, z], [0, 9, z]] for z in (0.0, 5.0)])
+    path = write_stl(tmp_path / "lid.stl", corners)
+    words = r"lid\.stl: nothing is at z = 2\.5 mm, and something above and below: walls are missing between faces"
+    with pytest.raises(AssertionError, match=words):
+        assertion(path)
+
+
 def test_a_gap_is_measured(tmp_path):
     def corner(space):
         space.add_lwpolyline([(20, 0.004), (20, 20), (-20, 20), (-20, -20), (20, -20), (20, 0)])
@@ -195,7 +207,7 @@ def test_an_stl_cut_short(tmp_path, vertices):
 
 
 def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
-    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl, \.3mf or \.step file"):
+    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl, \.ply, \.3mf or \.step file"):
         testing.assert_watertight(dxf(tmp_path, vertices))
     for judge in (testing.assert_closed, testing.assert_watertight, testing.assert_constant_breadth):
         for name in ("cam.iges", "cam", "cam.csv", "cam.ngc"):

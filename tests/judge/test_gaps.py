@@ -10,7 +10,9 @@ import pytest
 from support.heavy import ezdxf
 
 import camgeo
+from camgeo import testing
 from camgeo.cli.main import main
+from camgeo.common.errors import CallError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -98,6 +100,19 @@ def test_pieces_that_are_apart_by_as_much_as_programs_leave(
     remedy = checks["closed"].detail.partition("--gap ")[2].partition("mm ")[0]
     assert not verified(recipe, spoilt, gap=float(remedy))[1]
     assert verified(recipe, spoilt, gap=0.01 * apart)[1] == {"closed"}
+
+
+def test_assertions_take_a_gap(made: tuple[Path, Path], tmp_path: Path) -> None:
+    """What they return has it added, as the checks of `verify` have."""
+    recipe, path = made
+    spoilt = parted(path, tmp_path / "returned.dxf", 1e-3)
+    for figure in (
+        lambda gap: testing.assert_motion(recipe, spoilt, gap=gap).max,
+        lambda gap: testing.assert_contour(recipe, spoilt, gap=gap),
+    ):
+        assert figure(2e-3) - figure(1e-3) == pytest.approx(1e-3, rel=1e-6)
+        with pytest.raises(CallError, match=r"a gap of 0\.02 mm is more than the tolerance, 0\.01, of returned\.dxf"):
+            figure(0.02)
 
 
 def test_an_open_bore_does_not_keep_the_contour_from_being_judged(made: tuple[Path, Path], tmp_path: Path) -> None:

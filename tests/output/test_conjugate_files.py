@@ -342,9 +342,11 @@ def test_a_step_file_holds_two_solids_at_their_gap(tmp_path):
         spans.append((low, high))
         explorer.Next()
     assert np.array(sorted(spans)) == pytest.approx(np.array([(0.0, 12.0), (14.0, 26.0)]), abs=1e-6)
-    for raised, caught in ((0.0, set()), (0.002, {("saved.step", "disc 2", "thickness")})):
-        saved = saved_as_assembly(shape, tmp_path / "saved.step", raised)
-        assert failures(camgeo.verify(recipe, saved)) == caught
+    for raised, words in ((0.0, ""), (0.002, "disc 2 lies 0.002 mm higher"), (-14.0, "disc 2 lies 14 mm lower")):
+        again = camgeo.verify(recipe, saved_as_assembly(shape, tmp_path / "saved.step", raised))
+        caught = ("saved.step", "", "readable") if raised < 0.0 else ("saved.step", "disc 2", "thickness")
+        assert failures(again) == ({caught} if words else set())
+        assert all(check.detail.endswith(f"; {words} than it should") for check in again.checks if not check.ok)
     wide = STL_AND_STEP.replace("gap: 2", "gap: 2.002")
     other = camgeo.export(written(tmp_path, wide, "wide"), tmp_path)
     found = failures(camgeo.verify(recipe, other.path / "wide.step"))
