@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import Form
+from camgeo.schema.fields import MOST, Field, Form, Kind
 from camgeo.schema.file_bytes import bytes_of
 from camgeo.schema.scalars import MOST_TEXT, Complaint
-from camgeo.schema.yaml_source import Scalar, described
+from camgeo.schema.yaml_source import Scalar, Sequence, described, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.schema.fields import Field
-    from camgeo.schema.reader import Reader
+    from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
     from kin.law.sources.ring import Samples
-
-Angles: TypeAlias = Literal["cam", "crank"]
-Unit: TypeAlias = Literal["mm", "inch", "thou", "degrees", "N"]  # of displacements, or of loads
+    from kin.law.sources.table_text import Column, Quantity, Sheet
 
 MAX_BYTES = 16_000_000
 MAX_ROWS = 200_000
@@ -66,21 +63,73 @@ FILE = Form(
 )
 
 
-def read_rows(
-    reader: Reader,
-    file: str,
-    path: str,
-    *,
-    angles: Angles,
-    unit: Unit,
-) -> tuple[Rows, float] | None:
-    """Read the table of a recipe, and the unit of its last digit; notes what is wrong at the recipe's own field."""
-    from kin.law.programme import IntentError
+def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[Column, Column] | None:
+    """Read two columns, each by its heading or its number."""
+    found: list[Column] = []
+    for i, item in enumerate(reader.items(field, node, path, 2)):
+        if not isinstance(item, Scalar) or not 0 < len(item.text) <= MOST_TEXT or not item.text.isprintable():
+            reader.fault(item.mark, join(path, i), "not a column", described(item), reader.wanted(field))
+            return None
+        found.append(int(item.text) if item.plain and item.text.isdecimal() else item.text)
+    if len(found) == 2:
+        return found[0], found[1]
+    if found:
+        given = described(node) if isinstance(node, Sequence) else None
+        reader.fault(node.mark, path, "not two columns", given, reader.wanted(field))
+    return None
 
-    mark = reader.marks[path]
+
+_COLUMNS = Form(
+    "a list of two columns",
+    "a list of the columns of angle and value, by heading or number, such as [crank, intake]",
+    _read_columns,
+    lambda _: {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 2, "maxItems": 2},
+)
+SHEET = (
+    Field(
+        "angle",
+        Kind.CHOICE,
+        "unit of the table's angles: degrees of the cam or the crank, or parts of the cam's turn",
+        default="the heading's, else cam",
+        choices=("cam", "crank", "radians", "turns", "percent"),
+    ),
+    Field("columns", Kind.OWN, "columns of angle and value", default="the only two, or by heading", form=_COLUMNS),
+    Field("scale", Kind.NUMBER, "factor of the table's values", default="1", at_least=-MOST, at_most=MOST),
+    Field(
+        "offset",
+        Kind.NUMBER,
+        "added to the values after that, in their unit",
+        default="0",
+        at_least=-MOST,
+        at_most=MOST,
+    ),
+)
+"""Keys beside the file of a table that say how it is read."""
+
+
+def read_rows(
+    reader: Reader, values: Values, path: str, *, quantity: Quantity, instead: str
+) -> tuple[Rows, float] | None:
+    """Read the table of a recipe, and the unit of its last digit; notes what is wrong at the recipe's own field.
+
+    `instead` is the unit of the values where neither the recipe nor a heading says.
+    """
+    from kin.law.programme import IntentError
+    from kin.law.sources.table_text import Sheet
+
+    file, mark = values["table"], reader.marks[path]
+    sheet = Sheet(
+        quantity,
+        values.get("columns"),
+        values.get("angle"),
+        values.get("units"),
+        instead,
+        values.get("scale", 1.0),
+        values.get("offset", 0.0),
+    )
     try:
         text = _text(bytes_of(Path(reader.source.file).parent / file, MAX_BYTES, "table"))
-        return _rows(text, angles, unit)
+        return _rows(text, sheet)
     except Complaint as complaint:
         remedy = complaint.remedy or "give its path as seen from the recipe's folder"
         reader.fault(mark, path, complaint.problem, repr(file), remedy)
@@ -107,9 +156,9 @@ def _text(data: bytes) -> str:
 
 
 @lru_cache(maxsize=4)
-def _rows(text: str, angles: Angles, unit: Unit) -> tuple[Rows, float]:
+def _rows(text: str, sheet: Sheet) -> tuple[Rows, float]:
     from kin.law.sources.table_text import read_table
 
-    samples, place = read_table(text, angles=angles, unit=unit, field=_FIELD)
+    samples, place = read_table(text, sheet, _FIELD)
     theta, s, lines = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))
     return Rows(theta, s, lines, samples.unit, samples.slack, samples.turned), place

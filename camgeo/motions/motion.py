@@ -11,11 +11,11 @@ from abc import ABC, abstractmethod
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.motions.lift_table import FILE, Rows, Unit, read_rows
+from camgeo.motions.lift_table import FILE, SHEET, Rows, read_rows
 from camgeo.motions.segments import read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, join
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, join
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -271,6 +271,22 @@ def _segment(stroke: Kind, longest: int) -> Table:
     return segment_table(stroke, longest)
 
 
+def _read_reading(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
+    """Read a length or an angle, or `auto`."""
+    if isinstance(node, Scalar) and node.text == "auto":
+        return "auto"
+    value: float | None = reader.readers[field.kind](reader, replace(field, form=None), node, path)
+    return value
+
+
+_READING = Form(
+    "a stroke, or auto",
+    "a stroke above 0, or auto for half the last digit of the table",
+    _read_reading,
+    lambda field: {"anyOf": [number_schema(replace(field, form=None)), {"const": "auto"}]},
+)
+
+
 @cache
 def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     """The keys of a motion that is no list of segments."""
@@ -279,7 +295,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         "units",
         Kind.CHOICE,
         "unit of the table's displacements",
-        default="the recipe's",
+        default="the heading's, else the recipe's",
         choices=("mm", "inch", "thou"),
     )
     nose = Field(
@@ -294,15 +310,16 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     fields = (
         Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
         Field("table", Kind.OWN, "file with a row for each angle, its path as seen from the recipe", form=FILE),
-        Field("angle", Kind.CHOICE, "whose angle the table has", default="cam", choices=("cam", "crank")),
+        *SHEET,
         *(() if stroke is Kind.ANGLE else (units,)),
         Field(
             "reading",
             stroke,
             "greatest distance of the motion from a row of the table",
-            default="half the unit of the table's last digit",
+            default="auto",
             above=0,
             at_most=most,
+            form=_READING,
         ),
         Field(
             "rest",
@@ -359,7 +376,7 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
         raise AssertionError(field.name)
     found = len(reader.errors)
     values = reader.table(field.form.instead, node, path)
-    for key in ("angle", "units", "reading", "rest", "suspect"):
+    for key in (*(field.name for field in SHEET), "units", "reading", "rest", "suspect"):
         if key in values and f"{path}.table" not in reader.marks:
             reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
     if "units" in values and stroke in reader.angular:
@@ -389,8 +406,14 @@ def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str
 
 def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAsked | None:
     """Read the rows of a table now, so that the recipe needs no file any more."""
-    unit: Unit = "degrees" if stroke in reader.angular else values.get("units", reader.units)
-    found = read_rows(reader, values["table"], path, angles=values.get("angle", "cam"), unit=unit)
+    angular = stroke in reader.angular
+    found = read_rows(
+        reader,
+        values,
+        path,
+        quantity="angle" if angular else "length",
+        instead="degrees" if angular else reader.units,
+    )
     if found is None:
         return None
     rows, place = found
@@ -401,7 +424,8 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAske
         return None
     stroke_of_rows = max(rows.s, default=0.0) - min(rows.s, default=0.0)
     least = LEAST_READING * stroke_of_rows if math.isfinite(stroke_of_rows) else 0.0
-    reading = values.get("reading", max(0.5 * place, least))
+    reading = values.get("reading", "auto")
+    reading = max(0.5 * place, least) if reading == "auto" else reading
     scale, suspects = reader.scale(stroke), values.get("suspect", "refuse")
     return TableAsked(values["table"], rows, reading, scale, values.get("rest"), suspects)
 

@@ -93,6 +93,15 @@ def _basis() -> _Basis:
     return _Basis(x, np.asarray(np.linalg.inv(table), dtype=float), last)
 
 
+def _evenly(places: Array, counts: Indices) -> tuple[Array, Array]:
+    """Ends of equal cells between places (m + 1,), so many between each two."""
+    begin, end = np.repeat(places[:-1], counts), np.repeat(places[1:], counts)
+    count = np.repeat(counts, counts)
+    number = np.arange(len(count)) - np.repeat(np.cumsum(counts) - counts, counts)
+    step = (end - begin) / count
+    return number * step + begin, np.where(number + 1 < count, (number + 1) * step + begin, end)
+
+
 def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array = 0.0, *, share: float = 0.0) -> Cells:
     """Interpolate r functions, f(x (n,)) -> (r, n), between places (m + 1,) that rise, breaks among them.
 
@@ -102,8 +111,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
     basis = _basis()
     widest = (places[-1] - places[0]) / FIRST_CELLS
     counts = np.maximum(np.ceil(np.diff(places) / widest - 1e-9), 1).astype(int)
-    parts = [np.linspace(a, b, n + 1) for a, b, n in zip(places[:-1], places[1:], counts, strict=True)]
-    low, high = np.concatenate([p[:-1] for p in parts]), np.concatenate([p[1:] for p in parts])
+    low, high = _evenly(places, counts)
     least = LEAST_CELL * (places[-1] - places[0])
     most = max(MOST_UNRESOLVED, 2 * len(low))
     blur = BLUR * (places[-1] - places[0])

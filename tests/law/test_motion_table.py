@@ -13,7 +13,7 @@ from kin.law.sources.points import from_points
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.sources.ring import Samples
 from kin.law.sources.table import from_table
-from kin.law.sources.table_text import read_table
+from kin.law.sources.table_text import Sheet, read_table
 from kin.law.sources.tabled import TableError
 from kin.law.support_function import lift_constant_breadth
 
@@ -412,12 +412,13 @@ def test_columns_and_decimal_marks(text):
 
 def test_crank_degrees_inches_and_degrees():
     text = "# inlet\ndeg;in\n0;0,0\n2;0,1\n4;0,25\n"
-    rows, unit = read_table(text, angles="crank", unit="inch")
+    rows, unit = read_table(text, Sheet("length", angle="crank", unit="inch"))
     assert np.degrees(rows.theta) == pytest.approx([0, 1, 2])
     assert rows.s == pytest.approx([0, 2.54, 6.35])
     assert rows.lines.tolist() == [3, 4, 5]
     assert unit == pytest.approx(0.254)
-    assert read_table(text, unit="degrees")[0].s == pytest.approx(np.radians([0, 0.1, 0.25]))
+    plain = text.replace(";in", ";lift")
+    assert read_table(plain, Sheet("angle", instead="degrees"))[0].s == pytest.approx(np.radians([0, 0.1, 0.25]))
 
 
 @pytest.mark.parametrize(
@@ -430,14 +431,18 @@ def test_crank_degrees_inches_and_degrees():
         (
             "0,1,0,2\n1,5,0,3\n",
             (
-                "line 1: '0,1,0,2' is not a row separated by commas: an angle and a displacement are expected: with "
-                "decimal commas, separate the columns by semicolons"
+                "line 1: the table's columns are 4 without a heading; give those of the angle and the value, such as "
+                "columns: [1, 2]: with decimal commas, separate the columns by semicolons"
             ),
         ),
         (
-            "0 1 2\n1 2 3\n",
-            "line 1: '0 1 2' is not a row separated by blanks: an angle and a displacement are expected",
+            "crank in ex\n0 1 2\n1 2 3\n",
+            (
+                "line 2: the table's columns are crank, in, ex; give those of the angle and the value, such as "
+                "columns: [crank, in]"
+            ),
         ),
+        ("deg;lift\n", "the table has a heading and no rows"),
         ("# nothing\n", "the table is empty"),
     ],
 )
@@ -447,10 +452,93 @@ def test_what_is_no_row_is_refused_with_its_line(text, message):
     assert caught.value.message == message
 
 
+SEVERAL = "crank_deg;intake_thou;exhaust_thou\n0;0;1\n2;10;3\n4;20;5\n"
+
+
+@pytest.mark.parametrize("columns", [("crank", "exhaust"), ("crank_deg", "exhaust_thou"), (1, 3), ("Crank", 3)])
+def test_columns_are_chosen_by_heading_or_number_and_their_units_are_taken(columns):
+    rows, place = read_table(SEVERAL, Sheet("length", columns))
+    assert np.degrees(rows.theta) == pytest.approx([0, 1, 2])
+    assert rows.s == pytest.approx([0.0254, 0.0762, 0.127])
+    assert (rows.unit, place) == (0.0254, 0.0254)
+
+
+@pytest.mark.parametrize(
+    ("heading", "quantity", "s"),
+    [
+        ("phi;lift_in", "length", 25.4),
+        ("phi;Lift (inch)", "length", 25.4),
+        ("phi;lift / thou", "length", 0.0254),
+        ("phi;s [cm]", "length", 10.0),
+        ("phi;swing_deg", "angle", rad(1)),
+        ("phi;swing_rad", "angle", 1.0),
+        ("phi;load_lbf", "force", 4.4482216152605),
+        ("phi;load_kN", "force", 1000.0),
+        ("phi;load_Nm", "moment", 1.0),
+        ("phi;torque (lbf in)", "moment", 0.1129848290276167),
+    ],
+)
+def test_a_unit_in_a_heading_is_taken(heading, quantity, s):
+    rows, _ = read_table(f"{heading}\n0;0\n90;1\n", Sheet(quantity, instead="mm"))
+    assert rows.s[1] == pytest.approx(s, rel=1e-15)
+    assert rows.theta[1] == pytest.approx(rad(90))
+
+
+@pytest.mark.parametrize(
+    ("heading", "angle", "turn"),
+    [
+        ("deg", None, 360),
+        ("crank", None, 720),
+        ("crank_deg", None, 720),
+        ("angle_rad", None, 2 * math.pi),
+        ("turns", None, 1),
+        ("shaft %", None, 100),
+        ("deg", "crank", 720),
+        ("angle", "radians", 2 * math.pi),
+        ("angle", "turns", 1),
+        ("angle", "percent", 100),
+    ],
+)
+def test_angles_in_every_unit_are_of_the_cam_s_turn(heading, angle, turn):
+    rows, _ = read_table(f"{heading};lift\n0;0\n{turn!r};0\n", Sheet("length", angle=angle))
+    assert rows.theta[1] == pytest.approx(TURN, rel=1e-15)
+
+
+def test_scale_and_offset_come_before_the_reading():
+    rows, place = read_table("0;0,00\n90;1,25\n", Sheet("length", unit="inch", scale=1.6, offset=-0.2))
+    assert rows.s == pytest.approx([-0.2 * 25.4, 1.8 * 25.4])
+    assert place == pytest.approx(0.016 * 25.4)
+
+
+def test_displacement_stands_out_among_its_derivatives():
+    rows, _ = read_table("t, deg, s (mm), v (mm/deg), a\n1, 0, 0.0, 1, 2\n2, 10, 1.5, 3, 4\n")
+    assert rows.s.tolist() == [0, 1.5]
+    assert np.degrees(rows.theta) == pytest.approx([0, 10])
+
+
+@pytest.mark.parametrize(
+    ("sheet", "message", "field"),
+    [
+        (Sheet("length", ("crank", "valve")), "'valve' is no heading of the table: they are crank_deg, ", "columns"),
+        (Sheet("length", (1, 4)), "the table has columns 1 to 3, not 4", "columns"),
+        (Sheet("length", (1, "crank")), "column 1 cannot be both the angle and the value", "columns"),
+        (Sheet("length", (1, 2), "cam"), "the column 'crank_deg' is of the crank, not of the cam", "angle"),
+        (Sheet("length", (1, 2), "radians"), "the column 'crank_deg' is in degrees, not in radians", "angle"),
+        (Sheet("length", (1, 2), unit="mm"), "the column 'intake_thou' is in thou, not in mm", "units"),
+        (Sheet("angle", (1, 2)), "the column 'intake_thou' is in thou; an angle is meant here", ""),
+    ],
+)
+def test_what_contradicts_a_heading_is_refused(sheet, message, field):
+    with pytest.raises(IntentError) as caught:
+        read_table(SEVERAL, sheet)
+    assert caught.value.message.startswith(message)
+    assert caught.value.field == ".".join(filter(None, ("motion.table", field)))
+
+
 def test_a_table_goes_from_text_to_motion():
     rows = event()
     text = "\n".join(f"{2 * math.degrees(t):.1f};{s:.3f}" for t, s in zip(rows.theta, rows.s, strict=True))
-    found, unit = read_table(text.replace(".", ","), angles="crank")
+    found, unit = read_table(text.replace(".", ","), Sheet("length", angle="crank"))
     assert unit == 0.001
     theta = np.mod(rows.theta, TURN)
     expected = from_table(rows, 0.0005).derivatives(theta, 2)

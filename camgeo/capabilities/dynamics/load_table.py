@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.motions.lift_table import FILE, read_rows
+from camgeo.motions.lift_table import FILE, SHEET, read_rows
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.quantity import parted
@@ -13,12 +13,14 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.motions.lift_table import Angles
-    from camgeo.schema.reader import Reader
+    from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
+    from kin.law.sources.table_text import Quantity
     from kin.numeric.arrays import Array
 
 MOST_LOAD = MOST**2
+_MANY = 2000  # rows: of more those are left out that are on straight lines, but for half of their last digit
+_UNITS = ("N", "kN", "lbf", "Nm", "lbf in", "lbf ft")
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ LOADS = Table(
             required=True,
             form=FILE,
         ),
-        Field("angle", Kind.CHOICE, "whose angle the table has", default="cam", choices=("cam", "crank")),
+        *SHEET,
+        Field("units", Kind.CHOICE, "unit of the loads", default="the heading's, else N or N m", choices=_UNITS),
     )
 )
 
@@ -72,22 +75,25 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTabl
         found: str | None = reader.readers[Kind.FORMULA](reader, field, node, path)
         return found
     values = reader.table(LOADS, node, path)
-    return (
-        _table(reader, values["table"], values.get("angle", "cam"), join(path, "table")) if "table" in values else None
-    )
+    return _table(reader, values, join(path, "table")) if "table" in values else None
 
 
-def _table(reader: Reader, file: str, angles: Angles, path: str) -> LoadTable | None:
+def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
     from kin.law.programme import IntentError
-    from kin.law.sources.table import periodic
+    from kin.law.sources.table import periodic, straightened
 
-    if (found := read_rows(reader, file, path, angles=angles, unit="N")) is None:
+    file, own = values["table"], reader.unit(Kind.THRUST)
+    quantity: Quantity = "force" if own == "N" else "moment"
+    found = read_rows(reader, values, path, quantity=quantity, instead="N" if own == "N" else "Nm")
+    if found is None:
         return None
     try:
         rows = periodic(found[0].samples(), TURN, path, reader.unit(Kind.THRUST))
     except IntentError as error:
         reader.fault_at(path, f"{file}, {error.message}")
         return None
+    if len(rows.s) > _MANY:
+        rows = straightened(rows, 0.5 * found[1])
     largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True))
     if largest > MOST_LOAD:
         reader.fault_at(

@@ -242,6 +242,26 @@ def _angles(rows: Samples, total: float) -> list[TableRemark]:
     return [TableRemark("table-angles", f"{covered}, {rest}; see that they are degrees of the cam")]
 
 
+def straightened(rows: Samples, reading: float) -> Samples:
+    """The rows without those that lie within `reading` of straight lines between the others.
+
+    The cone of J. Sklansky and V. Gonzalez (Pattern Recognition 12, 1980): a line goes on while the rows passed let it.
+    """
+    x, s = rows.theta.tolist(), rows.s.tolist()
+    kept, low, high = [0], -math.inf, math.inf
+    for i in range(1, len(x)):
+        begin = kept[-1]
+        step = x[i] - x[begin]
+        slope = (s[i] - s[begin]) / step
+        if not low <= slope <= high:
+            kept.append(i - 1)
+            step, low, high = x[i] - x[i - 1], -math.inf, math.inf
+            slope = (s[i] - s[i - 1]) / step
+        low, high = max(low, slope - reading / step), min(high, slope + reading / step)
+    which = np.array([*kept, len(x) - 1] if len(x) > 1 else kept)
+    return rows._replace(theta=rows.theta[which], s=rows.s[which], lines=rows.lines[which])
+
+
 def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
     """Rows of a load that repeats itself after `total` rad, without one that closes it; `unit` is for messages.
 
