@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.schema.fields import MOST, Field, Form, Kind
 from camgeo.schema.file_bytes import bytes_of
@@ -20,7 +21,17 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 16_000_000
 MAX_ROWS = 200_000
+MOST_WRITTEN = 3000  # rows in a recipe, which as a text has at most 10,000 parts
+_PAIR = 2  # numbers of a row at least
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _FIELD = "table"
+
+
+class Origin(NamedTuple):
+    """Where the rows of a table come from: the path of a file, or their text, where they stand in the recipe."""
+
+    name: str
+    text: str | None = None
 
 
 @dataclass(frozen=True)
@@ -55,11 +66,37 @@ def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None
     return None
 
 
-FILE = Form(
-    "the path of a file",
-    "the path of a CSV file, such as lift.csv",
-    read_path,
-    lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
+def _read_origin(reader: Reader, field: Field, node: Node, path: str) -> Origin | None:
+    """Read the path of a file, or rows in the recipe itself, of two numbers or more each."""
+    if not isinstance(node, Sequence):
+        name = read_path(reader, field, node, path)
+        return None if name is None else Origin(name)
+    lines = []
+    for i, item in enumerate(reader.items(field, node, path, MOST_WRITTEN)):
+        cells = item.items if isinstance(item, Sequence) else ()
+        texts = [cell.text for cell in cells if isinstance(cell, Scalar)]
+        if len(texts) != len(cells) or len(texts) < _PAIR or not all(map(_NUMBER.fullmatch, texts)):
+            reader.fault(item.mark, join(path, i), "not a row", described(item), "give a list [angle, displacement]")
+            return None
+        lines.append(";".join(texts))
+    return Origin("the rows", "\n".join(lines)) if lines else None
+
+
+TABLE = Form(
+    "the path of a file, or a list of rows",
+    "the path of a CSV file, such as lift.csv, or rows such as [[0, 0], [10, 0.2]]",
+    _read_origin,
+    lambda _: {
+        "anyOf": [
+            {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
+            {
+                "type": "array",
+                "items": {"type": "array", "items": {"type": "number"}, "minItems": 2},
+                "minItems": 1,
+                "maxItems": MOST_WRITTEN,
+            },
+        ]
+    },
 )
 
 
@@ -117,7 +154,7 @@ def read_rows(
     from kin.law.programme import IntentError
     from kin.law.sources.table_text import Sheet
 
-    file, mark = values["table"], reader.marks[path]
+    origin, mark = values["table"], reader.marks[path]
     sheet = Sheet(
         quantity,
         values.get("columns"),
@@ -128,13 +165,15 @@ def read_rows(
         values.get("offset", 0.0),
     )
     try:
-        text = _text(bytes_of(Path(reader.source.file).parent / file, MAX_BYTES, "table"))
+        text = origin.text
+        if text is None:
+            text = _text(bytes_of(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table"))
         return _rows(text, sheet)
     except Complaint as complaint:
         remedy = complaint.remedy or "give its path as seen from the recipe's folder"
-        reader.fault(mark, path, complaint.problem, repr(file), remedy)
+        reader.fault(mark, path, complaint.problem, repr(origin.name), remedy)
     except IntentError as error:
-        reader.fault(mark, path, f"{file}, {error.message}")
+        reader.fault(mark, path, f"{origin.name}, {error.message}")
     return None
 
 

@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.motions.lift_table import FILE, SHEET, Rows, read_rows
+from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
 from camgeo.motions.segments import read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
@@ -309,7 +309,9 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     points = Form("a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points)
     fields = (
         Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
-        Field("table", Kind.OWN, "file with a row for each angle, its path as seen from the recipe", form=FILE),
+        Field(
+            "table", Kind.OWN, "file with a row for each angle, its path as seen from the recipe, or rows", form=TABLE
+        ),
         *SHEET,
         *(() if stroke is Kind.ANGLE else (units,)),
         Field(
@@ -419,15 +421,19 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAske
     rows, place = found
     largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True), default=(0.0, 0))
     if MOST * reader.scale(stroke) < largest < math.inf:  # what is not finite is refused with the other faults of rows
-        problem = f"{values['table']}, line {line}: a displacement above {MOST:.0f}"
+        problem = f"{values['table'].name}, line {line}: a displacement above {MOST:.0f}"
         reader.fault_at(path, problem, None, "give a table of smaller ones")
         return None
     stroke_of_rows = max(rows.s, default=0.0) - min(rows.s, default=0.0)
     least = LEAST_READING * stroke_of_rows if math.isfinite(stroke_of_rows) else 0.0
+    if values["table"].text is not None and "reading" not in values:
+        remedy = "give reading beside them, or reading: auto for half of it"
+        reader.fault_at(path, "rows in a recipe show no last digit", None, remedy)
+        return None
     reading = values.get("reading", "auto")
     reading = max(0.5 * place, least) if reading == "auto" else reading
     scale, suspects = reader.scale(stroke), values.get("suspect", "refuse")
-    return TableAsked(values["table"], rows, reading, scale, values.get("rest"), suspects)
+    return TableAsked(values["table"].name, rows, reading, scale, values.get("rest"), suspects)
 
 
 def _read_points(

@@ -207,7 +207,7 @@ def test_the_schema_takes_what_the_reader_takes():
     ]
     part = motion_field("law", Kind.ANGLE, "a part of a turn")
     assert set(table_schema(part.form.instead)["properties"]) == {
-        *("formula", "table", "angle", "reading", "rest", "suspect", "points", "lobe"),
+        *("formula", "table", "angle", "columns", "scale", "offset", "reading", "rest", "suspect", "points", "lobe"),
     }
 
 
@@ -250,6 +250,53 @@ def test_crank_degrees_and_inches_of_a_table(tmp_path):
     other = recipe("{table: lift.csv, angle: crank, units: inch, reading: 0.001}", tmp_path)
     theta = np.arange(0.0, 360.0, 3.0)
     assert lift(other, theta)[0] == pytest.approx(lift(plain, theta)[0], abs=1e-6)
+
+
+def test_a_file_of_several_columns_in_crank_degrees_and_thousandths(tmp_path):
+    """As it comes: one message that says what to add, and then the motion."""
+    deg = np.arange(0.0, 720.0, 10.0)
+    lifts = [200 - 200 * np.cos(np.radians(0.5 * deg)), 150 - 150 * np.cos(np.radians(0.5 * deg))]
+    rows = "\n".join(f"{a:g};{b:.1f};{c:.1f}" for a, b, c in zip(deg, *lifts, strict=True))
+    (tmp_path / "lift.csv").write_text(f"crank;intake_thou;exhaust_thou\n{rows}\n", encoding="utf-8")
+    head = "kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}"
+    message = str(fault("{table: lift.csv}", tmp_path, head=head))
+    assert "the table's columns are crank, intake_thou, exhaust_thou" in message
+    told = re.search(r"such as (columns: \[.*\])", message)[1]
+    for columns, lift_ in ((told, lifts[0]), ("columns: [crank, exhaust]", lifts[1]), ("columns: [1, 3]", lifts[1])):
+        made = recipe(f"{{table: lift.csv, {columns}}}", tmp_path, head=head).cam.exact()
+        s = made.motion.rows(np.radians(0.5 * deg), 0)[0]
+        assert s - s.min() == pytest.approx(0.0254 * lift_, abs=0.0254 * 0.06)
+        assert made.kept.distance <= 0.05 * 0.0254
+    scaled = recipe("{table: lift.csv, columns: [1, 2], scale: 1.5, offset: 3}", tmp_path, head=head).cam.motion
+    assert scaled.rows.s == pytest.approx(0.0254 * (1.5 * np.round(lifts[0], 1) + 3))
+    assert scaled.reading == pytest.approx(1.5 * 0.05 * 0.0254)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("{table: lift.csv, columns: [1, 2, 3]}", "cam.motion.columns"),
+        ("{table: lift.csv, columns: 2}", "cam.motion.columns: not a list"),
+        ("{table: lift.csv, columns: [1]}", "cam.motion.columns: not two columns"),
+        ("{table: lift.csv, columns: [1, 5]}", "the table has columns 1 to 2, not 5"),
+        ("{table: [[0, 0], [90, 3], [180, 5]]}", "rows in a recipe show no last digit; give reading beside them"),
+        ("{table: [[0, 0], [90]], reading: 0.1}", "cam.motion.table[1]: not a row"),
+        ("{formula: cos(t), columns: [1, 2]}", "cam.motion.columns: cannot stand without a table"),
+    ],
+)
+def test_columns_and_rows_that_are_none_are_refused(given, message, tmp_path):
+    written(tmp_path, HALF, sampled(HALF))
+    assert message in str(fault(given, tmp_path))
+
+
+def test_rows_may_stand_in_the_recipe(tmp_path):
+    rows = ", ".join(f"[{angle:g}, {value:.3f}]" for angle, value in zip(HALF, sampled(HALF), strict=True))
+    written(tmp_path, HALF, sampled(HALF))
+    theta = np.arange(0.0, 360.0, 7.0)
+    expected = lift(recipe("{table: lift.csv}", tmp_path), theta)[0]
+    for reading in ("auto", "0.0005"):
+        made = recipe(f"{{table: [{rows}], reading: {reading}}}", tmp_path)
+        assert lift(made, theta)[0] == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_dwell_of_a_table_is_one_exactly(tmp_path):

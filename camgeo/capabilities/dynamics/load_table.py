@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.motions.lift_table import FILE, SHEET, read_rows
+from camgeo.motions.lift_table import SHEET, TABLE, read_rows
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.quantity import parted
@@ -55,9 +55,9 @@ LOADS = Table(
         Field(
             "table",
             Kind.OWN,
-            "file with a row for each angle, its path as seen from the recipe; loads in N, or N m",
+            "file with a row for each angle, its path as seen from the recipe, or rows; loads in N, or N m",
             required=True,
-            form=FILE,
+            form=TABLE,
         ),
         *SHEET,
         Field("units", Kind.CHOICE, "unit of the loads", default="the heading's, else N or N m", choices=_UNITS),
@@ -82,7 +82,7 @@ def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
     from kin.law.programme import IntentError
     from kin.law.sources.table import periodic, straightened
 
-    file, own = values["table"], reader.unit(Kind.THRUST)
+    file, own = values["table"].name, reader.unit(Kind.THRUST)
     quantity: Quantity = "force" if own == "N" else "moment"
     found = read_rows(reader, values, path, quantity=quantity, instead="N" if own == "N" else "Nm")
     if found is None:

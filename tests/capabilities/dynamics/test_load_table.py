@@ -213,3 +213,38 @@ dynamics: {mass: 0.01, rpm: 60, preload: 80, load: {table: load.csv}}
 """
     with pytest.raises(RecipeErrors, match="ends after 120 degrees with 3 N m, and begins with 1 N m"):
         read(text.encode(), tmp_path / "case.yaml")
+
+
+@pytest.mark.parametrize(
+    ("rows", "more", "factor"),
+    [
+        (ROWS.replace("load", "load_lbf"), "", 4.4482216152605),
+        (ROWS.replace("load", "load (kN)"), "", 1000.0),
+        (ROWS, ", units: kN", 1000.0),
+        (ROWS, ", scale: 2.5", 2.5),
+        (ROWS.replace("angle, load", "crank_deg, load_N").replace("270", "540").replace("180", "360"), "", None),
+        ("t, angle, load_N\n0, 0, 0\n1, 90, 100\n2, 120, 250\n3, 180, 0\n4, 270, -40\n", "", 1.0),
+        ("0;9;0\n90;9;100\n120;9;250\n180;9;0\n270;9;-40\n", ", columns: [1, 3]", 1.0),
+    ],
+)
+def test_units_and_columns_of_a_load(rows: str, more: str, factor: float | None, tmp_path: Path) -> None:
+    phi = np.linspace(0.0, 2.0 * math.pi, 101)
+    found = running(recipe(tmp_path, rows, more)).load(phi)
+    if factor is not None:
+        assert found == pytest.approx(factor * running(recipe(tmp_path)).load(phi), rel=1e-12, abs=1e-9)
+    else:
+        assert found[75] == pytest.approx(-40.0)
+
+
+def test_a_load_in_newton_metres_is_none_along_a_stem(tmp_path: Path) -> None:
+    with pytest.raises(RecipeErrors, match="the column 'load_Nm' is in Nm; a force is meant here"):
+        recipe(tmp_path, ROWS.replace("load", "load_Nm"))
+
+
+def test_of_many_rows_those_on_straight_lines_are_left_out(tmp_path: Path) -> None:
+    angle = np.arange(0.0, 360.0, 0.05)
+    load = np.round(100 + 60 * np.sin(np.radians(angle)) + 200 * (np.abs(angle - 200.0) < 20.0), 2)
+    table = running(recipe(tmp_path, "\n".join(f"{a:.2f};{f:.2f}" for a, f in zip(angle, load, strict=True)))).load
+    assert isinstance(table, LoadTable)
+    assert len(table.theta) < 0.4 * len(angle)
+    assert np.abs(table(np.radians(angle)) - load).max() <= 0.005 * (1 + 1e-9)
