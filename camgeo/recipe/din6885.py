@@ -2,7 +2,7 @@
 
 The hub's depth t2 leaves play at the key's back and is measured from the bore's circle to the keyway's floor: a hub's
 drawing shows d + t2. Figures as tabled in Siemens/Flender MD 31.1 (2016), page 7/3, and, for bores below 38 mm, in
-GB/T 1095-1979, whose other rows up to 230 mm are the same.
+GB/T 1095-1979, whose other rows up to 230 mm are the same. JIS B 1301 has these rows too.
 """
 
 from __future__ import annotations

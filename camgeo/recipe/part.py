@@ -113,7 +113,8 @@ class Part:
     """The part round the contour, mm.
 
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
-    given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
+    given; `bore_at` is then the direction of one flat's normal. `fit` is the tolerance class of a round one, empty
+    where none is stated; files have the nominal size. `wall` is the least that may be left between any two
     edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
     the cam. `density` is in kg/m^3.
     """
@@ -122,6 +123,7 @@ class Part:
     bore: float | None = None
     sides: int = 0
     bore_at: float = 0.0
+    fit: str = ""
     keyway: Keyway | None = None
     flat: Flat | None = None
     hub: Hub | None = None
@@ -163,17 +165,19 @@ BORE = Table(
         length("square", "width across flats of a square bore"),
         length("hexagon", "width across flats of a hexagonal bore"),
         _angle("at", "direction of one flat's normal"),
+        length("diameter", "diameter of a round bore with a tolerance class"),
+        Field("fit", Kind.CHOICE, "its tolerance class of ISO 286", choices=("H7",)),
     ),
-    alternatives=(("square", ()), ("hexagon", ())),
+    alternatives=(("square", ()), ("hexagon", ()), ("diameter", ("fit",))),
 )
 
 
-STANDARD = "din6885"
+STANDARDS = ("din6885", "jis-b1301")  # which have the same widths and depths
 
 
 KEYWAY = Table(
     (
-        Field("standard", Kind.CHOICE, "width and depth by the bore, from DIN 6885-1", choices=(STANDARD,)),
+        Field("standard", Kind.CHOICE, "width and depth by the bore, from DIN 6885-1 or JIS B 1301", choices=STANDARDS),
         length("width", "width b of the key"),
         length("depth", "depth t2 into the hub, from the bore's circle to the floor"),
         _angle("at", "direction of the keyway's middle"),
@@ -255,7 +259,7 @@ def _optional(name: str, about: str, *fields: Field) -> Field:
 
 
 def read_bore(reader: Reader, field: Field, node: Node, path: str) -> float | Values | None:
-    """Read a diameter in mm, or the mapping of a bore with flats."""
+    """Read a diameter in mm, or the mapping of a bore with flats or with a tolerance class."""
     if isinstance(node, Scalar):
         return read_numeric(reader, length(field.name, field.about), node, path)
     return reader.mapping(field, node, path)
@@ -264,8 +268,8 @@ def read_bore(reader: Reader, field: Field, node: Node, path: str) -> float | Va
 def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
     """Read the word for the standard's keyway, or its mapping."""
     if isinstance(node, Scalar):
-        if node.text == STANDARD:
-            return {"standard": STANDARD}
+        if node.text in STANDARDS:
+            return {"standard": node.text}
         reader.fault(node.mark, path, "unknown keyway", shown(node.text), reader.wanted(field))
         return None
     return reader.mapping(field, node, path)
@@ -273,15 +277,15 @@ def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values |
 
 _BORE = Form(
     "a bore",
-    "a diameter above 0, or a form such as {square: 10} or {hexagon: 10}",
+    "a diameter above 0, or a form such as {square: 10}, {hexagon: 10} or {diameter: 20, fit: H7}",
     read_bore,
     lambda field: {"anyOf": [number_schema(length("", "")), table_schema(field.inner)]},
 )
 _KEYWAY = Form(
     "a keyway",
-    "din6885, or a mapping such as {width: 4, depth: 1.8}",
+    "din6885, jis-b1301, or a mapping such as {width: 4, depth: 1.8}",
     read_keyway,
-    lambda field: {"anyOf": [{"const": STANDARD}, table_schema(field.inner)]},
+    lambda field: {"anyOf": [{"enum": list(STANDARDS)}, table_schema(field.inner)]},
 )
 
 
@@ -337,9 +341,12 @@ def check_part(part: Values, reader: Reader) -> None:
     _needs(reader, "set_screw", "bore", "its hole leads into the bore")
     _needs(reader, "density", "thickness", "the mass is that of a solid")
     bore = part.get("bore")
-    if isinstance(bore, float):
-        _round(part, bore, reader)
-    elif bore is not None:
+    diameter = _diameter(part)
+    if diameter is not None:
+        _round(part, diameter, reader)
+        if isinstance(bore, dict) and "at" in bore:
+            reader.fault_at("part.bore.at", "a round bore has no flats", None, "leave it out")
+    elif bore is not None and "fit" not in bore:
         across = bore.get("square", bore.get("hexagon"))
         if across is not None:
             screw = part.get("set_screw", {}).get("diameter")
@@ -350,6 +357,13 @@ def check_part(part: Values, reader: Reader) -> None:
     _disc(part, reader)
     _holes(part, reader)
     _sizes(part, reader)
+
+
+def _diameter(part: Values) -> float | None:
+    """Diameter of a round bore, mm; None of one with flats, and without a bore."""
+    bore = part.get("bore")
+    diameter: float | None = bore.get("diameter") if isinstance(bore, dict) else bore
+    return diameter
 
 
 def _sizes(part: Values, reader: Reader) -> None:
@@ -393,8 +407,8 @@ def _round(part: Values, bore: float, reader: Reader) -> None:
 
 def _disc(part: Values, reader: Reader) -> None:
     thickness, hub, screw = part.get("thickness"), part.get("hub", {}), part.get("set_screw", {})
-    bore = part.get("bore")
-    if isinstance(bore, float) and "diameter" in hub and hub["diameter"] <= bore + 2.0 * LEAST_SIZE:
+    bore = _diameter(part)
+    if bore is not None and "diameter" in hub and hub["diameter"] <= bore + 2.0 * LEAST_SIZE:
         remedy = f"give more than {upward((bore + 2.0 * LEAST_SIZE) / reader.mm)} {reader.units}"
         reader.fault_at(
             "part.hub.diameter",
@@ -450,12 +464,12 @@ def build_part(values: Values) -> Part:
     bore = values.get("bore")
     form: Values = bore if isinstance(bore, dict) else {}
     name = next((name for name in SIDES if name in form), "")
-    width = form[name] if name else bore
+    width = form[name] if name else _diameter(values)
     features: Values = {name: feature(**values[name]) for name, feature in FEATURES.items() if name in values}
     features |= {name: values[name] for name in ("thickness", "outer", "chamfer", "wall", "density") if name in values}
     if "mark" in values:
         features["mark"] = Mark(**{"kind" if key == "as" else key: item for key, item in values["mark"].items()})
-    shape = {"bore": width, "sides": SIDES.get(name, 0), "bore_at": form.get("at", 0.0)}
+    shape = {"bore": width, "sides": SIDES.get(name, 0), "bore_at": form.get("at", 0.0), "fit": form.get("fit", "")}
     return Part(**shape, keyway=_keyway(values.get("keyway"), width), **features)
 
 

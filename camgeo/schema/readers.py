@@ -34,6 +34,8 @@ READERS: Readers = {
     Kind.STROKE: read_numeric,
     Kind.ERROR: read_numeric,
     Kind.OUTPUT: read_numeric,
+    Kind.MOTION: read_numeric,
+    Kind.BACKLASH: read_numeric,
     Kind.TRUTH: read_truth,
     Kind.RATIO: read_text,
     Kind.FORMULA: read_formula,

@@ -46,7 +46,7 @@ from kin.numeric.elementary import Jet, sqrt
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Complexes
 
 __all__ = ["Assembly", "BindingError", "FourBar", "InvertedSliderCrank", "Linkage", "Positions", "SliderCrank"]
 
@@ -130,6 +130,24 @@ class FourBar:
         """B and D."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("pin", Link(positions.joint, None))}
 
+    def deviation(
+        self,
+        positions: Positions,
+        sweep: Complexes,
+        joint: Complexes,
+        pivot: Complexes | complex,
+        link: float,
+    ) -> Array:
+        """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
+
+        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
+        frame then turns, `pivot` that of B. Derived from the loop to first order; (dD - dB).h = dr4 along the rocker h.
+        """
+        away = np.exp(1j * (math.pi - positions.output.c[0]))  # from B to D
+        x = (link - _dot(away, joint - pivot)) / _dot(away, sweep)
+        along: Array = _dot(-1j * away, joint + sweep * x - pivot) / self.rocker
+        return along
+
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and rocker."""
         frame, output = positions.frame.c[0], positions.output.c[0]
@@ -208,6 +226,24 @@ class InvertedSliderCrank:
         """B, and D in a slot of the frame along u."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("slot", positions.coupler)}
 
+    def deviation(
+        self,
+        positions: Positions,
+        sweep: Complexes,
+        joint: Complexes,
+        pivot: Complexes | complex,
+        link: float,
+    ) -> Array:
+        """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
+
+        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
+        frame then turns, `pivot` that of B. Derived from the loop to first order; Y + r1 cos theta_4 = r4.
+        """
+        u = np.exp(1j * positions.frame.c[0])
+        away = _dot(1j * u, joint - pivot) - link
+        change: Array = away / _dot(1j * u, sweep)
+        return change
+
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """A right angle throughout: the block presses across the frame's line."""
         frame = positions.frame.c[0]
@@ -278,6 +314,23 @@ class SliderCrank:
         """D, on the fixed line."""
         return {"D": Joint("slide", Link(positions.joint, positions.output.constant(0.0)))}
 
+    def deviation(
+        self,
+        positions: Positions,  # noqa: ARG002 - one call for all linkages
+        sweep: Complexes,
+        joint: Complexes,
+        pivot: Complexes | complex,
+        link: float,
+    ) -> Array:
+        """Change of D_x, mm (n,), for displacements (n,) and a higher slide, `link`, mm.
+
+        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
+        frame then turns, `pivot` that of the slide's line. Derived from the loop to first order; D_y is the offset.
+        """
+        x = (link - (joint - pivot).imag) / sweep.imag
+        change: Array = (joint + sweep * x - pivot).real
+        return change
+
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and the slide's normal."""
         frame = positions.frame.c[0]
@@ -310,3 +363,9 @@ def _frame_terms(
 
 def _frame_vector(s: Jet, s1: Jet, w: float, r3: float, e: float) -> Vector:
     return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3, e))
+
+
+def _dot(x: Complexes, y: Complexes | complex) -> Array:
+    """Scalar products (n,) of vectors as complex numbers."""
+    product: Array = (np.conj(x) * y).real
+    return product

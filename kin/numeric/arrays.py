@@ -10,10 +10,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Complexes = NDArray[np.complex128]
     Indices = NDArray[np.intp]
     Mask = NDArray[np.bool_]
 else:  # numpy.typing is for type checkers, and slow to import
-    Array = Indices = Mask = np.ndarray
+    Array = Complexes = Indices = Mask = np.ndarray
 
 
 def paired(first: Indices, second: Indices, size: int) -> NDArray[np.int64]:

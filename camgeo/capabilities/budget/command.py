@@ -1,0 +1,43 @@
+"""The command `camgeo budget`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.common.terminal import complain, say, say_json
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `budget`")
+    parser.add_argument("--json", action="store_true", help="all figures, for machines")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Work out one budget: 0 kept, 1 not kept or a wrong cam, 2 a wrong recipe, 3 the surroundings."""
+    from camgeo.capabilities.budget.library import budget
+    from camgeo.capabilities.budget.outcome import table
+    from camgeo.common.errors import SurroundingsError
+    from camgeo.recipe.loading import load
+    from camgeo.schema.errors import RecipeErrors
+
+    try:
+        recipe = load(arguments.recipe)
+        found = budget(recipe)
+    except RecipeErrors as errors:
+        complain(str(errors))
+        return WRONG
+    except (SurroundingsError, OSError) as error:
+        complain(f"camgeo: {error}")
+        return SURROUNDINGS
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        say_json(encoded(found))
+    else:
+        say(table(recipe, found))
+    return OK if found["ok"] else FAILED

@@ -1,0 +1,89 @@
+"""Fits of ISO 286 between bore and shaft, and of parallel keys: limits of size in mm.
+
+Limits of ISO 286-2 for sizes up to 120 mm; H7, h6, JS9 and the widths of P9 follow from the standard tolerances of
+ISO 286-1, IT6 = 10 i, IT7 = 16 i, IT9 = 40 i with i = 0.45 D^(1/3) + 0.001 D in micrometres, D the geometric mean
+of the range in mm.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from typing import TYPE_CHECKING, NamedTuple
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+UPPER_ENDS = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)  # of the ranges of sizes, mm
+MICROMETRE = 1e-3
+
+
+def _mirrored(*limits: float) -> tuple[tuple[float, float], ...]:
+    return tuple((-limit, limit) for limit in limits)
+
+
+# lower and upper limit of size over each range, micrometres
+HOLES: Mapping[str, tuple[tuple[float, float], ...]] = {
+    "H7": ((0, 10), (0, 12), (0, 15), (0, 18), (0, 21), (0, 25), (0, 30), (0, 35)),
+}
+SHAFTS: Mapping[str, tuple[tuple[float, float], ...]] = {
+    "h6": ((-6, 0), (-8, 0), (-9, 0), (-11, 0), (-13, 0), (-16, 0), (-19, 0), (-22, 0)),
+    "g6": ((-8, -2), (-12, -4), (-14, -5), (-17, -6), (-20, -7), (-25, -9), (-29, -10), (-34, -12)),
+    "k6": ((0, 6), (1, 9), (1, 10), (1, 12), (2, 15), (2, 18), (2, 21), (3, 25)),
+}
+KEYWAYS: Mapping[str, tuple[tuple[float, float], ...]] = {
+    "JS9": _mirrored(12.5, 15, 18, 21.5, 26, 31, 37, 43.5),
+    "P9": ((-31, -6), (-42, -12), (-51, -15), (-61, -18), (-74, -22), (-88, -26), (-106, -32), (-124, -37)),
+}
+
+
+class Clearance(NamedTuple):
+    """Least and greatest clearance of a fit, mm on the diameter or width; below 0 it is an interference."""
+
+    least: float
+    most: float
+
+
+def clearance(hole: str, shaft: str, diameter: float) -> Clearance:
+    """Clearance of a bore and a shaft of a diameter, mm; raises ValueError above 120 mm."""
+    low, high = _limits(HOLES[hole], diameter)
+    least, most = _limits(SHAFTS[shaft], diameter)
+    return Clearance(low - most, high - least)
+
+
+def key_clearance(keyway: str, width: float) -> Clearance:
+    """Clearance of a key h9 in a keyway of a width, mm; raises ValueError above 120 mm."""
+    low, high = _limits(KEYWAYS[keyway], width)
+    key = _limits(KEYWAYS["JS9"], width)  # the width of the tolerance is that of h9
+    return Clearance(low, high + key[1] - key[0])
+
+
+def _limits(ranges: tuple[tuple[float, float], ...], size: float) -> tuple[float, float]:
+    if not 0.0 < size <= UPPER_ENDS[-1]:
+        raise ValueError(f"the table of fits reaches to {UPPER_ENDS[-1]:g} mm")
+    low, high = ranges[bisect_left(UPPER_ENDS, size)]
+    return low * MICROMETRE, high * MICROMETRE
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Fit of the cam on its shaft: radial play of the bore, mm, and half the play of the key, rad, None without one."""
+
+    bore: float
+    angle: float | None
+
+
+def fit_of(
+    diameter: float, hole: str, shaft: str, keyways: tuple[str, str] | None = None, width: float | None = None
+) -> Fit:
+    """Greatest play of a cam on a shaft: that of the bore on its radius, of the key to either side of its middle.
+
+    `keyways` are the classes of the hub's and the shaft's keyway of a `width`, mm; a fit that may be tight has no play.
+    Raises ValueError above 120 mm.
+    """
+    radial = 0.5 * max(clearance(hole, shaft, diameter).most, 0.0)
+    if keyways is None or width is None:
+        return Fit(radial, None)
+    play = sum(max(key_clearance(keyway, width).most, 0.0) for keyway in keyways)
+    return Fit(radial, play / diameter)

@@ -1,0 +1,183 @@
+"""The widest tolerances that stay within a permitted error at every angle.
+
+Of one free dimension what the others leave: (T - rest)/w in the worst case, sqrt(T^2 - rest^2)/w as root of the sum of
+squares. Of several those of least cost, sum c_i/t_i. With t_i = exp(x_i) cost and constraints are sums of exponentials
+of linear functions, so that the problem is convex (a geometric programme) and its optimum the only one:
+
+    least sum c_i/t_i   with   sum_i w_ij^q t_i^q <= T_j^q  at every angle j,  q = 1 worst case, 2 squares.
+
+Its dual has a multiplier of each angle, and of each angle that does not bind it is 0 (Boyd, Vandenberghe, Convex
+Optimization, 2004, 4.5 and 5.5). One angle alone gives t_i = T sqrt(c_i/w_i)/sum sqrt(c_j w_j), or
+T (c_i/w_i^2)^(1/3)/sqrt(sum (c_j w_j)^(2/3)).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.budget.sums import POWERS, by_name, powers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.capabilities.budget.influence import Influence
+    from camgeo.capabilities.budget.sums import Sum
+    from kin.numeric.arrays import Array
+
+NEAR = (
+    1e-6  # share by which sums are off, below which Newton's steps need no search along them, which rounding would stop
+)
+BROKEN = 1e-11  # share of what is permitted by which a sum may exceed it in the course of the search
+LEAST_STEP = 1e-12  # of Newton's, below which nothing is gained
+MOST_STEPS = 200  # of Newton's method; ten are usual
+
+
+class TakenError(ValueError):
+    """A budget of which the stated dimensions leave nothing: which takes most, and its share, at an angle, rad."""
+
+    def __init__(self, name: str, taken: float, at: float) -> None:
+        super().__init__(f"{name} takes most of it")
+        self.name = name
+        self.taken = taken
+        self.at = at
+
+
+class Split(NamedTuple):
+    """Tolerances of the free dimensions, mm or rad, their cost, and the angles at which nothing is left, rad."""
+
+    tolerances: Mapping[str, float]
+    cost: float
+    binding: tuple[float, ...]
+
+
+class Constraints(NamedTuple):
+    """What free dimensions do at each angle and contact as shares of what is left, (n, f), to the power of the sum.
+
+    `left` (n,) is what the others leave, mm or rad, to the same power.
+    """
+
+    names: tuple[str, ...]
+    weights: Array
+    left: Array
+    at: Array
+
+
+def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraints:
+    """The constraints of a budget with free dimensions; raises TakenError where the others leave nothing."""
+    q = POWERS[sum_]
+    free = tuple(dict.fromkeys(one.name for one in influence.contributions if one.tolerance is None))
+    weights, left = [], []
+    for output in influence.outputs():
+        spent = by_name(influence, powers(influence, output, sum_))
+        rest = permitted**q - np.sum([*spent.values()], axis=0)
+        if not rest.min() > 0.0:
+            place = int(rest.argmin())
+            name = max(spent, key=lambda name: spent[name][place])
+            taken = float(spent[name][place]) ** (1.0 / q)
+            raise TakenError(name, taken, float(influence.shaft[place]))
+        of = by_name(influence, output.weights**q)
+        weights.append(np.stack([of[name] for name in free], axis=1))
+        left.append(rest)
+    return Constraints(free, np.concatenate(weights), np.concatenate(left), np.tile(influence.shaft, len(weights)))
+
+
+def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
+    """What is left for the only free dimension, mm or rad, (n,) over the shaft angle; infinite where it does nothing.
+
+    Of several contacts the least. Raises TakenError as `constraints` does.
+    """
+    limits = constraints(influence, permitted, sum_)
+    (column,) = limits.weights.T
+    with np.errstate(divide="ignore"):
+        left = (limits.left / column) ** (1.0 / POWERS[sum_])
+    least: Array = left.reshape(-1, len(influence.shaft)).min(axis=0)
+    return least
+
+
+def widest(influence: Influence, permitted: float, cost: Mapping[str, float], sum_: Sum) -> Split:
+    """Tolerances of the free dimensions by least cost; raises TakenError as `constraints` does.
+
+    A dimension that moves nothing at any angle has an infinite tolerance.
+    """
+    limits = constraints(influence, permitted, sum_)
+    q = POWERS[sum_]
+    weights = limits.weights / limits.left[:, None]
+    moves = weights.max(axis=0) > 0.0
+    names = [name for name, does in zip(limits.names, moves, strict=True) if does]
+    weights, costs = weights[:, moves], np.array([cost[name] for name in names])
+    tolerances = dict.fromkeys(limits.names, math.inf)
+    if not names:
+        return Split(tolerances, 0.0, ())
+    found, binding = _least_cost(weights, costs, q)
+    tolerances |= dict(zip(names, found.tolist(), strict=True))
+    angles = sorted({float(limits.at[place]) for place in binding})
+    return Split(tolerances, float((costs / found).sum()), tuple(angles))
+
+
+def _least_cost(weights: Array, costs: Array, q: int) -> tuple[Array, Array]:
+    """Tolerances (f,) of least cost with weights (n, f) @ t^q <= 1, and the indices of the angles that bind.
+
+    Of the few angles that may bind the multipliers are found; the angle that the tolerances then break most joins them,
+    until none is broken.
+    """
+    some = np.unique(np.append(weights.argmax(axis=0), weights.sum(axis=1).argmax()))
+    multipliers = _scaled(np.ones(len(some)), weights[some], costs, q)
+    for _ in range(len(weights)):
+        multipliers = _multipliers(multipliers, weights[some], costs, q)
+        tolerances = _cheapest(multipliers, weights[some], costs, q)
+        totals = weights @ tolerances**q
+        worst = int(totals.argmax())
+        if totals[worst] <= 1.0 + BROKEN or worst in some[multipliers > 0.0]:
+            tolerances = tolerances / max(float(totals[worst]), 1.0) ** (1.0 / q)
+            return tolerances, np.sort(some[multipliers > 0.0])
+        kept = multipliers > 0.0
+        some, multipliers = np.append(some[kept], worst), np.append(multipliers[kept], 0.0)
+    raise ArithmeticError("the widest tolerances were not found")
+
+
+def _cheapest(multipliers: Array, weights: Array, costs: Array, q: int) -> Array:
+    """Tolerances (f,) that make sum c/t + sum multiplier (weights @ t^q - 1) least."""
+    cheapest: Array = (costs / (q * (multipliers @ weights))) ** (1.0 / (q + 1))
+    return cheapest
+
+
+def _scaled(multipliers: Array, weights: Array, costs: Array, q: int) -> Array:
+    """Multipliers (n,) in the same proportion, of which the constraints hold together: their mean is what is left."""
+    shares = multipliers / multipliers.sum()
+    used = float(shares @ (weights @ _cheapest(shares, weights, costs, q) ** q))
+    scaled: Array = shares * used ** ((q + 1) / q)
+    return scaled
+
+
+def _multipliers(start: Array, weights: Array, costs: Array, q: int) -> Array:
+    """Multipliers (n,) at which the least of `_cheapest` is greatest, none below 0, by Newton's method, projected."""
+
+    def bound(multipliers: Array) -> float:
+        t = _cheapest(multipliers, weights, costs, q)
+        return float((costs / t).sum() + multipliers @ (weights @ t**q - 1.0))
+
+    now, moving = start, np.ones(len(start), dtype=bool)
+    for _ in range(MOST_STEPS):
+        t = _cheapest(now, weights, costs, q)
+        broken = weights @ t**q - 1.0
+        off = np.abs(broken[moving]).max()
+        if off < BROKEN:
+            return now
+        per = q * t**q / ((q + 1) * (now @ weights))
+        bend = (weights[moving] * per) @ weights[moving].T
+        step = np.zeros(len(now))
+        step[moving] = np.linalg.lstsq(bend, broken[moving], rcond=None)[0]
+        down = step < 0.0
+        ratios = np.where(down, now / np.where(down, -step, 1.0), math.inf)
+        size, value = min(1.0, float(ratios.min())), bound(now)
+        stops = ratios <= size  # the multipliers that come to 0 and stay there
+        while off > NEAR and bound(np.maximum(now + size * step, 0.0)) < value:
+            size, stops = 0.5 * size, np.zeros_like(moving)
+            if size < LEAST_STEP:
+                return now  # within rounding of the greatest
+        now = np.where(stops, 0.0, np.maximum(now + size * step, 0.0))
+        moving = moving & ~stops
+    raise ArithmeticError("the widest tolerances were not found")

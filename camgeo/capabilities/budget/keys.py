@@ -1,0 +1,347 @@
+"""The key `budget` of a recipe: how it is read, what is checked of it, the value that it becomes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
+from camgeo.capabilities.budget.words import ANGLE, BORE, GUIDE, WORDS, traits, words_of
+from camgeo.recipe.din6885 import key_for
+from camgeo.schema.errors import suggestion
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
+from camgeo.schema.json_schema import number_schema
+from camgeo.schema.read_scalar import read_numeric
+from camgeo.schema.yaml_source import Mapping, Scalar, described, entries, join, keys
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
+
+FREE, NO_ZERO = "free", "none"
+RUNS, MOST_RUNS, LEAST_RUNS = 10_000, 1_000_000, 100
+MOST_SEED = 2**63 - 1
+MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
+SHAPES = (
+    "base_radius",
+    "motion",
+    "p",
+    "fourier",
+    "reuleaux",
+    "hypocycloid",
+    "swing",
+    "delta",
+    "arc",
+    "ratio",
+    "sizing",
+)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a recipe says of the errors of a cam: lengths in mm, angles in rad.
+
+    `permitted` is the greatest error of the follower or of the linkage's output, mm or rad; `tolerances` are plus and
+    minus by the words of the dimensions, None of one that is free, which is to be found; `cost` weighs the free ones.
+    `zero` is the shaft angle, rad, at which the machine is set, None without one. `play` is the greatest permitted of a
+    follower that is held from both sides. `guide` is the distance of the middle of a stem's guide from the shaft's
+    foot on its line. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must
+    stay within what is permitted.
+    """
+
+    permitted: float
+    tolerances: tuple[tuple[str, float | None], ...]
+    cost: tuple[tuple[str, float], ...] = ()
+    zero: float | None = None
+    play: float | None = None
+    guide: float | None = None
+    fit: Fit | None = None
+    sums: Literal["worst", "rss"] = "worst"
+    runs: int = RUNS
+    seed: int = 1
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Words of the dimensions whose tolerances are to be found."""
+        return tuple(name for name, tolerance in self.tolerances if tolerance is None)
+
+    @property
+    def named(self) -> bool:
+        """Whether any dimension has, or is to be given, a tolerance."""
+        return bool(self.tolerances)
+
+    def split(self, tolerances: Sequence[tuple[str, float]]) -> Budget:
+        """The budget with tolerances in the place of the free ones."""
+        chosen = dict(tolerances)
+        stated = tuple((name, chosen.get(name, tolerance)) for name, tolerance in self.tolerances)
+        return replace(self, tolerances=stated, cost=())
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+
+
+def _tolerance(name: str) -> Field:
+    if WORDS[name].angle:
+        return Field(name, Kind.ANGLE, WORDS[name].about, at_least=0, at_most=MOST_OFF)
+    return Field(name, Kind.LENGTH, WORDS[name].about, at_least=0, at_most=MOST)
+
+
+def _traits(reader: Reader) -> frozenset[str]:
+    discs = 2 if "cam.conjugate" in reader.marks else 1
+    return traits(reader.offers, discs, reader.kinds["linkage"])
+
+
+def _refuse(reader: Reader, name: str, node: Mapping, path: str) -> None:
+    """Note a word that is no dimension of this cam, and say which it has."""
+    there, mark = words_of(_traits(reader)), keys(node)[name].mark
+    first = name.removeprefix("cam.").partition(".")[0].partition("[")[0]
+    if first in SHAPES:
+        reader.fault(mark, path, "shapes the contour, which is made by it", None, "give profile: what that may be off")
+        return
+    if name in WORDS:
+        remedy = f"those of this cam are {either(there, 'and')}"
+        reader.fault(mark, path, "this cam has no such dimension", None, remedy)
+        return
+    reader.fault(mark, path, "unknown dimension", None, suggestion(name, there) or f"give {either(there)}")
+
+
+def _read_tolerances(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float | None] | None:
+    """Read the tolerances by the words of their dimensions, mm or rad; None for `free`."""
+    if not isinstance(node, Mapping):
+        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        return None
+    there = words_of(_traits(reader))
+    tolerances: dict[str, float | None] = {}
+    for name, value in entries(node).items():
+        below = join(path, name)
+        if name not in there:
+            _refuse(reader, name, node, below)
+        elif isinstance(value, Scalar) and value.text == FREE:
+            tolerances[name] = None
+        else:
+            read = reader.field(_tolerance(name), value, below)
+            if read is not None:
+                tolerances[name] = read
+    return tolerances
+
+
+def _read_cost(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float] | None:
+    """Read the costs by the words of the dimensions whose tolerances are to be found."""
+    if not isinstance(node, Mapping):
+        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        return None
+    there = words_of(_traits(reader))
+    costs: dict[str, float] = {}
+    for name, value in entries(node).items():
+        below = join(path, name)
+        if name not in there:
+            _refuse(reader, name, node, below)
+            continue
+        cost = reader.field(Field(name, Kind.NUMBER, "its cost", above=0, at_most=MOST), value, below)
+        if cost is not None:
+            costs[name] = cost
+    return costs
+
+
+def _read_zero(reader: Reader, _field: Field, node: Node, path: str) -> float | str | None:
+    """Read the shaft angle at which a machine is set, rad, or `none`."""
+    if isinstance(node, Scalar) and node.text == NO_ZERO:
+        return NO_ZERO
+    return read_numeric(reader, _ZERO_ANGLE, node, path)
+
+
+def _schema_of_words(value: Schema) -> Schema:
+    return {"type": "object", "properties": dict.fromkeys(WORDS, value), "additionalProperties": False}
+
+
+_ZERO_ANGLE = Field("zero", Kind.ANGLE, "shaft angle at which the machine is set", at_least=-360, at_most=360)
+_AMOUNT = number_schema(Field("", Kind.LENGTH, "", at_least=0, at_most=MOST))
+_TURNED = number_schema(Field("", Kind.ANGLE, "", at_least=0, at_most=MOST_OFF))
+_TOLERANCES = Form(
+    "tolerances",
+    "a mapping from dimensions to plus and minus, such as {profile: 0.01, shaft: 0.02}, or to free",
+    _read_tolerances,
+    lambda _: _schema_of_words({"anyOf": [{"const": FREE}, _AMOUNT, _TURNED]}),
+)
+_COST = Form(
+    "costs",
+    "a mapping from dimensions to costs, such as {profile: 1, follower.radius: 0.3}",
+    _read_cost,
+    lambda _: _schema_of_words(number_schema(Field("", Kind.NUMBER, "", above=0, at_most=MOST))),
+)
+_ZERO = Form(
+    "a setting",
+    "a shaft angle, or none",
+    _read_zero,
+    lambda _: {"anyOf": [{"const": NO_ZERO}, number_schema(_ZERO_ANGLE)]},
+)
+_KEY = Table(
+    tuple(
+        Field(name, Kind.CHOICE, f"tolerance class of the {name}'s keyway", required=True, choices=tuple(KEYWAYS))
+        for name in ("hub", "shaft")
+    )
+)
+
+BUDGET = Table(
+    (
+        Field(
+            "permitted",
+            Kind.MOTION,
+            "greatest error of the follower, or of the linkage's output: a length, or degrees where it turns",
+            required=True,
+            above=0,
+            at_most=MOST,
+        ),
+        Field(
+            "tolerances", Kind.OWN, "what each dimension may be off, plus and minus", required=True, form=_TOLERANCES
+        ),
+        Field("cost", Kind.OWN, "cost c of each free dimension, c over its tolerance", default="none", form=_COST),
+        Field("zero", Kind.OWN, "where the machine is set: its error there is subtracted", default="none", form=_ZERO),
+        Field("sum", Kind.CHOICE, "the sum that must stay within", default="worst", choices=("worst", "rss")),
+        Field("play", Kind.BACKLASH, "greatest play of a follower held from both sides", above=0, at_most=MOST),
+        Field(GUIDE, Kind.LENGTH, "from the shaft to the middle of the stem's guide, along it", above=0, at_most=MOST),
+        Field("fit", Kind.CHOICE, "tolerance class of the shaft in the bore", choices=tuple(SHAFTS)),
+        Field("key", Kind.TABLE, "tolerance classes of the keyways", default="the key has no play", table=_KEY),
+        Field("runs", Kind.INTEGER, "parts of a simulation", default=str(RUNS), at_least=LEAST_RUNS, at_most=MOST_RUNS),
+        Field("seed", Kind.INTEGER, "seed of the simulation", default="1", at_least=0, at_most=MOST_SEED),
+    )
+)
+
+
+def fields() -> tuple[Field, ...]:
+    """The key at a recipe's top level."""
+    return (Field("budget", Kind.TABLE, "what each dimension may be off", default="none", table=BUDGET),)
+
+
+# --- faults -----------------------------------------------------------------------------------------------------------
+
+
+def check_budget(values: Values, reader: Reader) -> None:
+    """Note the faults between the fields of a budget, and with the cam, the part and the linkage."""
+    if "budget" not in values:
+        return
+    budget = values["budget"]
+    tolerances = budget.get("tolerances", {})
+    _check_linkage(values, reader)
+    _check_costs(budget, tolerances, reader)
+    _check_guide(budget, tolerances, reader)
+    _check_play(values, reader)
+    _check_fit(values, reader)
+    if not tolerances and "budget.tolerances" in reader.marks and not reader.errors:
+        reader.fault_at("budget.tolerances", "no tolerance is given", None, "give profile: 0.01 or another one")
+
+
+def _check_linkage(values: Values, reader: Reader) -> None:
+    if values.get("linkage", {}).get("dyads"):
+        what, remedy = "the influence of dyads is not known", "leave budget or linkage.dyads out"
+        reader.fault_at("budget", what, None, remedy)
+
+
+def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
+    free = [name for name, tolerance in tolerances.items() if tolerance is None]
+    for name in budget.get("cost", {}):
+        if tolerances.get(name) is not None:
+            where = join("budget.cost", name)
+            reader.fault_at(where, "its tolerance is stated", None, f"give tolerances.{name}: free, or no cost")
+        elif name not in tolerances:
+            tolerances[name] = None
+    without = [name for name in free if name not in budget.get("cost", {})]
+    if without and (len(free) > 1 or "cost" in budget):
+        where = join("budget.tolerances", without[0])
+        reader.fault_at(where, "free, and without a cost", FREE, f"give cost.{without[0]}, or a tolerance")
+
+
+def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
+    if GUIDE in tolerances and GUIDE not in budget and f"budget.{GUIDE}" not in reader.marks:
+        what, remedy = "the guide's place is not known", f"give budget.{GUIDE}: from the shaft to its middle"
+        reader.fault_at(f"budget.tolerances.{GUIDE}", what, None, remedy)
+    elif GUIDE in budget and GUIDE not in tolerances:
+        what, remedy = f"without tolerances.{GUIDE} it has no use", "leave it out"
+        reader.fault_at(f"budget.{GUIDE}", what, None, remedy)
+
+
+def _check_play(values: Values, reader: Reader) -> None:
+    if "play" not in values["budget"]:
+        return
+    cam = values.get("cam", {})
+    two = "swings" in reader.offers or "breadth" in words_of(_traits(reader)) or "conjugate" in cam
+    if "linkage" in reader.marks or not (two or isinstance(cam.get("track"), dict)):
+        what, remedy = "the follower is not held from both sides", "leave it out"
+        if "linkage" in reader.marks:
+            what = "play in a square frame is not found for a linkage"
+        reader.fault_at("budget.play", what, None, remedy)
+
+
+def _check_fit(values: Values, reader: Reader) -> None:
+    """Note fits without a bore or a key, sizes that no table has, and what would be counted twice."""
+    budget, part = values["budget"], values.get("part", {})
+    tolerances, bore = budget.get("tolerances", {}), part.get("bore")
+    hole = bore.get("fit") if isinstance(bore, dict) else None
+    if "fit" not in budget:
+        if "key" in budget:
+            reader.fault_at("budget.key", "needs budget.fit, that of the shaft", None, "give fit: h6, or leave it out")
+        return
+    if hole is None:
+        if "part.bore.fit" not in reader.marks:
+            remedy = "give part.bore: {diameter: 20, fit: H7}, or leave it out"
+            reader.fault_at("budget.fit", "the bore has no tolerance class", None, remedy)
+        return
+    if bore["diameter"] > UPPER_ENDS[-1]:
+        most = f"{UPPER_ENDS[-1] / reader.mm:.6g} {reader.units}"
+        what, remedy = f"the table of fits reaches to {most}", f"leave it out, and give tolerances.{BORE}"
+        reader.fault_at("budget.fit", what, f"{bore['diameter'] / reader.mm:.6g}", remedy)
+        return
+    if BORE in tolerances:
+        remedy = "leave it out, or budget.fit"
+        reader.fault_at(f"budget.tolerances.{BORE}", "the fit says it already", None, remedy)
+    if "key" not in budget:
+        return
+    if "part.keyway" not in reader.marks:
+        reader.fault_at("budget.key", "the part has no keyway", None, "give part.keyway: din6885, or leave it out")
+    if ANGLE in tolerances:
+        remedy = "leave it out, or budget.key"
+        reader.fault_at(f"budget.tolerances.{ANGLE}", "the play of the key says it already", None, remedy)
+
+
+# --- the value --------------------------------------------------------------------------------------------------------
+
+
+def build_budget(values: Values) -> Budget | None:
+    """Make the budget of values in which there is no fault."""
+    if "budget" not in values:
+        return None
+    budget = values["budget"]
+    fit = _fit(budget, values.get("part", {}))
+    tolerances = dict(budget["tolerances"])
+    if fit is not None:
+        tolerances[BORE] = fit.bore
+        tolerances |= {} if fit.angle is None else {ANGLE: fit.angle}
+    stated = {name: tolerances[name] for name in WORDS if name in tolerances}
+    zero = budget.get("zero", NO_ZERO)
+    optional = {name: budget[name] for name in ("play", GUIDE, "runs", "seed") if name in budget}
+    return Budget(
+        permitted=budget["permitted"],
+        tolerances=tuple(stated.items()),
+        cost=tuple(budget.get("cost", {}).items()),
+        zero=None if zero == NO_ZERO else math.remainder(zero, 2.0 * math.pi) % (2.0 * math.pi),
+        fit=fit,
+        sums=budget.get("sum", "worst"),
+        **optional,
+    )
+
+
+def _fit(budget: Values, part: Values) -> Fit | None:
+    """The play of bore and key, where their fits are stated."""
+    if "fit" not in budget:
+        return None
+    bore, key = part["bore"], budget.get("key")
+    if key is None:
+        return fit_of(bore["diameter"], bore["fit"], budget["fit"])
+    keyway = part["keyway"]
+    row = key_for(bore["diameter"])
+    width = keyway.get("width", row.width if row else None)
+    return fit_of(bore["diameter"], bore["fit"], budget["fit"], (key["hub"], key["shaft"]), width)

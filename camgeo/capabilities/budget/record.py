@@ -1,0 +1,127 @@
+"""What budgets add to recipes: the key `budget`, figures, a section of the report, a panel and a plot of the page."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.budget.keys import Budget, build_budget, check_budget, fields
+from camgeo.measures.measured import Measured
+from camgeo.recipe.figures import Figure, Need
+from camgeo.registry.capability import Capability, Results
+from camgeo.schema.fields import Kind
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.common.clock import Clock
+    from camgeo.measures.file_result import FileResult
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.curves import Plot
+    from camgeo.synthesis.design import Design
+
+WORST, RSS = "budget-worst", "budget-rss"
+OF_BUDGET = Need("a budget", lambda _, paths: "budget" in paths)
+FIGURES = {
+    WORST: Figure(
+        "greatest error of follower or output, in the worst case of the budget", Kind.MOTION, "least", OF_BUDGET
+    ),
+    RSS: Figure("the same as root of the sum of squares", Kind.MOTION, "least", OF_BUDGET),
+}
+
+
+def _measure(
+    recipe: Recipe, design: Design, names: Sequence[str], _speeds: Mapping[str, float]
+) -> Mapping[str, Measured]:
+    from camgeo.capabilities.budget.outcome import outcome, turns
+
+    budget = recipe.of(Budget)
+    if budget is None or not _can_move(design):
+        why = "budget is not given" if budget is None else "the mechanism does not turn"
+        return {name: Measured(None, "mm", detail=why) for name in names}
+    sums = outcome(recipe, design, budget).sums
+    values = {}
+    for name in names:
+        found = sums["worst" if name == WORST else "rss"]
+        turned = turns(recipe)
+        value = math.degrees(found.value) if turned else found.value
+        values[name] = Measured(value, "deg" if turned else "mm", degrees(found.at))
+    return values
+
+
+def _can_move(design: Design) -> bool:
+    return design.driven is None or design.driven.turns
+
+
+def section_of(recipe: Recipe, design: Design) -> dict[str, Any] | None:
+    """The report's section of a recipe's budget; None without one, and of a linkage that does not turn."""
+    from camgeo.capabilities.budget.outcome import outcome, section
+
+    budget = recipe.of(Budget)
+    return None if budget is None or not _can_move(design) else section(recipe, outcome(recipe, design, budget))
+
+
+def _examine(recipe: Recipe, design: Design, _files: Sequence[FileResult], clock: Clock) -> Results:
+    with clock.stage("budget"):
+        section = section_of(recipe, design)
+    return Results() if section is None else Results({"budget": section})
+
+
+def _panel(report: dict[str, Any]) -> str:
+    """A table of the dimensions, and what is permitted."""
+    entry = report.get("budget")
+    if entry is None:
+        return ""
+    rows = "".join(
+        f'<tr><th scope="row">{escape(row["name"])}</th><td>{row["tolerance"]:.6g} {escape(row["unit"])}</td>'
+        f"<td>{row['influence']:.4g} {escape(row['influence_unit'])}</td><td>{row['share']:.1%}</td></tr>"
+        for row in entry["dimensions"]
+    )
+    worst, rss, unit = entry["worst"], entry["rss"], entry["unit"]
+    sums = "".join(
+        f'<tr><th scope="row">{name}</th><td>{value["value"]:.4g} {unit}</td>'
+        f"<td>at {value['at_deg']:.4g} deg</td><td>{entry['permitted']:.6g} {unit} permitted</td></tr>"
+        for name, value in (("worst case", worst), ("root sum of squares", rss))
+    )
+    head = "".join(f'<th scope="col">{word}</th>' for word in ("dimension", "plus and minus", "influence", "share"))
+    return (
+        f'<section><table class="plain"><caption>Budget</caption><thead><tr>{head}</tr></thead>'
+        f"<tbody>{rows}{sums}</tbody></table></section>"
+    )
+
+
+def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
+    """The shares of the worst case over the turn, each on top of those before."""
+    import numpy as np
+
+    from camgeo.capabilities.budget.outcome import outcome, shares, told
+    from camgeo.report.page.curves import Plot, Series
+    from camgeo.report.page.followers import SHAFT
+
+    budget = recipe.of(Budget)
+    if budget is None or not _can_move(design):
+        return ()
+    found = outcome(recipe, design, budget)
+    rows: list[Series] = []
+    whole = np.zeros(SHAFT.shape)
+    for name, added in shares(recipe, found, SHAFT).items():
+        whole = whole + added
+        rows.append(Series(f"+ {name}" if rows else name, whole))
+    permitted, unit = told(recipe, budget.permitted)
+    note = "Worst case: each curve adds its dimension to those below it"
+    title = "Budget of errors"
+    return (Plot(title, unit, tuple(rows), limits=((permitted, "permitted"),), note=note, axis="error", holds=(0.0,)),)
+
+
+CAPABILITY = Capability(
+    fields=fields,
+    check=check_budget,
+    build=build_budget,
+    figures=FIGURES,
+    measure=_measure,
+    examine=_examine,
+    panel=_panel,
+    plots=_plots,
+)

@@ -1,0 +1,74 @@
+"""Sums of errors over the shaft angle, in the worst case and as the root of the sum of squares, and their shares."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.capabilities.budget.influence import Influence, Output
+    from kin.numeric.arrays import Array
+
+Sum: TypeAlias = Literal["worst", "rss"]
+POWERS: Mapping[Sum, int] = {"worst": 1, "rss": 2}
+
+
+def powers(influence: Influence, output: Output, sum_: Sum) -> Array:
+    """What each contribution with a tolerance adds at each angle, (c, n): w t, or its square; 0 of a free one."""
+    tolerances = np.array([contribution.tolerance or 0.0 for contribution in influence.contributions])
+    added: Array = (output.weights * tolerances[:, None]) ** POWERS[sum_]
+    return added
+
+
+def total(influence: Influence, output: Output, sum_: Sum) -> Array:
+    """The sum of errors at each angle, (n,), mm or rad of the motion."""
+    added: Array = powers(influence, output, sum_).sum(axis=0) ** (1.0 / POWERS[sum_])
+    return added
+
+
+def spread(influence: Influence, output: Output) -> Array:
+    """Standard deviation of the error (n,) where sizes are even within their limits, radii full in any direction.
+
+    sqrt(sum (w t)^2/3 + sum (w r)^2/2).
+    """
+    squares = powers(influence, output, "rss")
+    parts = [3.0 if contribution.rows.shape[1] == 1 else 2.0 for contribution in influence.contributions]
+    deviation: Array = np.sqrt((squares / np.array(parts)[:, None]).sum(axis=0))
+    return deviation
+
+
+def by_name(influence: Influence, rows: Array) -> dict[str, Array]:
+    """Rows (c, n) of contributions added up by the words of their dimensions, each (n,)."""
+    names = [contribution.name for contribution in influence.contributions]
+    return {name: rows[[i for i, own in enumerate(names) if own == name]].sum(axis=0) for name in influence.names}
+
+
+class Worst(NamedTuple):
+    """The greatest sum over all angles and contacts, mm or rad, its place and shares of it by dimension."""
+
+    value: float
+    at: float
+    contact: str
+    shares: Mapping[str, float]
+
+    @property
+    def largest(self) -> str:
+        """The dimension that takes most of it."""
+        return max(self.shares, key=lambda name: self.shares[name])
+
+
+def worst(influence: Influence, sum_: Sum) -> Worst:
+    """The greatest sum over the angles and contacts of a budget in which some dimension has a tolerance above 0."""
+    outputs = influence.outputs()
+    sums = np.stack([total(influence, output, sum_) for output in outputs])
+    contact, place = np.unravel_index(int(np.argmax(sums)), sums.shape)
+    added = {
+        name: float(row[place]) for name, row in by_name(influence, powers(influence, outputs[contact], sum_)).items()
+    }
+    whole = math.fsum(added.values()) or 1.0
+    shares = {name: value / whole for name, value in added.items()}
+    return Worst(float(sums[contact, place]), float(influence.shaft[place]), outputs[contact].name, shares)

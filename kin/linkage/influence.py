@@ -1,0 +1,83 @@
+"""How far the output of a linkage is off where a dimension is, the cam's metal and the shaft angle being held.
+
+The frame bears on the cam with two of its faces: face 1, by whose lift S its mid-line stands, and the one opposite face
+2, so that the joint D stands at X = w + r3 - S1, Y = S - w/2 + e in the axes of the frame, theta_3 its direction u and
+A the shaft. At a held shaft angle the cam turns against the frame as that turns, by x: D moves by dD + V x with
+
+    V = u (-S1' - Y + i (X + S')),      dD = u (dX + i dY),
+
+and the loop says which x closes it (`deviation` of each linkage). Contacts on the faces opposite make the same changes
+or lesser ones: of a breadth, those of X are then none. Plane as complex numbers, x.y = Re(conj(x) y).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.linkage.mechanism import LinkageMotion, Mechanism
+    from kin.numeric.arrays import Array, Complexes
+
+QUARTER = 0.5 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class FrameBearing:
+    """A mechanism of one loop at n relative angles, where its frame bears: changes of its output, rad or mm, (n,)."""
+
+    mechanism: Mechanism
+    motion: LinkageMotion
+
+    def output(
+        self,
+        along: Array | float = 0.0,
+        across: Array | float = 0.0,
+        *,
+        pivot: Complexes | complex = 0.0,
+        joint: Complexes | complex = 0.0,
+        link: float = 0.0,
+    ) -> Array:
+        """Change for dX `along` and dY `across`, `pivot` of B, `joint` of D in the ground, the `link` of `deviation`.
+
+        All are mm, (n,) or one for all angles.
+        """
+        positions = self.motion.solved.linkage
+        (s, slope), (_, slope1) = self.motion.faces
+        x, y = positions.slide.c[0], s - 0.5 * self.mechanism.breadth + self.mechanism.linkage.joint_offset
+        u = np.exp(1j * self.motion.frame[0])
+        sweep = u * (-slope1 - y + 1j * (x + slope))
+        off = u * (along + 1j * across) + joint
+        return self.mechanism.linkage.deviation(positions, sweep, off, pivot, link)
+
+    def shaft(self, displacement: complex) -> Array:
+        """Change for a displacement of the shaft with the cam in the ground, mm, x from the shaft to the pivot."""
+        return self.output(pivot=-displacement)
+
+    def metal(self, displacement: complex) -> Array:
+        """Change for a displacement of the metal in the cam's own axes, mm."""
+        along = (np.conj(displacement) * np.exp(1j * (self.motion.theta + QUARTER))).real
+        across = (np.conj(displacement) * np.exp(1j * self.motion.theta)).real
+        return self.output(-along, across)
+
+    def metal_turned(self) -> Array:
+        """Change per rad by which the metal is turned counter-clockwise about the shaft."""
+        (_, slope), (_, slope1) = self.motion.faces
+        return self.output(slope1, -slope)
+
+    def squareness(self) -> Array:
+        """Change per rad by which faces 2 and its opposite are turned counter-clockwise about the frame's mid-line."""
+        (s, _), (_, slope1) = self.motion.faces
+        middle = s - 0.5 * self.mechanism.breadth
+        return self.output(-(slope1 + middle))
+
+
+def frame_bearing(mechanism: Mechanism, relative: Array) -> FrameBearing:
+    """Where the frame bears at relative angles (n,); raises ValueError for a linkage with dyads."""
+    if mechanism.dyads:
+        raise ValueError("the influence of dyads is not known")
+    return FrameBearing(mechanism, mechanism.at(relative, 1))

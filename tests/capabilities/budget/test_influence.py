@@ -1,0 +1,134 @@
+"""Influences with the metal fixed against brute-force contact, and sums of them against a worked budget."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.made_cases import CASES
+
+from camgeo.capabilities.budget.influence import Influence, influence
+from camgeo.capabilities.budget.keys import Budget
+from camgeo.capabilities.budget.sums import by_name, powers, spread, total
+from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
+from camgeo.recipe.loading import load_text
+from camgeo.synthesis.design import designed
+
+COMPONENTS = {"x": 0, "y": 1}
+EXACT = 2e-9  # relative to 1 or the value: digits of the cases
+
+
+def of_words(text: str, degrees: tuple[float, ...], guide: float = 0.0, *, relative: bool = False) -> Influence:
+    """Influences of every dimension that a cam has."""
+    recipe = load_text(text, "a.yaml")
+    design = designed(recipe)
+    shaft = np.radians(degrees)
+    if relative and design.driven is not None:
+        shaft = design.driven.mechanism.at(shaft, 0).shaft[0]
+    words = words_of(traits_of(recipe))
+    return influence(recipe, design, Budget(1.0, tuple((word, 1.0) for word in words), guide=guide), shaft)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_influences_are_those_of_brute_force_contact(name: str) -> None:
+    case = CASES[name]
+    rows = of_words(case.cam, case.angles, case.guide, relative=case.relative)
+    for contact, expected in enumerate(case.rows):
+        for dimension, values in expected.items():
+            word, _, component = dimension.partition(".")
+            word, part = (word, COMPONENTS[component]) if component in COMPONENTS else (dimension, 0)
+            ours = [one.rows[contact, part] for one in rows.contributions if one.name == word]
+            # sizes that each contact has of its own stand behind one another
+            own = (
+                max(ours, key=lambda row: float(np.abs(row).max()))
+                if len(case.rows) == 1
+                else ours[contact % len(ours)]
+            )
+            deviation = np.abs(own - values) / np.maximum(1.0, np.abs(values))
+            assert deviation.max() < EXACT, (dimension, contact, own, values)
+
+
+def test_a_roller_without_offset_and_a_yoke_follow_their_profile() -> None:
+    """The error of the profile is that of the position: of a yoke always, of a roller where it is at rest."""
+    roller = "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 5}, motion: [{dwell: 360}]}\n"
+    for text in (roller, CASES["yoke"].cam):
+        rows = of_words(text, (10.0, 100.0, 200.0))
+        profile = [one.rows for one in rows.contributions if one.name == "profile"]
+        assert np.abs(np.abs(np.sum(profile, axis=0)) - 1.0).max() < 1e-12
+
+
+BUDGET = """
+budget:
+  permitted: 0.05
+  tolerances: {profile: 0.01, follower.radius: 0.005, follower.offset: 0.02, angle: 0.05, bore: 0.01}
+"""
+
+
+def test_the_worked_budget() -> None:
+    recipe = load_text(CASES["roller on a stem"].cam + BUDGET, "a.yaml")
+    budget = recipe.of(Budget)
+    assert budget is not None
+    rows = influence(recipe, designed(recipe), budget, np.radians([50.0, 215.0, 300.0]))
+    (output,) = rows.outputs()
+    assert np.abs(total(rows, output, "worst") - [0.0519909960, 0.0560326036, 0.0301995528]).max() < 1e-10
+    assert np.abs(total(rows, output, "rss") - [0.0266683158, 0.0262693897, 0.0160457949]).max() < 1e-10
+    assert abs(spread(rows, output)[0] - 0.0159627349) < 1e-10
+    added = by_name(rows, powers(rows, output, "worst"))
+    shares = [added[name] / total(rows, output, "worst") for name in ("profile", "follower.offset", "angle")]
+    assert np.abs(np.array(shares)[:, 0] - [0.1985, 0.0977, 0.4061]).max() < 5e-5
+
+
+def test_the_error_where_the_machine_is_set_is_subtracted() -> None:
+    recipe = load_text(CASES["roller on a stem"].cam + BUDGET.replace("0.05\n", "0.05\n  zero: 300\n", 1), "a.yaml")
+    budget = recipe.of(Budget)
+    assert budget is not None
+    rows = influence(recipe, designed(recipe), budget, np.radians([50.0, 300.0]))
+    (output,) = rows.outputs()
+    of_name = by_name(rows, output.weights)
+    assert abs(of_name["follower.offset"][0] - (0.2540729964 + 0.2279211529)) < 1e-9
+    assert abs(of_name["angle"][0] - 24.1962834317) < 1e-9
+    assert of_name["bore"][1] == of_name["angle"][1] == 0.0
+    # another error of the profile at each angle: both count
+    assert abs(of_name["profile"][0] - (1.0317718195 + 1.0256451881)) < 1e-9
+
+
+def test_every_word_is_known_of_some_cam() -> None:
+    seen = {word for case in CASES.values() for word in words_of(traits_of(load_text(case.cam, "a.yaml")))}
+    assert set(WORDS) - seen == {
+        "index",
+        "conjugate.radius",
+        "conjugate.distance",
+        "conjugate.length",
+        "conjugate.angle",
+    }
+
+
+CONJUGATE = """
+cam:
+  kind: disc
+  base_radius: 34
+  follower: {kind: roller, radius: 8, arm: {length: 65, pivot: 80}}
+  conjugate: {radius: 9, length: 60, angle: 90}
+  motion: [{rise: 20, over: 110, law: modified-sine}, {dwell: 50}, {return: 20, over: 120, law: cycloidal}, {dwell: 80}]
+"""
+
+
+def test_conjugate_discs_have_an_index_and_bores_of_their_own() -> None:
+    rows = of_words(CONJUGATE, (30.0, 120.0, 230.0))
+    index, bores = ([one.rows for one in rows.contributions if one.name == name] for name in ("index", "bore"))
+    (turned,) = (one.rows for one in rows.contributions if one.name == "angle")
+    assert np.abs(index[0][0]).max() == 0.0
+    assert np.abs(index[0][1] - turned[1]).max() == 0.0
+    assert len(bores) == 2
+    assert rows.upper == 1
+
+
+def test_play_of_a_groove_is_its_clearance_over_the_pressure_angle() -> None:
+    groove = CASES["roller on a stem"].cam.rstrip() + "\n  track: {groove: {clearance: 0.03}}\npart: {outer: 170}\n"
+    rows = of_words(groove, (50.0, 215.0))
+    assert rows.play is not None
+    assert np.abs(rows.play - 0.03 * np.array([1.0317718195, 1.1366018754])).max() < 1e-9
+    between = rows.play_between()
+    assert between is not None
+    # a larger roller takes play on both flanks
+    (radius,) = (i for i, one in enumerate(rows.contributions) if one.name == "follower.radius")
+    assert np.abs(between.weights[radius] - 2.0 * np.array([1.0317718195, 1.1366018754])).max() < 1e-9
