@@ -1,4 +1,4 @@
-"""Contents and tables of docs/recipe.md, from the schema: `python tests/validation/recipe_page.py` writes them anew."""
+"""Contents and tables of docs/recipe.md and capabilities: `python tests/validation/recipe_page.py` writes them."""
 
 from __future__ import annotations
 
@@ -126,16 +126,22 @@ def tables():
     return {**written, "motions": spans(of_cams), "figures": figures(), "contents": contents(text)}
 
 
+def page_of(name):
+    """The page that holds a table: that of recipes, or the own one of a capability whose key it is."""
+    own = PAGE.with_name(f"{name.partition('.')[0]}.md")
+    return own if own.exists() and f"<!-- {name} -->\n" in own.read_text(encoding="utf-8") else PAGE
+
+
 def main():
-    text = PAGE.read_text(encoding="utf-8")
     for name, written in tables().items():
-        mark = f"<!-- {name} -->\n"
+        page = page_of(name)
+        text, mark = page.read_text(encoding="utf-8"), f"<!-- {name} -->\n"
         if mark not in text:
             print(f"no place for {mark.strip()}")
             continue
         before, rest = text.split(mark)
         text = f"{before}{mark}{written}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
-    PAGE.write_text(text, encoding="utf-8")
+        page.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
