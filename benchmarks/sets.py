@@ -9,8 +9,8 @@ import argparse
 import time
 from pathlib import Path
 
-from camgeo.assembly.build import assembly_of
-from camgeo.assembly.interference import collision_checks
+from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.interference import collision_checks
 from camgeo.output.job import Job
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed

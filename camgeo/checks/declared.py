@@ -127,10 +127,6 @@ def _named(name: str) -> Exact:
     return lambda scene: name in scene.follower.checks
 
 
-def _parts(scene: Scene) -> bool:
-    return any(request.parts == "all" for request in scene.recipe.export.files)
-
-
 def _dwells(scene: Scene) -> bool:
     asked = scene.recipe.dwell
     return scene.linked and asked is not None and asked.at_least is not None
@@ -317,13 +313,10 @@ WALL = Declared(
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
 )
-CLEARANCE = Declared("clearance", ("mm",), _parts, strict_at=(0.0,))
-COLLISION = Declared("collision", ("mm",), _parts)
 
 # --- of files ---------------------------------------------------------------------------------------------------------
 
 READABLE = Declared("readable", ("",))  # made only where it fails
-OUTLINE = Declared("outline", ("mm",))  # of the other bodies of a mechanism, whose files are not foreseen
 REACH = Declared("cutter-reach", ("mm",), of_file=_reached)
 UNITS = Declared("units", ("",), of_file=_drawing, field="units")
 CLOSED = Declared("closed", ("", "faults"), of_file=_drawing)

@@ -14,7 +14,6 @@ from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import (
     BACKLASH,
     BASE_RADIUS,
-    CLEARANCE,
     CONTOUR_ERROR,
     DURATION,
     DWELL,
@@ -279,8 +278,6 @@ def _of_preload(figure: str, value: float, bound: float) -> str:
 def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     """Tell what would bring a size or a place that the recipe gives, in its unit, to a bound."""
     more, unit = value < bound, "in" if recipe.units == "inch" else "mm"
-    if figure == CLEARANCE:
-        return f"a {'larger' if more else 'smaller'} mechanism.clearance"
     if figure == LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
         nose = f"a cam.motion.lobe.nose {'larger' if more else 'smaller'} by"
         return f"{nose} {upward(abs(bound - value))} deg"

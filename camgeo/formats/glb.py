@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.common.units import UNIT_MM
 from camgeo.formats.meshes import foresee_mesh
-from camgeo.formats.options import PARTS, TOLERANCE
+from camgeo.formats.options import TOLERANCE
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Table
 from kin.numeric.records import dataclass
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
-    from camgeo.output.parts import Part
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
@@ -182,17 +181,6 @@ def make_view(job: Job, request: FileRequest, path: Path) -> Made:
     return looked_at(path, request, UNIT_MM["m"])
 
 
-def _moving(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.output.job import looked_at
-
-    write_glb(
-        path,
-        [Actor(one.body.name, one.raised_mesh, one.body.pose, one.body.colour) for one in parts],
-        title=job.recipe.name,
-    )
-    return looked_at(path, request, UNIT_MM["m"])
-
-
 def _single() -> Precision:
     from camgeo.files.precision import SINGLE
 
@@ -201,13 +189,11 @@ def _single() -> Precision:
 
 FORMAT = Format(
     name="glb",
-    options=Table((PARTS, TOLERANCE)),
+    options=Table((TOLERANCE,)),
     contour=False,
     part=False,
     solid=True,
     make=make_view,
     foresee=foresee_mesh,
     numbers=_single,
-    bodies=_moving,
-    first="assembly",
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.options import OF_SOLID, PARTS
+from camgeo.formats.options import OF_SOLID
 from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import Table
 
@@ -15,10 +15,9 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
-    from camgeo.output.parts import Part
     from camgeo.recipe.export import FileRequest
 
-OPTIONS = Table((PARTS, *OF_SOLID))
+OPTIONS = Table(OF_SOLID)
 EDGES = {"": Form(surfaces=2, discs=2, pieces="edges")}
 
 
@@ -29,7 +28,7 @@ def mesh_format(
     write: Callable[[Path, Sequence[Item], str, float, str], None],
     units: bool,
 ) -> Format:
-    """Make the record of a format whose files hold one mesh each: of a disc, or of a body of a mechanism.
+    """Make the record of a format whose files hold one mesh each.
 
     numbers  gives the numbers that a file holds
     write    writes one mesh, whose points are such numbers: (path, [mesh], title, mm of the unit, about)
@@ -46,8 +45,6 @@ def mesh_format(
         foresee=foresee_mesh,
         numbers=numbers,
         write=write,
-        bodies=_one_by_one,
-        first="cam",
     )
 
 
@@ -63,9 +60,3 @@ def foresee_mesh(job: Job, request: FileRequest) -> None:
     from camgeo.output.solid import foresee
 
     foresee(job, request)
-
-
-def _one_by_one(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.output.parts import one_by_one
-
-    return one_by_one(job, request, path, parts)

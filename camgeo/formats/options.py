@@ -6,7 +6,6 @@ from camgeo.recipe.machining import COMPENSATION
 from camgeo.schema.fields import Field, Kind, length
 
 TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
-PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", default="cam", choices=("cam", "all"))
 
 
 def _units(default: str) -> Field:

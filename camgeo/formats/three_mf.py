@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
     from camgeo.files.mesh import Item, Mesh
     from camgeo.files.precision import Precision
-    from camgeo.output.job import Job, Made
-    from camgeo.output.parts import Part
-    from camgeo.recipe.export import FileRequest
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -100,12 +97,6 @@ def _decimals() -> Precision:
     return DECIMALS
 
 
-def _together(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    from camgeo.output.parts import together
-
-    return together(job, request, path, parts)
-
-
 FORMAT = Format(
     name="3mf",
     options=OPTIONS,
@@ -115,6 +106,4 @@ FORMAT = Format(
     foresee=foresee_mesh,
     numbers=_decimals,
     write=_written,
-    bodies=_together,
-    first="parts",
 )

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import (
     CHECKS,
-    CLEARANCE,
-    COLLISION,
     LAW,
     PRESSURE,
     RATIO,
@@ -79,7 +77,7 @@ if TYPE_CHECKING:
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
-_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL, CLEARANCE, COLLISION)}
+_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, LAW, TRAVEL, WALL)}
 
 
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
@@ -120,7 +118,7 @@ def of_design(
     elif motion:
         found |= of_motion(design, max(ORDERS[name] for name in motion))
     for name in wanted:
-        if name in _OF_CHECKS:
+        if name in _OF_CHECKS or (FIGURES.owner(name) and name in CHECKS):
             same = [check for check in checks if check.name == name and check.file is None]
             if same:
                 found[name] = of_check(max(same, key=_nearness))

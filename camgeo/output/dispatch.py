@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.output.job import Made
 from camgeo.recipe.export import name_of_disc
-from camgeo.registry.formats import FORMATS
+from camgeo.registry.formats import FORMATS, variant
 from kin.judge.check import about
 
 if TYPE_CHECKING:
@@ -28,10 +28,8 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     job, failed = job.of_file(request)
     if failed:
         return Made((), tuple(about(check, path.name) for check in failed))
-    if request.parts == "all":
-        from camgeo.output.mechanism import make_mechanism
-
-        return make_mechanism(job, request, path)
+    if request.variant:
+        return variant(request.variant).make(job, request, path)
     driven = job.design.driven
     if request.format.turning and driven is not None and not driven.turns:
         return Made(())
@@ -72,10 +70,8 @@ def foresee(job: Job, request: FileRequest) -> None:
     Raises RecipeErrors as `make` does; MissingExtraError where a package is missing that makes such a file.
     """
     demand_capacity(job.recipe, job.design, request)
-    if request.parts == "all":
-        from camgeo.output.mechanism import foresee_mechanism
-
-        foresee_mechanism(job, request)
+    if request.variant:
+        variant(request.variant).foresee(job, request)
     job, failed = job.of_file(request)
     if not failed:
         request.format.foresee(job, request)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from camgeo.assembly.assembly import Assembly
     from camgeo.fit.pieces import Bound, Outline
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Compensation
@@ -46,14 +45,14 @@ class Made(NamedTuple):
 class Job:
     """A cam that can be made: its recipe, its exact design, and the fits that its files share.
 
-    `fits` are those of each surface's contour. `assemblies` holds the mechanism's bodies once a file has asked for
-    them, `variants` the job for each part that is made different from the nominal one.
+    `fits` are those of each surface's contour. `kept` holds what capabilities keep from one file to the next, by their
+    names, `variants` the job for each part that is made different from the nominal one.
     """
 
     recipe: Recipe
     design: Design
     fits: tuple[Fits, ...]
-    assemblies: list[Assembly] = field(default_factory=list, repr=False)
+    kept: dict[str, Any] = field(default_factory=dict, repr=False)
     variants: dict[Compensation, Job] = field(default_factory=dict, repr=False)
 
     @staticmethod

@@ -21,8 +21,8 @@ def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     found = _files(recipe, requests, design)
     absent = ((name, label.absent) for name, label in registry.labels().items() if name not in recipe.uses)
     found += [(name, why) for name, why in absent if why]
-    if not any(request.parts == "all" for request in requests):
-        found.append(("mechanism", "no file is requested with parts: all"))
+    for capability in registry.in_order(recipe.uses):
+        found += capability.left_out(recipe, requests, design)
     found += _of_linkage(recipe, design)
     scene = scene_of(recipe, design)
     checks = CHECKS.among(recipe.uses).values()
@@ -64,6 +64,4 @@ def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
     if design.driven.turns:
         return []
     files = recipe.export.files
-    asked = list(dict.fromkeys(request.kind for request in files if request.format.turning))
-    asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
-    return [(what, STANDS) for what in asked]
+    return [(kind, STANDS) for kind in dict.fromkeys(request.kind for request in files if request.format.turning)]

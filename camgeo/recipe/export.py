@@ -6,20 +6,19 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.common.on_demand import OnDemand
-from camgeo.recipe.discs import is_pair
 from camgeo.recipe.machining import Compensation, build_compensation
-from camgeo.recipe.track import is_ring
-from camgeo.registry.formats import FORMATS
+from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS, variant
 from camgeo.schema.errors import shown
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     import collections.abc
 
     from camgeo.registry.formats import Form as FileForm
-    from camgeo.registry.formats import Format
+    from camgeo.registry.formats import Format, Variant
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -33,9 +32,10 @@ class FileRequest:
     """One file to write.
 
     `kind` is its format, `as_` the form; `version` is of DXF; `tolerance` (mm) stands in for the export's own; a part
-    that is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of
-    the mechanism. `units` is the file's own unit, None for the format's (`told_in`). `step`, rad, is that of a
-    grinder's table, `roller` the radius, mm, of the one whose lift is tabled. `overlays` are what a page shows besides.
+    that is made different from the nominal one has its `compensation`. `variant` names the capability whose option
+    makes the file something else than the cam, empty for the cam. `units` is the file's own unit, None for the
+    format's (`told_in`). `step`, rad, is that of a grinder's table, `roller` the radius, mm, of the one whose lift is
+    tabled. `overlays` are what a page shows besides.
     """
 
     kind: str
@@ -43,7 +43,7 @@ class FileRequest:
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
-    parts: Literal["cam", "all"] = "cam"
+    variant: str = ""
     units: Length | None = None
     step: float | None = None
     roller: float | None = None
@@ -62,7 +62,7 @@ class FileRequest:
     @property
     def united(self) -> bool:
         """Whether one file holds other bodies beside the cam."""
-        return self.parts == "all" and not self.format.by_disc
+        return bool(self.variant) and not self.format.by_disc
 
     @property
     def word(self) -> str:
@@ -83,7 +83,7 @@ class FileRequest:
         """
         before = requests[: requests.index(self)] if self in requests else requests
         kin = [request for request in before if request.kind == self.kind]
-        parts = [name] if self.parts == "cam" else [name, self.format.first]
+        parts = [name, variant(self.variant).tag(self.format)] if self.variant else [name]
         alike = [request for request in kin if request.as_ == self.as_]
         if kin and self.as_:
             parts.append(self.as_)
@@ -91,7 +91,7 @@ class FileRequest:
                 parts.append(self.version)
         if alike and self.compensation:
             parts.append(self.compensation.tags)
-        if alike and self.units and self.parts == "cam":
+        if alike and self.units and not self.variant:
             parts.append(self.units)
         if len(parts) == 1 and any(request.compensation or request.units for request in alike):
             parts.append("nominal")
@@ -193,25 +193,35 @@ def export_of(formats: collections.abc.Mapping[str, Format], example: str, defau
 EXPORT = export_of(FORMATS, "{dxf: {as: spline}}", "[dxf]")
 
 
+def export_with(variants: collections.abc.Sequence[Variant]) -> Field:
+    """Make the field of the files with the options of these variants beside those of the formats."""
+
+    def grown(name: str) -> Format:
+        record = FORMATS[name]
+        added = (each.option for each in variants if each.offered(record))
+        return replace(record, options=Table((*added, *record.options.fields)))
+
+    return export_of(OnDemand(FORMATS, grown), "{dxf: {as: spline}}", "[dxf]")
+
+
+def _variants() -> dict[str, Variant]:
+    """Variants by their capability; one whose record was not read has left no value in a file."""
+    records = {name: registry.capability(name).variant for name in registry.loaded()}
+    return {name: made for name, made in records.items() if made is not None}
+
+
 def check_files(values: Values, reader: Reader) -> None:
     """Note the faults between the files that are asked for, and what they lack."""
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
-    round_what = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
         if request.format.solid and "part.thickness" not in reader.marks:
             remedy = f"give part.thickness, or leave {request.kind} out"
             reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
-        if request.parts == "all" and request.compensation is not None:
-            remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
-            reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
-        if request.parts == "all" and round_what:
-            reader.fault_at(path, f"the bodies round {round_what} are not made", None, "leave `parts: all` out")
-        elif request.parts == "all" and "part.bore" not in reader.marks:
-            remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
-            reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
+        if request.variant:
+            variant(request.variant).check(request, values, reader, path)
         request.format.check(file, values, reader)
         request.form.check(file, values, reader)
         if request in listed[:i]:
@@ -238,7 +248,7 @@ def _request(kind: str, file: Values) -> FileRequest:
         chosen.get("version"),
         chosen.get("tolerance"),
         build_compensation(file),
-        chosen.get("parts", "cam"),
+        next((name for name, other in _variants().items() if other.chosen(file)), ""),
         chosen.get("units"),
         chosen.get("step"),
         None if "roller" not in chosen else 0.5 * chosen["roller"],

@@ -20,17 +20,14 @@ Value = TypeVar("Value")
 class Need:
     """What a figure is taken from, besides the cam and its files.
 
-    `words` name it. `there` says whether a recipe has it, by what its cam offers and the paths of the fields given,
-    `ALL` among them where a file shows every body. `part` is whether the part counts as well, its material or its
+    `words` name it. `there` says whether a recipe has it, by what its cam offers and the paths of the fields given, the
+    words of its files among them (`words_of`). `part` is whether the part counts as well, its material or its
     thickness.
     """
 
     words: str
     there: Callable[[AbstractSet[str], AbstractSet[str]], bool]
     part: bool = False
-
-
-ALL = "parts: all"
 
 
 def _offered(*names: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
@@ -54,7 +51,6 @@ OF_WALL = Need(
     "a part with openings or a hub",
     _given(*(f"part.{name}" for name in ("bore", "hub", "bolts", "dowel", "lightening", "mark"))),
 )
-OF_BODIES = Need("a file with `parts: all`", _given(ALL))
 OF_GUIDED = Need("a cam of kind disc or constant-diameter", _offered("guided"))
 OF_ROLLING = Need("a roller that a cam of kind disc or constant-diameter turns", _offered("rolling"))
 OF_ARM = Need("an arm that a cam of kind disc works", _offered("arm"))
@@ -75,7 +71,7 @@ PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio
 LAW_ERROR, DWELL_ERROR, CONTOUR_ERROR, OUTPUT_ERROR = "law-error", "dwell-error", "contour-error", "output-error"
 
 
-PIECES, CLEARANCE = "pieces", "clearance"
+PIECES = "pieces"
 
 
 OF_LINKS = TRANSMISSION_ANGLE, FORCE_ANGLE, MARGIN, SHAFT_RATE = (
@@ -314,8 +310,6 @@ _CORE: dict[str, Figure] = {
         "lift over the turn, times cam degrees", Kind.LENGTH, "most", OF_STEM, " deg", keys=_at_lift(LIFT_AREA)
     ),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
-    CLEARANCE: Figure("least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False),
-    "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False),
     CONTOUR_ERROR: _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     DWELL_ERROR: _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),

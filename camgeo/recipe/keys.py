@@ -6,11 +6,9 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
-from camgeo.recipe.assembly import MECHANISM
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
-from camgeo.recipe.export import EXPORT, check_files
-from camgeo.recipe.figures import ALL
+from camgeo.recipe.export import EXPORT, check_files, export_with
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from camgeo.schema.reader import Reader, Values
-    from camgeo.schema.yaml_source import Node
 
 MOST_ANGLES = 1_000_000  # of a turn at which files are judged
 UNITS = {"mm": 1.0, "inch": 25.4}  # of length, in mm
@@ -84,7 +81,6 @@ CORE = Table(
             ),
         ),
         LIMITS,
-        mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
@@ -104,7 +100,11 @@ def recipe_table(capabilities: Collection[str] | None = None) -> Table:
 
 @cache
 def _table(capabilities: tuple[str, ...]) -> Table:
-    table = Table(tuple(_KEYS.among(capabilities).values()))
+    variants = [one.variant for one in registry.in_order(capabilities) if one.variant is not None]
+    keys = _KEYS.among(capabilities)
+    if variants:
+        keys[EXPORT.name] = export_with(variants)
+    table = Table(tuple(keys.values()))
     for capability in registry.in_order(capabilities):
         for path, fields in capability.below.items():
             table = _with_fields(table, path.split("."), fields)
@@ -118,22 +118,6 @@ def _with_fields(table: Table, path: list[str], more: Collection[Field]) -> Tabl
     first, *rest = path
     grown = {first: replace(table.field(first), table=_with_fields(table.field(first).inner, rest, more))}
     return replace(table, fields=tuple(grown.get(field.name, field) for field in table.fields))
-
-
-def words_of(root: Node) -> set[str]:
-    """Words by which a recipe uses capabilities (`Label.words`): its keys, formats of its files, `parts: all`."""
-    top = entries(root) if isinstance(root, Mapping) else {}
-    export = top.get("export")
-    files = entries(export).get("files") if isinstance(export, Mapping) else None
-    words = set(top)
-    for item in files.items if isinstance(files, Sequence) else ():
-        if isinstance(item, Scalar):
-            words.add(item.text)
-        for kind, options in entries(item).items() if isinstance(item, Mapping) else ():
-            words.add(kind)
-            parts = entries(options).get("parts") if isinstance(options, Mapping) else None
-            words |= {ALL} if isinstance(parts, Scalar) and parts.text == "all" else set()
-    return words
 
 
 def read_values(reader: Reader, capabilities: Collection[str]) -> Values:

@@ -6,11 +6,12 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.figures import ALL, AT_LIFT, FIGURES, ON_RETURN, ON_RISE
+from camgeo.recipe.figures import AT_LIFT, FIGURES, ON_RETURN, ON_RISE
+from camgeo.recipe.words import words_of
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys, scalars
+from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -157,10 +158,7 @@ LIMITS = Field(
 
 def _given(reader: Reader) -> set[str]:
     """Paths of the fields that the recipe being read gives, for `Need.there`."""
-    given = set(reader.marks)
-    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
-        given.add(ALL)
-    return given
+    return {*reader.marks, *words_of(reader.source.root)}
 
 
 def of_recipe(reader: Reader) -> tuple[str, ...]:

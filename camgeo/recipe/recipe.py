@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeVar, overload
 
 from camgeo.common.arguments import is_a
 from camgeo.common.errors import CallError
-from camgeo.recipe.assembly import MechanismAsked
 from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export
-from camgeo.recipe.keys import UNITS, read_values, recipe_table, words_of
+from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.limits import Limit, build_limits
 from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.part import build_part
+from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry import root as roots
 from camgeo.registry.root import CAM
@@ -121,7 +121,6 @@ class Recipe(Order):
     dwell: DwellAsked | None = None
     manufacture: Manufacture | None = None
     wheel: float | None = None
-    mechanism: MechanismAsked | None = None
     limits: tuple[Limit, ...] = ()
     capabilities: tuple[tuple[str, object], ...] = ()
 
@@ -311,7 +310,6 @@ def _built(values: Values, document: Document, words: set[str]) -> Recipe:
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         manufacture=milling,
         wheel=wheel,
-        mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         limits=build_limits(values.get("limits", [])),
         capabilities=capabilities,
         **vars(document),

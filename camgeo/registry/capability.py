@@ -23,10 +23,11 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
     from camgeo.measures.remarks import Remark
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.starter import Starter
-    from camgeo.registry.formats import Form
+    from camgeo.registry.formats import Form, Variant
     from camgeo.registry.root import Root
     from camgeo.report.page.curves import Plot
     from camgeo.schema.fields import Field
@@ -166,6 +167,13 @@ def no_tables() -> Mapping[str, Form]:
     return EMPTY
 
 
+def nothing_left_out(
+    _recipe: Recipe, _requests: Sequence[FileRequest], _design: Design, /
+) -> Sequence[tuple[str, str]]:
+    """Leave nothing out."""
+    return ()
+
+
 def no_estimates() -> Mapping[str, Estimate]:
     """Estimate nothing."""
     return EMPTY
@@ -206,6 +214,8 @@ class Capability:
     panel     HTML on the page, from the report
     plots     on the page, over a turn
     tables    forms of CSV by their words
+    variant   what an option of files makes of them
+    left_out  what of it a run leaves out that uses it, with the reason: (recipe, requests of files, design)
     """
 
     fields: Callable[[], Sequence[Field]] = no_fields
@@ -228,3 +238,5 @@ class Capability:
     panel: Callable[[dict[str, Any]], str] = no_panel
     plots: Callable[[Recipe, Design], Sequence[Plot]] = no_plots
     tables: Callable[[], Mapping[str, Form]] = no_tables
+    variant: Variant | None = None
+    left_out: Callable[[Recipe, Sequence[FileRequest], Design], Sequence[tuple[str, str]]] = nothing_left_out

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
-    from camgeo.output.parts import Part
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.fields import Field
     from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
@@ -61,6 +61,30 @@ def with_holes(recipe: Recipe, /) -> bool:
 def nothing_left(_recipe: Recipe, _design: Design, /) -> Sequence[tuple[str, str]]:
     """Leave nothing out."""
     return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """What an option of a capability makes of a file in place of the cam alone.
+
+    option    the key, whose default is the cam alone; it stands before the options of the format
+    offered   whether files of a format have the key
+    tag       what stands behind the recipe's name in the name of the first file of a format
+    check     notes the faults of a file that is made so: (request, values of the recipe, reader, path of the file)
+    foresee   refuses what is certain to be refused, before anything is fitted
+    make      writes and judges its files, the first at a path
+    """
+
+    option: Field
+    offered: Callable[[Format], bool]
+    tag: Callable[[Format], str]
+    check: Callable[[FileRequest, Values, Reader, str], None]
+    foresee: Callable[[Job, FileRequest], None]
+    make: Callable[[Job, FileRequest, Path], Made]
+
+    def chosen(self, file: Values) -> bool:
+        """Whether the values of a file ask for it."""
+        return bool(file.get(self.option.name, self.option.default) != self.option.default)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,8 +150,6 @@ class Format:
     unmade    what of the part its files leave out, with the reason
     numbers   gives the numbers that a mesh holds
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
-    bodies    writes and judges every body of a mechanism, the first file at a path
-    first     ending of the name of that file
     """
 
     name: str
@@ -151,8 +173,6 @@ class Format:
     unmade: Callable[[Recipe, Design], Sequence[tuple[str, str]]] = nothing_left
     numbers: Callable[[], Precision] | None = None
     write: Callable[[Path, Sequence[Item], str, float, str], None] | None = None
-    bodies: Callable[[Job, FileRequest, Path, Sequence[Part]], Made] | None = None
-    first: str = ""
 
     @property
     def ending(self) -> str:
@@ -204,3 +224,11 @@ def numbers_of(record: Format, mm: float) -> Precision:
     if record.numbers is None:
         raise ValueError(f"{record.name} holds no mesh")
     return record.numbers().in_units(mm)
+
+
+def variant(capability: str) -> Variant:
+    """What the option of a capability makes of a file; raises KeyError for one that adds no option."""
+    made = registry.capability(capability).variant
+    if made is None:
+        raise KeyError(capability)
+    return made

@@ -15,7 +15,7 @@ class Label(NamedTuple):
     """`LABEL` of a capability's folder, read at every start: ten lines that import nothing else.
 
     rank      order wherever capabilities follow one another
-    words     keys of a recipe's top level, formats, or `parts: all`, by which a recipe uses the capability
+    words     keys of a recipe's top level, formats, or options of files such as `key: value`, by which a recipe uses it
     formats   words of its formats of files, each with the module of the folder that has its `FORMAT`
     commands  names of its commands, each with its help; the module `command` of the folder has them
     reports   files of the output folder that list others, as `report.json` does

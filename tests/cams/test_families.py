@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from support.places import ROOT
 
-from camgeo.assembly.build import BODIES
 from camgeo.cams.families import FAMILIES
+from camgeo.capabilities.mechanism.build import BODIES
 from camgeo.checks.declared import CHECKS
 from camgeo.recipe.cam import MADE as SAID
 from camgeo.recipe.loading import load

@@ -552,8 +552,8 @@ SETS = [  # what stands in the set's recipe, what in its place with a figure, th
 @pytest.fixture
 def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a set only the bodies are worked out: none is turned round or written."""
-    monkeypatch.setattr("camgeo.output.mechanism.collision_checks", lambda _: ())
-    monkeypatch.setattr("camgeo.output.mechanism.make_parts", lambda *_: Made(()))
+    monkeypatch.setattr("camgeo.capabilities.mechanism.making.collision_checks", lambda _: ())
+    monkeypatch.setattr("camgeo.capabilities.mechanism.making.make_parts", lambda *_: Made(()))
 
 
 def said_of_set(text: str) -> str:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from camgeo.assembly import linked as bodies
+from camgeo.capabilities.mechanism import linked as bodies
 from camgeo.report.page import linked as page
 from kin.linkage import dyad, four_bar
 

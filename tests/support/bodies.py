@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.build import assembly_of
+from camgeo.capabilities.mechanism.build import assembly_of
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
@@ -15,7 +15,7 @@ from kin.contour.contour import Contour
 if TYPE_CHECKING:
     from shapely import Polygon
 
-    from camgeo.assembly.assembly import Assembly, Member
+    from camgeo.capabilities.mechanism.assembly import Assembly, Member
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design

@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import GROUND, Assembly, Fit, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.poses import Turning, swinging
-from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import bar, box, disc, eye, moved, pin, retainer
-from camgeo.assembly.sizes import LINE, THIN, BodyError, thick
+from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.poses import Turning, swinging
+from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
+from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, moved, pin, retainer
+from camgeo.capabilities.mechanism.sizes import LINE, THIN, BodyError, thick
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.assembly import Place
-    from camgeo.assembly.shaft import Drive
-    from camgeo.assembly.shapes import Point
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.shaft import Drive
+    from camgeo.capabilities.mechanism.shapes import Point
     from camgeo.synthesis.view import View
     from kin.law.contacts import Flat, Oscillating, Roller
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.body import Plate
+from camgeo.capabilities.mechanism.body import Plate
 from camgeo.curve import ring
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
@@ -15,7 +15,7 @@ from camgeo.fit.pieces import ArcSpline
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.sizes import Sizes
 
 Point = tuple[float, float]
 

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import Fit
-from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, Carrier, block, slotted
-from camgeo.assembly.body import Plate
-from camgeo.assembly.shapes import bars, eye, pin
-from camgeo.assembly.sizes import BodyError
+from camgeo.capabilities.mechanism.assembly import Fit
+from camgeo.capabilities.mechanism.base import BLOCK, BLOCK_COLOUR, Carrier, block, slotted
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.shapes import bars, eye, pin
+from camgeo.capabilities.mechanism.sizes import BodyError
 
 if TYPE_CHECKING:
-    from camgeo.assembly.base import Mount, Site
+    from camgeo.capabilities.mechanism.base import Mount, Site
     from kin.linkage.dyad import RPR, RRP, RRR
 
 

@@ -9,10 +9,10 @@ from support.cases import few
 from support.heavy import trimesh
 from support.parts import member_of
 
-from camgeo.assembly.body import Plate, PrintBody
-from camgeo.assembly.build import assembly_of
-from camgeo.assembly.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
-from camgeo.assembly.shapes import bar
+from camgeo.capabilities.mechanism.body import Plate, PrintBody
+from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
+from camgeo.capabilities.mechanism.shapes import bar
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import DECIMALS, SINGLE
 from camgeo.fit.nodes import ToleranceError

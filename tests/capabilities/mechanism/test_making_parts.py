@@ -9,12 +9,12 @@ import pytest
 from support.heavy import lib3mf, trimesh
 from support.parts import failures, recipe_of
 
-from camgeo.assembly.body import Plate, PrintBody
+from camgeo.capabilities.mechanism.body import Plate, PrintBody
+from camgeo.capabilities.mechanism.parts import make_parts
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.formats import stl, three_mf
 from camgeo.output import pipeline
 from camgeo.output.job import Job
-from camgeo.output.parts import make_parts
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load_text
 from camgeo.report.document import Findings, document
@@ -52,7 +52,7 @@ BODIES = [CAM, BASE, ROCKER]
 
 def made(folder, kind, bodies=BODIES, more="", part=PART):
     recipe = recipe_of(part, more=more)
-    request = FileRequest(kind, tolerance=0.01, parts="all")
+    request = FileRequest(kind, tolerance=0.01, variant="mechanism")
     design = designed(recipe)
     path = folder / request.filename(recipe.name, [request])
     return recipe, design, make_parts(Job.of(recipe, design), request, path, bodies)
@@ -213,7 +213,7 @@ def test_a_body_that_has_no_mesh_is_named_before_the_set_is_turned(tmp_path, mon
     def turned(_):
         raise AssertionError("the set was turned first")
 
-    monkeypatch.setattr("camgeo.output.mechanism.collision_checks", turned)
+    monkeypatch.setattr("camgeo.capabilities.mechanism.making.collision_checks", turned)
     text = """cam: {kind: double-roller, ratio: 4/3, arm: 10000, roller_radius: 8, delta: {cos: {1: 600}}}
 part: {thickness: 8, bore: 10}
 mechanism: {}

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.assembly.assembly import Assembly, Fit
-from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Mount, Site, block, slotted
-from camgeo.assembly.body import Plate
-from camgeo.assembly.dyads import rod_and_rocker, rod_and_slide, slotted_rocker
-from camgeo.assembly.link_poses import Links
-from camgeo.assembly.poses import Turning
-from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import bar, bars, box, disc, eye, moved, pin
-from camgeo.assembly.sizes import BodyError
+from camgeo.capabilities.mechanism.assembly import Assembly, Fit
+from camgeo.capabilities.mechanism.base import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Mount, Site, block, slotted
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.dyads import rod_and_rocker, rod_and_slide, slotted_rocker
+from camgeo.capabilities.mechanism.link_poses import Links
+from camgeo.capabilities.mechanism.poses import Turning
+from camgeo.capabilities.mechanism.shaft import base, base_radius, bearing, shaft_fits, turned
+from camgeo.capabilities.mechanism.shapes import bar, bars, box, disc, eye, moved, pin
+from camgeo.capabilities.mechanism.sizes import BodyError
 from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.angles import TURN
@@ -26,9 +26,9 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.assembly.assembly import Place
-    from camgeo.assembly.shaft import Drive
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.shaft import Drive
+    from camgeo.capabilities.mechanism.sizes import Sizes
     from kin.linkage.mechanism import Mechanism
 
 

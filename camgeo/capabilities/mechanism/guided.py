@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import Assembly, Fit, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.guide import guide_length
-from camgeo.assembly.poses import lifted, swung
-from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, pivoted, roller_fits, rolling
-from camgeo.assembly.shapes import bar, box, disc, eye, moved
-from camgeo.assembly.sizes import THIN, BodyError
-from camgeo.assembly.yoke import SHAFT, guided
+from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.guide import guide_length
+from camgeo.capabilities.mechanism.poses import lifted, swung
+from camgeo.capabilities.mechanism.roller import ARM_COLOUR, Foot, Levels, arm, covered, pivoted, roller_fits, rolling
+from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, moved
+from camgeo.capabilities.mechanism.sizes import THIN, BodyError
+from camgeo.capabilities.mechanism.yoke import SHAFT, guided
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from kin.law.contacts import Roller, Shoe
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import TypeAlias
 
-    from camgeo.assembly.assembly import Place
-    from camgeo.assembly.shaft import Drive
-    from camgeo.assembly.shapes import Point
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.shaft import Drive
+    from camgeo.capabilities.mechanism.shapes import Point
     from camgeo.synthesis.view import Round, View
     from kin.law.contacts import Flat, Guide, Oscillating, Translating
     from kin.numeric.arrays import Array

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.assembly.interference import slabs
-from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.capabilities.mechanism.interference import slabs
+from camgeo.capabilities.mechanism.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Item
 from camgeo.fit.pieces import Bound
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from camgeo.assembly.body import PrintBody
+    from camgeo.capabilities.mechanism.body import PrintBody
     from camgeo.files.mesh import Mesh
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
@@ -59,11 +60,11 @@ class Part(NamedTuple):
 def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> Made:
     """Write and judge all bodies, given as for a shaft that turns clockwise; one of them is named "cam".
 
-    What makes the files is `bodies` of the format. Raises RecipeErrors and SurroundingsError as `make` does.
+    A format whose files are by disc has one for each body, another two of all, one to look at shows them move. Raises
+    RecipeErrors and SurroundingsError as `make` does.
     """
-    write = request.format.bodies
-    if write is None:
-        raise ValueError(f"{request.kind} holds no mechanism")
+    record = request.format
+    write = one_by_one if record.by_disc else together if record.contour else moving
     drawn = [mirrored(body) for body in bodies] if job.recipe.rotation == "ccw" else list(bodies)
     # the cam's own mesh last, as it is dear: a body that has none is told at once
     meshed = {body.name: _part(job, request, body) for body in sorted(drawn, key=lambda body: body.name == CAM)}
@@ -133,6 +134,16 @@ def together(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) 
             files = tuple(replace(file, body="assembly") for file in files)
         made = Made((*made.files, *files), (*made.checks, *checks))
     return made
+
+
+def moving(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
+    """Write all bodies as they move, to look at."""
+    from camgeo.formats.glb import Actor, write_glb
+    from camgeo.output.job import looked_at
+
+    actors = [Actor(part.body.name, part.raised_mesh, part.body.pose, part.body.colour) for part in parts]
+    write_glb(path, actors, title=job.recipe.name)
+    return looked_at(path, request, UNIT_MM["m"])
 
 
 def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float, str], None]:

@@ -5,21 +5,22 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from camgeo.assembly.build import assembly_of
-from camgeo.assembly.interference import collision_checks
-from camgeo.assembly.shaft import drives
-from camgeo.assembly.sizes import BodyError, runs
+from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.checks import NAME
+from camgeo.capabilities.mechanism.interference import collision_checks
+from camgeo.capabilities.mechanism.keys import sizes_given
+from camgeo.capabilities.mechanism.parts import make_parts
+from camgeo.capabilities.mechanism.shaft import drives
+from camgeo.capabilities.mechanism.sizes import BodyError, runs
 from camgeo.files.solid import need_booleans
 from camgeo.fit.pieces import ArcSpline
 from camgeo.output.job import Made
-from camgeo.output.parts import make_parts
-from camgeo.recipe.assembly import MechanismAsked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from camgeo.assembly.assembly import Assembly
+    from camgeo.capabilities.mechanism.assembly import Assembly
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
@@ -33,14 +34,15 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
-    first = not job.assemblies
+    first = NAME not in job.kept
     if first:
-        job.assemblies.append(_assembled(job, request))
-    made = make_parts(job, request, path, [member.body() for member in job.assemblies[0].members])
+        job.kept[NAME] = _assembled(job, request)
+    assembly: Assembly = job.kept[NAME]
+    made = make_parts(job, request, path, [member.body() for member in assembly.members])
     if not first:
         return made
     with job.clock.stage("collision"):  # last, as it is dear: a body that cannot be written is told at once
-        checks = collision_checks(job.assemblies[0])
+        checks = collision_checks(assembly)
     return Made(made.files, (*checks, *made.checks))
 
 
@@ -51,7 +53,7 @@ def foresee_mechanism(job: Job, request: FileRequest) -> None:
     """
     need_booleans()
     recipe, off = job.recipe, job.tolerance(request)
-    clearance = (recipe.mechanism or MechanismAsked()).clearance
+    clearance = sizes_given(recipe).clearance
     with _told(recipe):
         runs(clearance, job.tolerance_field(request), off)
         drives(recipe.part, clearance, off)

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from camgeo.assembly.body import PrintBody
+from camgeo.capabilities.mechanism.body import PrintBody
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.assembly.body import Plate
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.body import Plate
+    from camgeo.capabilities.mechanism.sizes import Sizes
     from kin.numeric.arrays import Array
 
     Place: TypeAlias = Callable[[Array, int], Array]

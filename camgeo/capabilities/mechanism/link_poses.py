@@ -11,7 +11,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.assembly.assembly import Place
+    from camgeo.capabilities.mechanism.assembly import Place
     from kin.linkage.chain import Solved
     from kin.linkage.links import Link
     from kin.linkage.mechanism import Mechanism

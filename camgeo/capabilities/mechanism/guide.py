@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.assembly.assembly import GROUND, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.shaft import GROUND_COLOUR
-from camgeo.assembly.shapes import box, disc
+from camgeo.capabilities.mechanism.assembly import GROUND, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.shaft import GROUND_COLOUR
+from camgeo.capabilities.mechanism.shapes import box, disc
 
 if TYPE_CHECKING:
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.sizes import Sizes
 
 LENGTH = 2.0  # of a guide, in widths of its stem: a shorter one jams
 

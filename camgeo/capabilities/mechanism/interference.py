@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.poses import Turning
-from camgeo.checks.declared import CLEARANCE, COLLISION
+from camgeo.capabilities.mechanism.checks import CLEARANCE, COLLISION
+from camgeo.capabilities.mechanism.poses import Turning
 from camgeo.fit.pieces import Polygon
 from kin.clearance.clearance import Mover, Slab, clearances
 from kin.clearance.pose import Sampled, Still
@@ -22,8 +22,8 @@ from kin.numeric.places import place_text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from camgeo.assembly.assembly import Assembly, Place
-    from camgeo.assembly.body import Plate
+    from camgeo.capabilities.mechanism.assembly import Assembly, Place
+    from camgeo.capabilities.mechanism.body import Plate
     from camgeo.fit.pieces import ArcSpline
     from kin.clearance.clearance import Clearance
     from kin.clearance.pose import PlaneMotion

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.assembly.assembly import GROUND, Fit, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.shaft import CLIP_COLOUR
-from camgeo.assembly.shapes import bar, bars, box, moved, pin, retainer
-from camgeo.assembly.sizes import BodyError
+from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR
+from camgeo.capabilities.mechanism.shapes import bar, bars, box, moved, pin, retainer
+from camgeo.capabilities.mechanism.sizes import BodyError
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    from camgeo.assembly.assembly import Place
-    from camgeo.assembly.link_poses import Links
-    from camgeo.assembly.shapes import Point
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.link_poses import Links
+    from camgeo.capabilities.mechanism.shapes import Point
+    from camgeo.capabilities.mechanism.sizes import Sizes
     from camgeo.fit.pieces import ArcSpline
     from kin.numeric.arrays import Array
 

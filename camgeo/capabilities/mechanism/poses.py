@@ -10,7 +10,7 @@ import numpy as np
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.assembly.assembly import Place
+    from camgeo.capabilities.mechanism.assembly import Place
     from camgeo.motions.position import Position
     from kin.numeric.arrays import Array
 

@@ -16,7 +16,7 @@ from camgeo.fit.pieces import Polygon
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.body import PrintBody
+    from camgeo.capabilities.mechanism.body import PrintBody
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.fit.pieces import ArcSpline

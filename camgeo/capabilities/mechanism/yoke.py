@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import Assembly, Fit, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.guide import guide, guide_length, half_width
-from camgeo.assembly.poses import Turning, lifted
-from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import box, moved
+from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.guide import guide, guide_length, half_width
+from camgeo.capabilities.mechanism.poses import Turning, lifted
+from camgeo.capabilities.mechanism.shaft import base, base_radius, bearing, shaft_fits, turned
+from camgeo.capabilities.mechanism.shapes import box, moved
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.shaft import Drive
+    from camgeo.capabilities.mechanism.shaft import Drive
     from camgeo.synthesis.view import View
     from kin.law.contacts import Flat, Translating
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly.assembly import GROUND, Fit, Member
-from camgeo.assembly.body import Plate
-from camgeo.assembly.shapes import disc, retainer
-from camgeo.assembly.sizes import THIN, BodyError, thick
+from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.shapes import disc, retainer
+from camgeo.capabilities.mechanism.sizes import THIN, BodyError, thick
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
@@ -23,8 +23,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.assembly import Place
-    from camgeo.assembly.sizes import Sizes
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.sizes import Sizes
     from camgeo.fit.pieces import Polygon
     from camgeo.recipe.part import Part
     from camgeo.synthesis.part.body import Body

@@ -14,22 +14,22 @@ from support.bodies import FIT, build, placed, polygon
 from support.cases import few
 from support.parts import member_of
 
-from camgeo.assembly.body import Plate
-from camgeo.assembly.build import assembly_of
-from camgeo.assembly.interference import COARSE, collision_checks, movers, swept_room
-from camgeo.assembly.meshes import body_mesh
-from camgeo.assembly.shaft import HELD, drives, shaft_of
-from camgeo.assembly.shapes import disc
-from camgeo.assembly.sizes import BodyError, sizes_of
+from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.interference import COARSE, collision_checks, movers, swept_room
+from camgeo.capabilities.mechanism.keys import MechanismAsked
+from camgeo.capabilities.mechanism.meshes import body_mesh
+from camgeo.capabilities.mechanism.shaft import HELD, drives, shaft_of
+from camgeo.capabilities.mechanism.shapes import disc
+from camgeo.capabilities.mechanism.sizes import BodyError, sizes_of
 from camgeo.files.precision import DECIMALS
 from camgeo.fit.arcs import fit_arcs
-from camgeo.recipe.assembly import MechanismAsked
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from camgeo.assembly.assembly import Assembly
+    from camgeo.capabilities.mechanism.assembly import Assembly
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.assembly import guided, roller, yoke
-from camgeo.assembly.shaft import Drive, disk_of, shaft_of
-from camgeo.assembly.sizes import sizes_of
-from camgeo.recipe.assembly import MechanismAsked
+from camgeo.capabilities.mechanism import guided, roller, yoke
+from camgeo.capabilities.mechanism.keys import sizes_given
+from camgeo.capabilities.mechanism.shaft import Drive, disk_of, shaft_of
+from camgeo.capabilities.mechanism.sizes import sizes_of
 from camgeo.synthesis.view import Drawer, entry, view_of
 from kin.contour.contour import Contour
 from kin.contour.region import farthest
 from kin.law.contacts import Arrangement, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
-    from camgeo.assembly.assembly import Assembly
+    from camgeo.capabilities.mechanism.assembly import Assembly
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -36,10 +36,10 @@ def assembly_of(recipe: Recipe, design: Design, *contours: ArcSpline) -> Assembl
     rolling = arrangement.touch is Roller
     field = "" if not rolling else "cam.follower.radius" if arrangement.contacts == 1 else "cam.roller_radius"
     radius = view.touch.radius if rolling else None
-    s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, radius, field)
+    s = sizes_of(sizes_given(recipe), reach, part.bore or 0.0, radius, field)
     drive = Drive(disk_of(part, disc.body, contours), reach, shaft_of(part, s), s)
     if design.driven is not None:
-        from camgeo.assembly.linked import linked
+        from camgeo.capabilities.mechanism.linked import linked
 
         return linked(design.driven.mechanism, drive)
     return BODIES[arrangement](view, drive)
@@ -61,7 +61,7 @@ BODIES: dict[Arrangement, Drawer[[Drive], Assembly]] = dict(
         entry(Oscillating, Flat, roller.flat_pair, 2),
     ]
 )
-"""Which bodies each follower takes; those of a linkage are `camgeo.assembly.linked`'s."""
+"""Which bodies each follower takes; those of a linkage are `camgeo.capabilities.mechanism.linked`'s."""
 
 
 def _reach_of(contour: ArcSpline) -> float:

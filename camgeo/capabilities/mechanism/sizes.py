@@ -10,7 +10,7 @@ from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.recipe.assembly import MechanismAsked
+    from camgeo.capabilities.mechanism.keys import MechanismAsked
 
 JUST = 1.0 - 1e-9  # a least size as it is reported, rounded, is not too small
 HALF = 0.5  # mm: what follows from the cam is a multiple of it

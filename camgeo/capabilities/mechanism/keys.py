@@ -1,0 +1,83 @@
+"""Sizes of the printable bodies round the cam, and the files that show them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.discs import is_pair
+from camgeo.recipe.track import is_ring
+from camgeo.schema.fields import Field, Kind, length, mapping
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.reader import Reader, Values
+
+
+@dataclass(frozen=True)
+class MechanismAsked:
+    """Sizes of the printable mechanism.
+
+    `clearance` is what a hole is wider than its pin, and what the faces stand farther apart than the cam's breadth;
+    `gap` axial gap between bodies that lie above one another, `press` what is pressed on is too narrow by, `space` what
+    bodies that never touch keep in plan by construction. `plate` is the thickness of the base, `link` that of arms,
+    rockers and rods, `bar` their width, `wall` that of frames and hubs about a hole, `clip` the thickness of retainers.
+    """
+
+    clearance: float = 0.2
+    gap: float = 0.4
+    press: float = 0.1
+    space: float = 1.0
+    pin: float | None = None
+    bar: float | None = None
+    plate: float | None = None
+    link: float | None = None
+    wall: float | None = None
+    clip: float | None = None
+    knob: float | None = None
+
+
+SIZES = (
+    length("clearance", "running clearance of holes on their pins, and of faces about the cam", default="0.2 mm"),
+    length("gap", "axial gap between bodies that lie above one another", default="0.4 mm"),
+    length("press", "interference of a pressed hole on its pin", default="0.1 mm"),
+    length("space", "gap in plan between bodies that never touch, where their size is free", default="1 mm"),
+    length("pin", "diameter of the pins", default="by the cam's size"),
+    length("bar", "width of bars, stems and guides", default="the pin and two walls"),
+    length("plate", "thickness of the base plate", default="by the cam's size"),
+    length("link", "thickness of arms, rockers and rods", default="the pin's diameter"),
+    length("wall", "width of a frame's sides, and of the ring about a pin's hole", default="by the pin"),
+    length("clip", "thickness of retaining discs and caps", default="2 mm, or by the pin"),
+    length("knob", "width of the knob across flats", default="by the cam's size"),
+)
+MECHANISM = mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *SIZES)
+PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", default="cam", choices=("cam", "all"))
+
+
+def fields() -> tuple[Field, ...]:
+    """The key of the sizes."""
+    return (replace(MECHANISM, after="limits"),)
+
+
+def build(values: Values) -> MechanismAsked:
+    """Make the sizes, those by default where the recipe gives none."""
+    return MechanismAsked(**values.get("mechanism", {}))
+
+
+def sizes_given(recipe: Recipe) -> MechanismAsked:
+    """The sizes that a recipe gives, those by default of one without."""
+    return recipe.of(MechanismAsked) or MechanismAsked()
+
+
+def check(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
+    """Note the faults of a file of all bodies."""
+    if request.compensation is not None:
+        remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
+        reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
+    beyond = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
+    if beyond:
+        reader.fault_at(path, f"the bodies round {beyond} are not made", None, "leave `parts: all` out")
+    elif "part.bore" not in reader.marks:
+        remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
+        reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)

@@ -1,0 +1,91 @@
+"""What sets to print add: their sizes, the option of files of solids, their checks and figures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.mechanism.keys import PARTS, build, check, fields
+from camgeo.recipe.figures import LEAST_WALL, Figure, Need
+from camgeo.registry.capability import Capability
+from camgeo.registry.formats import Variant
+from camgeo.schema.fields import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.checks.declared import Declared
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.formats import Format
+    from camgeo.synthesis.design import Design
+
+OF_BODIES = Need("a file with `parts: all`", lambda _, given: "parts: all" in given)
+CLEARANCE = "clearance"
+FIGURES = {
+    CLEARANCE: Figure(
+        "least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
+    ),
+    "collision": Figure(
+        "least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
+    ),
+}
+
+
+def _offered(record: Format) -> bool:
+    """Formats of meshes show every body."""
+    return record.numbers is not None
+
+
+def _tag(record: Format) -> str:
+    """Name the first file: the cam's own where each body has one, else that of all bodies."""
+    if record.by_disc:
+        return "cam"
+    return "parts" if record.contour else "assembly"
+
+
+def _foresee(job: Job, request: FileRequest) -> None:
+    from camgeo.capabilities.mechanism.making import foresee_mechanism
+
+    foresee_mechanism(job, request)
+
+
+def _make(job: Job, request: FileRequest, path: Path) -> Made:
+    from camgeo.capabilities.mechanism.making import make_mechanism
+
+    return make_mechanism(job, request, path)
+
+
+def _checks() -> Sequence[Declared]:
+    from camgeo.capabilities.mechanism.checks import CHECKS
+
+    return CHECKS
+
+
+def _remedy(_: Recipe, figure: str, value: float, bound: float) -> str:
+    if figure != CLEARANCE:
+        return ""
+    return f"a {'larger' if value < bound else 'smaller'} mechanism.clearance"
+
+
+def _left_out(_: Recipe, requests: Sequence[FileRequest], design: Design) -> list[tuple[str, str]]:
+    from camgeo.capabilities.mechanism import LABEL
+    from camgeo.capabilities.mechanism.checks import NAME
+    from camgeo.checks.declared import STANDS
+
+    if not any(request.variant == NAME for request in requests):
+        return [(NAME, LABEL.absent)]
+    stands = design.driven is not None and not design.driven.turns
+    return [(NAME, STANDS)] if stands else []
+
+
+CAPABILITY = Capability(
+    fields=fields,
+    build=build,
+    figures=FIGURES,
+    checks=_checks,
+    remedy=_remedy,
+    variant=Variant(option=PARTS, offered=_offered, tag=_tag, check=check, foresee=_foresee, make=_make),
+    left_out=_left_out,
+)
