@@ -16,7 +16,6 @@ from support.cases import examples, few
 from support.starters import OF_CAMS
 from support.sweepers import evaluate
 
-from camgeo.capabilities.dynamics import figures as train
 from camgeo.capabilities.sweep.figures import REASONS, asked_of
 from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
@@ -292,38 +291,22 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 
 def test_a_figure_that_a_recipe_has_not() -> None:
     missing = {
-        needs.OF_LINKAGE: FLAT,
-        needs.OF_DWELL: FLAT,
         needs.OF_FOLLOWER: LINKED,
-        needs.OF_ROLLER: FLAT,
-        needs.OF_SWING: FLAT,
         needs.OF_FACE: ROLLER,
         needs.OF_WALL: ROLLER,
-        needs.OF_BODIES: FLAT,
-        train.OF_SPRING: FLAT,
-        train.OF_BACKLASH: FLAT,
         needs.OF_GUIDED: ROLLER,
         needs.OF_ROLLING: ROLLER,
         needs.OF_ARM: STEM,
         needs.OF_STEM: ARM,
-        needs.OF_STEM_FACE: FLAT,
-        train.OF_GUIDE: FLAT,
-        train.OF_SPEED: FLAT,
-        needs.OF_STIFFNESS: FLAT,
-        train.OF_FORCES: FLAT,
-        train.OF_MATERIAL: FLAT,
-        train.OF_BEARING: FLAT,
-        train.OF_REACTION: FLAT,
         needs.OF_WANTED_LAW: ROLLER,
-        needs.OF_DENSITY: FLAT,
     }
     offered: dict[str, set[str]] = {}
     for name, figure in FIGURES.items():
         if figure.needs is not needs.NOTHING:
-            (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
+            (one,) = told(missing.get(figure.needs, FLAT), f"{{{name}: {{at_most: 1}}}}")
             assert f"limits.{name}: {name} needs " in one
             assert "; the figures of this recipe are " in one
-            offered.setdefault(missing[figure.needs], set()).update(
+            offered.setdefault(missing.get(figure.needs, FLAT), set()).update(
                 re.split(r", | and ", one.partition("recipe are ")[2])
             )
     for recipe, figures in offered.items():

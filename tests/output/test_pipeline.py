@@ -70,7 +70,7 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
     assert {bent, "undercut-local", "contour", "wall"} | motion <= set(names(report))
     several = {"surface", "sense"}  # surfaces, and limits from both sides, have a check each, which is foreseen as one
     each = Counter((check["name"], check.get("file"), *map(check.get, sorted(several))) for check in report["checks"])
-    of_all = any(request.parts == "all" for request in recipe.export.files)
+    of_all = any(request.variant for request in recipe.export.files)
     assert of_all or set(each.values()) == {1}
     made = Counter({(name, file) for name, file, *_ in each})
     told = Counter((item.name, item.file) for item in foreseen(recipe))
@@ -224,10 +224,9 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
         "heavy |= {'OCP', 'zipfile'}\n"
         "heavy |= {f'kin.{name}' for name in ('clearance', 'dynamics', 'linkage.mechanism', 'judge.milling')}\n"
         "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
-        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('capabilities.mechanism.build', 'report.page')}\n"
         # every run reads the labels of capabilities; their modules are for recipes that use them
         "heavy |= {name for name in sys.modules if name.startswith('camgeo.capabilities.') and name.count('.') > 2}\n"
-        "heavy |= {f'camgeo.output.{name}' for name in ('mechanism', 'parts')}\n"
         f"heavy.add('camgeo.output.drawing' if {kind!r} == 'stl' else 'camgeo.output.solid')\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
@@ -236,8 +235,9 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
 
 
 UNUSED = {
-    "camgeo": "assembly cli.laws cli.report cli.watch machining report.page schema.edit",
-    "camgeo.capabilities": "dynamics.keys dynamics.record milling.format milling.record study.command sweep.record",
+    "camgeo": "cli.laws cli.report cli.watch machining report.page schema.edit",
+    "camgeo.capabilities": "mechanism.build mechanism.record "
+    "dynamics.keys dynamics.record milling.format milling.record study.command sweep.record",
     "camgeo.formats": "glb ply step tables.contacts tables.polar",
     "camgeo.cams": "constant_diameter disc disc_cams double_roller flat_pair guided pairs sizing support",
     "camgeo.synthesis": "linkage motion_table part.lightening view",

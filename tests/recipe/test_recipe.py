@@ -413,7 +413,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     assert {"w-booth", "w-figure-5", "w-figure-9", "w-law", "w-rosette", "w-ellipse"} <= recipes.keys()
     for recipe in recipes.values():
         assert recipe.about
-        whole = any(file.parts == "all" for file in recipe.export.files)
+        whole = any(file.variant for file in recipe.export.files)
         kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
         assert SHOWS.get(recipe.name, kinds) == {file.kind for file in recipe.export.files} - {"gcode"}
     files = [file for recipe in recipes.values() for file in recipe.export.files]
