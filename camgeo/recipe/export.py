@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+import collections.abc
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from camgeo.common.on_demand import OnDemand
 from camgeo.recipe.machining import Compensation, build_compensation
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS, variant
 from camgeo.schema.errors import shown
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    import collections.abc
-
     from camgeo.registry.formats import Form as FileForm
     from camgeo.registry.formats import Format, Variant
     from camgeo.schema.fields import Schema
@@ -124,25 +122,50 @@ class Export:
         return tuple(dict.fromkeys(name for request in self.files for name in request.overlays))
 
 
-def read_files(
-    formats: collections.abc.Mapping[str, Format], reader: Reader, field: Field, node: Node, path: str
-) -> list[Values]:
+class Options(collections.abc.Mapping[str, Table]):
+    """Table of the options of each format, those of variants first."""
+
+    def __init__(
+        self, formats: collections.abc.Mapping[str, Format], variants: collections.abc.Sequence[Variant]
+    ) -> None:
+        self._formats = formats
+        self._variants = variants
+
+    def __getitem__(self, name: str) -> Table:
+        """Table of a format; raises KeyError."""
+        record = self._formats[name]
+        return Table((*(each.option for each in self._variants if each.offered(record)), *record.options.fields))
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is such a format; no table is made."""
+        return name in self._formats
+
+    def __iter__(self) -> collections.abc.Iterator[str]:
+        """Go over the formats; no table is made."""
+        return iter(self._formats)
+
+    def __len__(self) -> int:
+        """How many formats there are."""
+        return len(self._formats)
+
+
+def read_files(options: Options, reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
     """Read the list of files of these formats; each with its `kind`. A faulty one is left out."""
     found = []
     for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
-        kind, options = _format(item)
+        kind, given = _format(item)
         if kind is None:
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
             reader.fault(item.mark, below, "not a file", described(item), remedy)
             continue
-        if kind.text not in formats:
-            reader.fault(kind.mark, below, "unknown file format", shown(kind.text), f"give {either(tuple(formats))}")
-        elif options is None:
+        if kind.text not in options:
+            reader.fault(kind.mark, below, "unknown file format", shown(kind.text), f"give {either(tuple(options))}")
+        elif given is None:
             found.append({"kind": kind.text, "path": below})
         else:
-            table = Field("", Kind.TABLE, "", table=formats[kind.text].options)
-            values = reader.field(table, options, join(below, kind.text))
+            table = Field("", Kind.TABLE, "", table=options[kind.text])
+            values = reader.field(table, given, join(below, kind.text))
             if values is not None:
                 found.append({"kind": kind.text, "path": below, **values})
     return found
@@ -158,22 +181,29 @@ def _format(node: Node) -> tuple[Scalar | None, Node | None]:
     return None, None
 
 
-def _files_schema(formats: collections.abc.Mapping[str, Format], _: Field) -> Schema:
+def _files_schema(options: Options, _: Field) -> Schema:
     from camgeo.schema.json_schema import table_schema
 
-    fields = [Field(kind, Kind.TABLE, "", required=True, table=record.options) for kind, record in formats.items()]
-    items = {"anyOf": [{"enum": list(formats)}, *(table_schema(Table((item,))) for item in fields)]}
+    fields = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in options.items()]
+    items = {"anyOf": [{"enum": list(options)}, *(table_schema(Table((item,))) for item in fields)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
 
 
-def export_of(formats: collections.abc.Mapping[str, Format], example: str, default: str) -> Field:
-    """Make the field of the files that are written, in these formats."""
+def export_of(
+    formats: collections.abc.Mapping[str, Format],
+    example: str = "{dxf: {as: spline}}",
+    default: str = "[dxf]",
+    *,
+    variants: collections.abc.Sequence[Variant] = (),
+) -> Field:
+    """Make the field of the files that are written, in these formats; `variants` add options to those of formats."""
+    options = Options(formats, variants)
     form = Form(
         "a list of files",
         "a list of files such as [dxf, stl]" if "dxf" in formats else f"a list of files such as {default}",
-        partial(read_files, formats),
-        partial(_files_schema, formats),
-        tables=OnDemand(formats, lambda name: formats[name].options),
+        partial(read_files, options),
+        partial(_files_schema, options),
+        tables=options,
         group="the file",
     )
     return mapping(
@@ -190,18 +220,7 @@ def export_of(formats: collections.abc.Mapping[str, Format], example: str, defau
     )
 
 
-EXPORT = export_of(FORMATS, "{dxf: {as: spline}}", "[dxf]")
-
-
-def export_with(variants: collections.abc.Sequence[Variant]) -> Field:
-    """Make the field of the files with the options of these variants beside those of the formats."""
-
-    def grown(name: str) -> Format:
-        record = FORMATS[name]
-        added = (each.option for each in variants if each.offered(record))
-        return replace(record, options=Table((*added, *record.options.fields)))
-
-    return export_of(OnDemand(FORMATS, grown), "{dxf: {as: spline}}", "[dxf]")
+EXPORT = export_of(FORMATS)
 
 
 def _variants() -> dict[str, Variant]:

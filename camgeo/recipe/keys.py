@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
-from camgeo.recipe.export import EXPORT, check_files, export_with
+from camgeo.recipe.export import EXPORT, check_files, export_of
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
@@ -16,6 +16,7 @@ from camgeo.recipe.part import PART, check_part
 from camgeo.recipe.preload import check_preload
 from camgeo.recipe.track import check_track
 from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
 from camgeo.schema.reader import kind_of
@@ -103,7 +104,7 @@ def _table(capabilities: tuple[str, ...]) -> Table:
     variants = [one.variant for one in registry.in_order(capabilities) if one.variant is not None]
     keys = _KEYS.among(capabilities)
     if variants:
-        keys[EXPORT.name] = export_with(variants)
+        keys[EXPORT.name] = export_of(FORMATS, variants=variants)
     table = Table(tuple(keys.values()))
     for capability in registry.in_order(capabilities):
         for path, fields in capability.below.items():
