@@ -26,6 +26,7 @@ from camgeo.measures.remarks import RemarkName
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_order, read
 from camgeo.recipe.starter import STARTERS, starters_for
+from camgeo.registry import registry
 from camgeo.report.page.content import DRAWN
 
 ROOT = Path(__file__).parents[2]
@@ -332,6 +333,14 @@ def test_the_plan_of_the_house_names_what_is_there():
 def test_the_report_page_names_every_check():
     text = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
     assert [name for name in CHECKS.among(()) if f"`{name}`" not in text] == []
+
+
+@pytest.mark.parametrize("name", registry.recorded())
+def test_the_page_of_a_capability_names_its_checks(name):
+    page = ROOT / "docs" / f"{name}.md"
+    page = page if page.is_file() else page.with_name("report.md")
+    text = page.read_text(encoding="utf-8")
+    assert [one.name for one in registry.capability(name).checks() if f"`{one.name}`" not in text] == []
 
 
 def test_the_report_page_names_every_follower_and_every_remark():

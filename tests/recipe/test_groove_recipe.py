@@ -67,6 +67,7 @@ REFUSED = {
         "export:", "manufacture: {cutter: 16.1}\nexport:", "manufacture.cutter",
         "wider than the groove",
     ),
+    # needs: dynamics
     "train": (
         "export:", "dynamics: {mass: 1.2, stiffness: 2.0e6, preload: 200, rpm: 300}\nexport:", "dynamics.stiffness",
         "a groove has no elastic train",

@@ -131,6 +131,7 @@ def test_what_is_no_unit_of_a_field(field: str, text: str, said: str) -> None:
             "manufacture: {cutter: 6, spindle: 9000 rpm}",
             "given '9000 rpm'; give a number above 0 up to 1000000 without a unit: speed of the spindle, turns",
         ),
+        # needs: dynamics
         (
             "dynamics: {mass: 1, stiffness: 2e5, damping: 30 N s/m, preload: 100, rate: 1000, rpm: 600}",
             "dynamics.damping: not a number, given '30 N s/m'; give a number of at least 0",

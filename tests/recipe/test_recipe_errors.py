@@ -10,17 +10,16 @@ import pytest
 import yaml
 
 from camgeo.cli.main import main
+from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, read
 from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.fields import either
 from camgeo.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
 from kin.law.formula.formula import Formula, FormulaError
 from kin.law.sources.laws import NAMES
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
-KEYS = (
-    "name, about, units, rotation, cam, linkage, part, export, verify, limits, mechanism, dwell, sweep, dynamics, "
-    "manufacture and budget"
-)
+KEYS = either(recipe_table().keys, "and")
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer, wall and density"
 BORE = "give a diameter above 0, or a form such as {square: 10}, {hexagon: 10} or {diameter: 20, fit: H7} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
@@ -45,11 +44,11 @@ cam:
   arms: 60
   roller_radius: -8
   delta: {cos: {2: 625}}
-dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
 part: {bore: 10um, follower: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, stp]}
 verify: {angles: 010}
 tolerance: 4
+dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
 """
     assert told(body, "cams/a.yaml") == [
         (
@@ -60,23 +59,23 @@ tolerance: 4
         "cams/a.yaml:6:3: cam.arms: unknown key; did you mean arm?",
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
-        "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
-        f"cams/a.yaml:10:14: part.bore: 'um' is no unit of a length, given '10um'; {TAKEN} inch",
-        "cams/a.yaml:10:20: part.follower: unknown key; it belongs under cam of kind disc",
+        f"cams/a.yaml:9:14: part.bore: 'um' is no unit of a length, given '10um'; {TAKEN} inch",
+        "cams/a.yaml:9:20: part.follower: unknown key; it belongs under cam of kind disc",
         (
-            "cams/a.yaml:11:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
+            "cams/a.yaml:10:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
             "give arcs or polyline, or a later version"
         ),
-        "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
+        "cams/a.yaml:10:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
-            "cams/a.yaml:11:63: export.files[3]: unknown file format, given 'stp'; "
+            "cams/a.yaml:10:63: export.files[3]: unknown file format, given 'stp'; "
             "give dxf, svg, stl, ply, 3mf, step, glb, csv, html or gcode"
         ),
-        "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
+        "cams/a.yaml:11:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
-            "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, "
+            "cams/a.yaml:12:1: tolerance: unknown key; it belongs under export, "
             "or under the file dxf, svg, stl, ply, 3mf, step, glb, csv or gcode"
         ),
+        "cams/a.yaml:13:11: dynamics: needs preload or backlash; give exactly one of them",  # needs: dynamics
     ]
 
 
@@ -246,10 +245,12 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
             FLAT_PAIR,
             "1:43: cam.roller_radius: unknown key; it belongs under cam of kind constant-diameter or double-roller",
         ),
+        # needs: dynamics
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, backlash: 0.1}\n",
             "2:55: dynamics.damping: 15 times critical; give less than 200",
         ),
+        # needs: dynamics
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, backlash: 0.1, rate: 2}\n",
             (
@@ -257,6 +258,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
                 "or leave the rate out"
             ),
         ),
+        # needs: dynamics
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
             "2:68: dynamics.backlash: cannot be combined with preload; give exactly one of preload or backlash",
@@ -759,9 +761,9 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             ],
         ),
         (
-            "[{csv: {as: arcs}}]",
+            "[{csv: {as: motions}}]",
             [
-                "29: export.files[0].csv.as: not one of the choices, given 'arcs'; did you mean forces?",
+                "29: export.files[0].csv.as: not one of the choices, given 'motions'; did you mean motion?",
             ],
         ),
         (

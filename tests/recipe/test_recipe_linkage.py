@@ -177,6 +177,7 @@ PLACE = "give a list of two lengths [x, y] in mm"
             "{kind: four-bar, ground: 80, coupler: 70, rocker: 90, offset: 3}",
             ["2:64: linkage.offset: unknown key; did you mean joint_offset?"],
         ),
+        # needs: dynamics
         (
             "{kind: inverted-slider-crank, ground: 80, coupler: 70, rocker: -1}",
             [

@@ -105,6 +105,7 @@ def test_d17_speed_of_the_roller() -> None:
     assert found["roller-speed"].value == pytest.approx(5400.0 / 900.0, abs=1e-11)
 
 
+# needs: dynamics
 def test_d20_angle_at_which_a_guide_jams() -> None:
     train = TRAIN
     made = checks(disc("kind: roller, radius: 9", more=train + "\nlimits: {jam-margin: {at_least: 40}}\n"))
@@ -284,6 +285,7 @@ def test_a_failure_names_its_key() -> None:
     assert failure(check, report, recipe).endswith("cam.yaml:3:44 limits.pressure-angle.on_return")
 
 
+# needs: dynamics
 @pytest.mark.parametrize("rpm", [900.0, 37.5])
 def test_peaks_at_a_speed(rpm: float) -> None:
     names = [f"peak-{name}-at-speed" for name in ("velocity", "acceleration", "jerk")]
@@ -410,12 +412,14 @@ def test_a_shoe_is_no_roller() -> None:
         load_text(disc("kind: shoe, radius: 60", more="limits: {roller-speed: {at_most: 9}}\n"), "cam.yaml")
 
 
+# needs: dynamics
 def test_a_guide_without_a_stem() -> None:
     for follower in ("kind: flat, arm: {pivot: 110, face: 5}", "kind: roller, radius: 8, arm: {length: 65, pivot: 80}"):
         with pytest.raises(RecipeErrors, match=r"dynamics\.guide: the follower has no stem of its own"):
             load_text(disc(follower, more=TRAIN), "cam.yaml")
 
 
+# needs: dynamics, sweep
 @pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
     from camgeo.capabilities.sweep.ask import Ask

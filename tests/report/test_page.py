@@ -618,6 +618,7 @@ def plots_of(more: str) -> dict[str, tuple[str, np.ndarray, str, tuple[tuple[flo
     return {plot.title: (plot.unit, plot.series[0].values, plot.note, plot.limits) for plot in shown}
 
 
+# needs: dynamics
 def test_derivatives_are_by_second_where_the_speed_is_given() -> None:
     plain, timed = plots_of(""), plots_of("dynamics: {mass: 1, stiffness: 1.0e6, preload: 500, rate: 2000, rpm: 120}\n")
     assert plain["Lift"][0] == timed["Lift"][0] == "mm"
@@ -644,6 +645,7 @@ def test_limits_of_the_pressure_angle_are_lines_in_its_plot(limit: str, lines: s
     assert set(shown) == {(line, f"limit {abs(line):g}") for line in lines}
 
 
+# needs: dynamics
 def test_limits_of_forces_and_peaks_are_lines_too() -> None:
     shown = plots_of(
         "part: {thickness: 10}\n"

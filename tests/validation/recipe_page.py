@@ -1,19 +1,23 @@
-"""Contents and tables of docs/recipe.md and capabilities: `python tests/validation/recipe_page.py` writes them."""
+"""Contents and tables of docs/recipe.md, and of the pages of capabilities, from the schema.
+
+`python tests/validation/recipe_page.py` writes them anew.
+"""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from runpy import run_path
 
 from camgeo.cams.disc import FOLLOWERS
-from camgeo.capabilities.sweep.keys import RANGE
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
+from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
-from camgeo.schema.fields import Kind
+from camgeo.schema.fields import Kind, Table
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"
@@ -94,9 +98,9 @@ def contents(text):
     return "\n".join(f"- [{title}](#{place})" for title, place in zip(titles, places, strict=True))
 
 
-def figures():
+def figures(entries):
     lines = ["| figure | unit | best | needs | sweep | meaning |", "| --- | --- | --- | --- | --- | --- |"]
-    for name, figure in FIGURES.items():
+    for name, figure in entries.items():
         needs, swept = figure.needs.words, "yes" if figure.swept else ""
         row = f"| `{name}` | {UNITS.get(figure.kind, '')} | {figure.best} | {needs} | {swept} | {figure.about} |"
         lines.append(row.replace("  ", " ").replace("  ", " "))
@@ -104,8 +108,9 @@ def figures():
 
 
 def tables():
-    """Every table of the schema, written out, by the name that marks its place in the page."""
-    found = {"recipe": recipe_table(), **dict(below(recipe_table(), "")), "sweep.vary": RANGE}
+    """Every table of the core's schema, written out, by the name that marks its place in the page."""
+    recipe = recipe_table(())
+    found = {"recipe": recipe, **dict(below(recipe, ""))}
     found["limits"] = bounds(next(iter(FIGURES.values())))
     for noun, kinds in (("cam", CAMS), ("follower", FOLLOWERS), ("linkage", LINKAGES), ("dyad", DYADS)):
         for kind, one in kinds.items():
@@ -123,24 +128,45 @@ def tables():
     first = {one: name for name, one in reversed(found.items()) if one.fields}
     written = {name: table(one) for name, one in found.items() if first.get(one) == name}
     text = PAGE.read_text(encoding="utf-8")
-    return {**written, "motions": spans(of_cams), "figures": figures(), "contents": contents(text)}
+    return {**written, "motions": spans(of_cams), "figures": figures(FIGURES.among(())), "contents": contents(text)}
+
+
+def of_capability(name):
+    """The same of the keys and figures that a capability adds, and what `page.py` beside its tests has more."""
+    record = registry.capability(name)
+    own = Table(tuple(record.fields()))
+    found = dict(below(own, ""))
+    if any(field.table is None for field in own.fields):
+        found["keys"] = own
+    found.update({path: Table(tuple(fields)) for path, fields in record.below.items()})
+    more = ROOT / "tests" / "capabilities" / name / "page.py"
+    if more.is_file():
+        found.update(run_path(str(more))["TABLES"])
+    first = {one: name for name, one in reversed(found.items())}
+    written = {name: table(one) for name, one in found.items() if first[one] == name}
+    return {**written, **({"figures": figures(record.figures)} if record.figures else {})}
 
 
 def page_of(name):
-    """The page that holds a table: that of recipes, or the own one of a capability whose key it is."""
-    own = PAGE.with_name(f"{name.partition('.')[0]}.md")
-    return own if own.exists() and f"<!-- {name} -->\n" in own.read_text(encoding="utf-8") else PAGE
+    return PAGE.with_name(f"{name}.md")
+
+
+def pages():
+    """Every page with the tables that stand on it."""
+    of_others = {page_of(name): of_capability(name) for name in registry.recorded()}
+    return {PAGE: tables(), **{page: written for page, written in of_others.items() if written}}
 
 
 def main():
-    for name, written in tables().items():
-        page = page_of(name)
-        text, mark = page.read_text(encoding="utf-8"), f"<!-- {name} -->\n"
-        if mark not in text:
-            print(f"no place for {mark.strip()}")
-            continue
-        before, rest = text.split(mark)
-        text = f"{before}{mark}{written}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
+    for page, written in pages().items():
+        text = page.read_text(encoding="utf-8")
+        for name, lines in written.items():
+            mark = f"<!-- {name} -->\n"
+            if mark not in text:
+                print(f"{page.name} has no place for {mark.strip()}")
+                continue
+            before, rest = text.split(mark)
+            text = f"{before}{mark}{lines}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
         page.write_text(text, encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""The tables of docs/recipe.md against the schema."""
+"""The tables of docs/recipe.md, and of the pages of capabilities, against the schema."""
 
 import re
 
@@ -8,21 +8,23 @@ import recipe_page
 from kin.law.formula.expression import FUNCTIONS
 from kin.law.sources.laws import NAMES
 
-
-@pytest.mark.parametrize("name", recipe_page.tables())
-def test_every_table_of_the_schema_stands_on_the_page(name):
-    text = recipe_page.page_of(name).read_text(encoding="utf-8")
-    shown = re.search(rf"<!-- {re.escape(name)} -->\n(.*?)\n<!-- end -->", text, re.DOTALL)
-    assert shown, f"no page has the table {name}"
-    assert shown[1] == recipe_page.tables()[name], "python tests/validation/recipe_page.py"
+PAGES = {page.name: (page, written) for page, written in recipe_page.pages().items()}
 
 
-def test_the_page_has_no_table_besides():
-    text = recipe_page.PAGE.read_text(encoding="utf-8")
-    marks = re.findall(r"^<!-- (?!end)(.*) -->$", text, re.MULTILINE)
-    assert sorted(marks) == sorted(
-        name for name in recipe_page.tables() if recipe_page.page_of(name) == recipe_page.PAGE
-    )
+@pytest.mark.parametrize(("page", "name"), [(page, name) for page, (_, written) in PAGES.items() for name in written])
+def test_every_table_of_the_schema_stands_on_the_page(page, name):
+    path, written = PAGES[page]
+    shown = re.search(rf"<!-- {re.escape(name)} -->\n(.*?)\n<!-- end -->", path.read_text(encoding="utf-8"), re.DOTALL)
+    assert shown, f"{page} has no table {name}"
+    assert shown[1] == written[name], "python tests/validation/recipe_page.py"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_page_has_no_table_besides(page):
+    path, written = PAGES[page]
+    text = path.read_text(encoding="utf-8")
+    marks = re.findall(r"^<!-- (.*) -->\n(?:(?!<!--).*\n)*<!-- end -->$", text, re.MULTILINE)
+    assert sorted(marks) == sorted(written)
 
 
 def test_every_motion_has_the_keys_that_the_page_shows_once():

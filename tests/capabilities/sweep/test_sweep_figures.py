@@ -422,6 +422,7 @@ def test_links_that_shape_the_cam_make_it_anew():
     assert np.ptp(found.figures["radius-of-curvature"]) > 1.0
 
 
+# needs: dynamics
 @pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
 def test_forces_of_a_rigid_train_are_ranked_by(figure):
     """Those of each design's own cam, as limits have them."""

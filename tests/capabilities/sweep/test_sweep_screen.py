@@ -70,6 +70,7 @@ def recipe(
 ):
     vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in ranges.items())
     more = f"units: {units}\n" + ("part: {thickness: 8, outer: 500}\n" if "internal" in cam else "")
+    # needs: dynamics
     more += f"{GUIDE}\n" if "radius: 9, offset" in cam and "internal" not in cam else ""
     sweep = sweep or "method: random, count: 1, rank: size"
     return load_text(f"cam: {{{cam.replace('LAW', law)}}}\n{more}sweep: {{vary: {{{vary}}}, {sweep}}}\n", "a.yaml")

@@ -225,7 +225,9 @@ def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     ):
         assert key(same) == plain
     longer = ask()
+    # needs: dynamics
     train = "dynamics: {mass: 0.4, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
+    # needs: dynamics
     assert key(Ask.of(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
     text = longer.recipe.text.replace("coupler: 70", "coupler: 71")
     assert key(Ask.of(read(text.encode(), "four-bar.yaml"))) != plain

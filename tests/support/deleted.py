@@ -1,0 +1,101 @@
+"""The repository without a capability: its folder, tests, page, shipped recipes, and what is marked as needing it.
+
+A mark is a comment, `# needs: sweep` in Python, `<!-- needs: sweep -->` in Markdown. Behind a line it is of that line.
+On a line of its own it is of what follows: in Python of a statement or an entry with all that is indented below it; in
+Markdown of a block of code, of a section or a page where its heading follows, else up to the next empty line. A page of
+which nothing is left is gone, and so is the gallery's line of a recipe that is.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+import subprocess
+from typing import TYPE_CHECKING
+
+import yaml
+
+from camgeo.registry import registry
+from support.places import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MARK = re.compile(r"(?P<before>.*?)\s*(?:#|<!--) needs: (?P<names>[a-z_, ]+?)(?: -->)?$")
+
+
+def without_marked(text: str, name: str) -> str:
+    """Give a text without what is marked as needing a capability."""
+    lines, kept, i = text.split("\n"), [], 0
+    while i < len(lines):
+        mark = MARK.match(lines[i])
+        if not mark or name not in mark["names"].split(", "):
+            kept.append(lines[i])
+            i += 1
+        elif mark["before"].strip():
+            i += 1
+        else:
+            behind = _behind_page if lines[i].lstrip().startswith("<") else _behind_python
+            i = behind(lines, i + 1)
+    return "\n".join(kept)
+
+
+def _behind_python(lines: list[str], start: int) -> int:
+    """Index of the first line behind a statement or an entry, of a definition with its decorators."""
+    ends = [start + 1]
+    for node in ast.walk(ast.parse("\n".join(lines))):
+        decorators = getattr(node, "decorator_list", [])
+        first = decorators[0] if decorators else node
+        if getattr(first, "lineno", 0) == start + 1:
+            ends.append(getattr(node, "end_lineno", 0))
+    return max(ends)
+
+
+def _behind_page(lines: list[str], start: int) -> int:
+    """Index of the first line behind a block, a section or a paragraph."""
+    first, code = lines[start], False
+    if first.startswith("```"):
+        return lines.index("```", start + 1) + 1
+    level = len(first) - len(first.lstrip("#"))
+    for i in range(start + 1, len(lines)):
+        code ^= lines[i].startswith("```")
+        if not code and (re.match(rf"#{{1,{level}}} ", lines[i]) if level else not lines[i]):
+            return i
+    return len(lines)
+
+
+def uses(path: Path, name: str) -> bool:
+    """Whether a shipped recipe has a key of a capability."""
+    label = registry.labels()[name]
+    return not {*yaml.safe_load(path.read_text(encoding="utf-8"))}.isdisjoint({*label.words, *label.roots})
+
+
+def copy_without(name: str, folder: Path) -> Path:
+    """Copy what the repository holds, but for a capability, into a folder."""
+    told = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        check=True,
+    )
+    gone = {path.name for path in (ROOT / "recipes").rglob("*.yaml") if uses(path, name)}
+    own = (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md")
+    for place in told.stdout.decode().split("\0"):
+        path = ROOT / place
+        if not place or place.startswith(own) or not path.is_file():
+            continue
+        if place.startswith("recipes/") and path.name in gone:
+            continue
+        copied = folder / place
+        copied.parent.mkdir(parents=True, exist_ok=True)
+        if path.suffix not in {".py", ".md"}:
+            shutil.copy2(path, copied)
+            continue
+        text = without_marked(path.read_text(encoding="utf-8"), name)
+        if place == "docs/gallery.md":
+            lines = text.split("\n")
+            text = "\n".join(line for line in lines if not any(f"recipes/{recipe}" in line for recipe in gone))
+        if text or path.suffix == ".py":
+            copied.write_text(text, encoding="utf-8")
+    return folder
