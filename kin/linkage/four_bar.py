@@ -51,6 +51,9 @@ if TYPE_CHECKING:
 __all__ = ["Assembly", "BindingError", "FourBar", "InvertedSliderCrank", "Linkage", "Positions", "SliderCrank"]
 
 
+QUARTER = 0.5 * math.pi
+
+
 @dataclass(frozen=True, eq=False)
 class Positions:
     """A linkage at n points, as jets in whatever parameter the lifts were given.
@@ -148,6 +151,20 @@ class FourBar:
         along: Array = _dot(-1j * away, joint + sweep * x - pivot) / self.rocker
         return along
 
+    def closure(
+        self,
+        joint: Complexes,
+        along: Complexes,  # noqa: ARG002 - one call for all linkages
+        pivot: Complexes | complex,
+        link: Array | float,
+    ) -> tuple[Array, Array]:
+        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+
+        `joint` is D, `along` u, `pivot` the displacement of B, `link` by how much the rocker is longer.
+        """
+        arm = joint - self.ground - pivot
+        return np.abs(arm) - self.rocker - link, math.pi - np.angle(arm)
+
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and rocker."""
         frame, output = positions.frame.c[0], positions.output.c[0]
@@ -244,6 +261,20 @@ class InvertedSliderCrank:
         change: Array = away / _dot(1j * u, sweep)
         return change
 
+    def closure(
+        self,
+        joint: Complexes,
+        along: Complexes,
+        pivot: Complexes | complex,
+        link: Array | float,
+    ) -> tuple[Array, Array]:
+        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+
+        `joint` is D, `along` u, `pivot` the displacement of B, `link` by how much the rocker is longer.
+        """
+        off = _dot(1j * along, joint - self.ground - pivot) - self.rocker - link
+        return off, QUARTER - np.angle(along)
+
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """A right angle throughout: the block presses across the frame's line."""
         frame = positions.frame.c[0]
@@ -330,6 +361,20 @@ class SliderCrank:
         x = (link - (joint - pivot).imag) / sweep.imag
         change: Array = (joint + sweep * x - pivot).real
         return change
+
+    def closure(
+        self,
+        joint: Complexes,
+        along: Complexes,  # noqa: ARG002 - one call for all linkages
+        pivot: Complexes | complex,
+        link: Array | float,
+    ) -> tuple[Array, Array]:
+        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+
+        `joint` is D, `along` u, `pivot` the displacement of the slide's line, `link` by how much it is higher.
+        """
+        place = joint - pivot
+        return place.imag - self.offset - link, place.real
 
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
         """Between frame and the slide's normal."""

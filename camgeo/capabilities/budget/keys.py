@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 FREE, NO_ZERO = "free", "none"
-RUNS, MOST_RUNS, LEAST_RUNS = 10_000, 1_000_000, 100
+RUNS, MOST_RUNS = 10_000, 1_000_000
 MOST_SEED = 2**63 - 1
 MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
 SHAPES = (
@@ -206,7 +206,7 @@ BUDGET = Table(
         Field(GUIDE, Kind.LENGTH, "from the shaft to the middle of the stem's guide, along it", above=0, at_most=MOST),
         Field("fit", Kind.CHOICE, "tolerance class of the shaft in the bore", choices=tuple(SHAFTS)),
         Field("key", Kind.TABLE, "tolerance classes of the keyways", default="the key has no play", table=_KEY),
-        Field("runs", Kind.INTEGER, "parts of a simulation", default=str(RUNS), at_least=LEAST_RUNS, at_most=MOST_RUNS),
+        Field("runs", Kind.INTEGER, "parts that are simulated", default=str(RUNS), at_least=0, at_most=MOST_RUNS),
         Field("seed", Kind.INTEGER, "seed of the simulation", default="1", at_least=0, at_most=MOST_SEED),
     )
 )

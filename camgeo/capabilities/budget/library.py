@@ -5,18 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget
-from camgeo.capabilities.budget.outcome import outcome, section
+from camgeo.capabilities.budget.outcome import outcome, section, told
 from camgeo.synthesis.design import designed
+from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
+    from camgeo.capabilities.budget.outcome import Outcome
     from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
 
 
 def budget(recipe: Recipe) -> dict[str, Any]:
     """The budget of a recipe as plain data, in the recipe's unit and degrees; docs/budget.md names its keys.
 
-    `ok` is whether it is kept. Raises RecipeErrors for a recipe without a budget, for one of whose tolerances nothing
-    is left for a free one, and for a linkage that does not turn.
+    Parts are made by chance within its tolerances, `runs` of them, and looked at by contact. `ok` is whether the budget
+    is kept. Raises RecipeErrors for a recipe without a budget, for one whose tolerances leave nothing for a free
+    dimension, and for a linkage that does not turn.
     """
     stated = recipe.of(Budget)
     if stated is None:
@@ -27,4 +31,42 @@ def budget(recipe: Recipe) -> dict[str, Any]:
         raise recipe.error("linkage", "the mechanism does not turn, and its output has no error", None, "see check")
     found = outcome(recipe, design, stated)
     entry = section(recipe, found)
+    if stated.runs:
+        entry["parts"] = _parts(recipe, design, found)
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
+
+
+def _parts(recipe: Recipe, design: Design, found: Outcome) -> dict[str, Any]:
+    """What a simulation says, or why there is none."""
+    from camgeo.capabilities.budget.contact import LostError
+    from camgeo.capabilities.budget.parts import looked_at, simulate
+
+    shaft = looked_at([worst.at for worst in found.sums.values()])
+    try:
+        parts = simulate(recipe, design, found.budget, shaft)
+    except LostError as error:
+        return {"runs": 0, "why": str(error)}
+    rows: list[dict[str, Any]] = [
+        {
+            "contact": one.contact,
+            "at_deg": degrees(one.at),
+            "mean": told(recipe, one.mean)[0],
+            "sd": told(recipe, one.deviation)[0],
+            "foreseen": told(recipe, one.foreseen)[0],
+            "error": told(recipe, one.error)[0],
+            "greatest": told(recipe, one.greatest)[0],
+            "agrees": one.agrees,
+        }
+        for one in parts.spreads
+    ]
+    worst = rows[parts.spreads.index(parts.worst)]
+    return {
+        "runs": parts.runs,
+        "seed": parts.seed,
+        "unit": told(recipe, 1.0)[1],
+        "within": parts.within,
+        "greatest": max(row["greatest"] for row in rows),
+        "agrees": all(row["agrees"] for row in rows),
+        "worst": worst,
+        "spreads": rows,
+    }

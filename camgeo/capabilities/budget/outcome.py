@@ -250,7 +250,22 @@ def table(recipe: Recipe, entry: dict[str, Any]) -> str:
         play = entry["play"]
         limit = "" if play["limit"] is None else f", {play['limit']:.6g} permitted"
         lines.append(f"  play from {play['min']:.4g} to {play['max']:.4g} {unit}{limit}")
+    if "parts" in entry:
+        lines += _simulated(entry["parts"])
     return "\n".join(lines)
+
+
+def _simulated(parts: dict[str, Any]) -> list[str]:
+    if "why" in parts:
+        return [f"  no parts were simulated: {parts['why']}"]
+    worst, unit = parts["worst"], parts["unit"]
+    agrees = "agrees" if worst["agrees"] else "does not agree"
+    kept, greatest = f"{parts['within']:.2%} keep it", f"the greatest error is {parts['greatest']:.4g} {unit}"
+    deviation = f"standard deviation at {worst['at_deg']:.4g} deg {worst['sd']:.4g} {unit}"
+    return [
+        f"  of {parts['runs']:,} parts by contact {kept}, {greatest}",
+        f"  {deviation}, which {agrees} with {worst['foreseen']:.4g} by the influences",
+    ]
 
 
 def _place(found: dict[str, Any]) -> str:

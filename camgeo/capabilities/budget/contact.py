@@ -1,0 +1,127 @@
+"""Where a made follower stands on a made cam, by contact: each size off by its own amount, the metal as it is.
+
+Nothing here knows an influence. The metal stays in its own axes, and what its displacements do is done to the guide
+the other way round: the touch runs on a line or about a pivot that is off, until it meets the metal. The metal is
+displaced against the bore, then turned with the cam on the shaft, then displaced with the shaft. All arrays are
+(parts, angles), or broadcast to that.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.law.contacts import Flat, Oscillating
+from kin.numeric.angles import TURN
+from kin.numeric.errors import CamgeoError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.contacts import Contact, Guide, Touch
+    from kin.numeric.arrays import Array, Complexes
+
+
+class LostError(CamgeoError, ValueError):
+    """A made part that has no contact near where it is meant to be, as of undercut metal."""
+
+
+class Metal(Protocol):
+    """What a touch meets at each shaft angle, in the axes of the cam, mm; its methods raise LostError."""
+
+    def reach(self, normal: Complexes) -> Array:
+        """Greatest x.normal of the metal: where a flat face of that normal touches."""
+
+    def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
+        """Distance along a line from a point of it at which the centre of a round touch stands."""
+
+    def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
+        """Direction from a pivot to the centre of a round touch at the end of an arm."""
+
+    def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
+        """Normal of a flat face that stands nearer the shaft than its parallel through a pivot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Off:
+    """By how much the sizes about one contact are off, mm, rad, complex displacements.
+
+    `turned` the metal on the shaft, `bore` the metal in the cam's axes, `shaft` and `pivot` in the ground, x along the
+    travel or from the shaft to the pivot; `grown` touch and metal along the normal; `offset` and `guide` the stem's
+    line and its direction about the middle of the guide; `face` the direction of a face about the stem's axis or the
+    pivot, and that of an arm; `length` that of the arm; `datum` where the contact's own position counts from.
+    """
+
+    turned: Array
+    bore: Complexes
+    shaft: Complexes
+    pivot: Complexes
+    grown: Array
+    offset: Array
+    guide: Array
+    face: Array
+    length: Array
+    datum: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A contact at shaft angles (n,): its record, the metal, and its own position (n,) as it is meant.
+
+    `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, `middle` the distance of
+    the guide's middle from the shaft's foot, mm.
+    """
+
+    contact: Contact[Guide, Touch]
+    metal: Metal
+    shaft: Array
+    own: Array
+    first: Complexes
+    eccentric: float
+    middle: float
+
+
+def positions(place: Place, off: Off) -> Array:
+    """Positions of the follower by one contact, mm or rad, (parts, angles); raises LostError where there is none."""
+    contact = place.contact
+    axis = np.exp(1j * (place.shaft + contact.turned))
+    back = np.exp(-1j * off.turned)
+
+    def within(point: Complexes) -> Complexes:
+        """A point of the ground in the axes of the metal."""
+        inside: Complexes = back * (point - off.shaft * place.first) - off.bore
+        return inside
+
+    if isinstance(contact.guide, Oscillating):
+        pivot = within(axis * contact.guide.pivot + off.pivot * place.first)
+        own = _own_on_arm(place, contact.guide, off, pivot, axis * back)
+    else:
+        middle = place.first * (place.middle + 1j * (place.eccentric + off.offset))
+        ahead = (np.conj(axis) * place.first * (place.middle + 1j * place.eccentric)).real
+        own = ahead + _own_on_stem(place, off, within(middle), axis * back * np.exp(1j * off.guide))
+    return contact.position(own - off.datum)
+
+
+def _own_on_stem(place: Place, off: Off, middle: Complexes, way: Complexes) -> Array:
+    """Distance along a stem's line from the middle of its guide at which the touch meets the metal."""
+    touch = place.contact.touch
+    if isinstance(touch, Flat):
+        normal = way * np.exp(1j * (touch.tilt + off.face))
+        gap = place.metal.reach(normal) + off.grown - (np.conj(normal) * middle).real
+        along: Array = gap / (np.conj(normal) * way).real
+        return along
+    return place.metal.along(way, middle, touch.radius + off.grown)
+
+
+def _own_on_arm(place: Place, guide: Oscillating, off: Off, pivot: Complexes, axis: Complexes) -> Array:
+    """Own position, rad, at which the touch of an arm meets the metal, nearest the one that is meant."""
+    touch, hand = place.contact.touch, guide.side
+    if isinstance(touch, Flat):
+        normal = place.metal.leaning(pivot, touch.nearer + off.grown)
+        turn = hand * np.angle(normal * np.conj(axis)) + 0.5 * math.pi
+    else:
+        arm = place.metal.arm(pivot, guide.arm + off.length, touch.radius + off.grown)
+        turn = hand * np.angle(-arm * np.conj(axis))
+    own: Array = place.own + np.remainder(turn - hand * off.face - place.own + math.pi, TURN) - math.pi
+    return own

@@ -1,0 +1,284 @@
+"""Made parts by chance, each size within its limits, and how far the follower or the output of each is off, by contact.
+
+Sizes are even within plus and minus, radii full and in any direction; the profile of a part is another one at each
+angle, the same about the contact. The influences have no say: that both agree is a check of both.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from camgeo.capabilities.budget.contact import LostError, Off, Place, positions
+from camgeo.capabilities.budget.exact_metal import MOST_STEPS, SETTLED, ExactMetal
+from camgeo.capabilities.budget.influence import influence
+from camgeo.capabilities.budget.sums import spread
+from camgeo.capabilities.budget.words import BORE, PROFILE
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from camgeo.capabilities.budget.influence import Influence
+    from camgeo.capabilities.budget.keys import Budget
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array, Complexes
+
+EVEN = 36  # even angles of a turn at which parts are looked at, besides the worst ones
+STEP = 1e-5  # rad, by which the frame is turned to see how fast its loop opens
+AT_ONCE = 2000  # parts, which bounds memory
+ERRORS = 4.0  # standard errors by which a deviation may differ from the one foreseen
+
+
+class Spread(NamedTuple):
+    """Errors of the parts at an angle, rad, by one contact, mm or rad: mean, deviation, the one foreseen, the greatest.
+
+    `error` is the standard error of the deviation.
+    """
+
+    contact: str
+    at: float
+    mean: float
+    deviation: float
+    foreseen: float
+    error: float
+    greatest: float
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the deviation is within four standard errors of the one foreseen."""
+        return abs(self.deviation - self.foreseen) <= ERRORS * self.error
+
+
+class Parts(NamedTuple):
+    """What was seen of made parts: the errors at each angle by each contact, and the share of parts that keep all.
+
+    `within` is the share of parts whose errors stay within what is permitted at every angle looked at.
+    """
+
+    runs: int
+    seed: int
+    spreads: tuple[Spread, ...]
+    within: float
+
+    @property
+    def worst(self) -> Spread:
+        """Where the deviation foreseen is greatest."""
+        return max(self.spreads, key=lambda one: one.foreseen)
+
+
+def looked_at(worst: Sequence[float]) -> Array:
+    """Shaft angles at which parts are looked at, rad: even ones, and the worst."""
+    return np.unique(np.append(np.linspace(0.0, TURN, EVEN, endpoint=False), worst))
+
+
+def simulate(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Parts:
+    """Make parts by chance at shaft angles (n,); raises LostError where one has no contact."""
+    rng = np.random.default_rng(budget.seed)
+    rows = influence(recipe, design, budget, shaft)
+    errors_of = errors_by_contact(recipe, design, budget, shaft)
+    blocks = []
+    for begin in range(0, budget.runs, AT_ONCE):
+        count = min(AT_ONCE, budget.runs - begin)
+        errors = errors_of(Drawn(rng, budget, count, len(rows_at(budget, shaft))))
+        blocks.append(errors if budget.zero is None else errors[:, :, :-1] - errors[:, :, -1:])
+    errors = np.concatenate(blocks, axis=1)
+    within = (np.abs(errors) <= budget.permitted).all(axis=(0, 2)).mean()
+    return Parts(budget.runs, budget.seed, tuple(_spreads(rows, errors)), float(within))
+
+
+def errors_by_contact(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
+    """What sizes that are off make of the motion: errors (contacts, parts, n), mm or rad, at shaft angles.
+
+    After the angles stands the one at which the machine is set, if any. The errors raise LostError.
+    """
+    return _of_linkage(design, budget, shaft) if recipe.linkage else _of_follower(design, budget, shaft)
+
+
+def rows_at(budget: Budget, shaft: Array) -> Array:
+    """The angles (n,), and after them the one at which the machine is set, if any."""
+    return shaft if budget.zero is None else np.append(shaft, budget.zero)
+
+
+def _spreads(rows: Influence, errors: Array) -> list[Spread]:
+    """The errors (contacts, parts, n) by contact and angle."""
+    spreads = []
+    for contact, output in enumerate(rows.outputs()):
+        foreseen = spread(rows, output)
+        own = errors[contact]
+        mean, deviation = own.mean(axis=0), own.std(axis=0)
+        fourth = ((own - mean) ** 4).mean(axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            error = np.sqrt(np.maximum(fourth - deviation**4, 0.0) / (4.0 * len(own))) / deviation
+        greatest = np.abs(own).max(axis=0)
+        for place, at in enumerate(rows.shaft):
+            values = (row[place] for row in (mean, deviation, foreseen, np.nan_to_num(error), greatest))
+            spreads.append(Spread(output.name, float(at), *map(float, values)))
+    return spreads
+
+
+class Sizes(Protocol):
+    """By how much the sizes of parts are off, (parts, 1), or (parts, angles) of the profile."""
+
+    def size(self, name: str) -> Array:
+        """A size, mm or rad, by the word of its dimension; each that is asked for is another one."""
+
+    def radius(self, name: str) -> Complexes:
+        """A displacement, mm, likewise."""
+
+
+class Drawn:
+    """Sizes of parts drawn by chance: each `size` or `radius` that is asked for is another one."""
+
+    def __init__(self, rng: np.random.Generator, budget: Budget, count: int, angles: int) -> None:
+        """Draw for so many parts at so many angles."""
+        self._rng, self._count, self._angles = rng, count, angles
+        self._tolerances = dict(budget.tolerances)
+
+    def size(self, name: str) -> Array:
+        """By how much a size is off, (parts, 1), of the profile (parts, angles); 0 of one without a tolerance."""
+        tolerance = self._tolerances.get(name) or 0.0
+        shape = (self._count, self._angles if name == PROFILE else 1)
+        return tolerance * self._rng.uniform(-1.0, 1.0, shape) if tolerance else np.zeros(shape)
+
+    def radius(self, name: str) -> Complexes:
+        """A displacement by all of a radius in any direction, (parts, 1), complex; 0 of one without a tolerance."""
+        tolerance, shape = self._tolerances.get(name) or 0.0, (self._count, 1)
+        turned = self._rng.uniform(0.0, TURN, shape) if tolerance else np.zeros(shape)
+        displacement: Complexes = tolerance * np.exp(1j * turned)
+        return displacement
+
+
+# --- a follower -------------------------------------------------------------------------------------------------------
+
+
+def _of_follower(design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
+    angles = rows_at(budget, shaft)
+    places = places_of(design, angles, budget.guide or 0.0)
+    nominal = design.motion.travel(angles, 0)[0]
+    several, discs = len(places), design.follower.arrangement.discs
+    on_one_arm = several > 1 and places[0].contact.apart != 0.0
+
+    def errors(drawn: Sizes) -> Array:
+        return np.stack(
+            [
+                positions(place, off) - nominal
+                for place, off in zip(places, offs(drawn, several, discs, on_one_arm=on_one_arm), strict=True)
+            ]
+        )
+
+    return errors
+
+
+def offs(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Off]:
+    """By how much the sizes about each contact are off; what contacts share is drawn once."""
+    size, radius = drawn.size, drawn.radius
+    turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")
+    offset, guide = size("follower.offset"), size("guide")
+    first_radius, first_arm = size("follower.radius") + size("follower.arm.face"), size("follower.arm.length")
+    tilted, squared = size("follower.tilt"), size("face")
+    bore = radius(BORE)
+    found = []
+    for i in range(several):
+        first = i == 0 or discs == 1
+        own = radius(BORE) if discs > 1 else bore
+        grown = size(PROFILE) + size("roller_radius") + (first_radius if first else size("conjugate.radius"))
+        face = (size("face") if on_one_arm else squared) + size("spread") + (tilted if first else 0.0)
+        second = size("breadth") + size("conjugate.distance") + size("conjugate.angle") if i else 0.0 * turned
+        found.append(
+            Off(
+                turned=turned + (size("index") if i else 0.0),
+                bore=own,
+                shaft=shaft,
+                pivot=pivot,
+                grown=grown,
+                offset=offset,
+                guide=guide,
+                face=face,
+                length=size("arm") + (first_arm if first else size("conjugate.length")),
+                datum=second,
+            )
+        )
+    return found
+
+
+def places_of(design: Design, shaft: Array, middle: float) -> list[Place]:
+    """Each contact of a follower at shaft angles (n,); raises LostError for a contour that is trimmed or not made."""
+    if design.trimmed or not design.contours:
+        raise LostError("parts are simulated on whole contours, and this one is trimmed, or a check forbids it")
+    contours = {surface.name: (surface.side, contour) for surface, contour in design.contours}
+    contacts = design.follower.contacts
+    position = design.motion.travel(shaft, 0)[0]
+    parameters = list(design.motion.parameters(shaft, shaft).values())
+    first = np.exp(1j * (shaft + contacts[0].turned))
+    eccentric = design.follower.offset
+    places = []
+    for i, contact in enumerate(contacts):
+        side, curve = contours[contact.surface]
+        if i < len(parameters):
+            parameter = parameters[i]
+        else:  # opposite on one surface, or on one of its own, whose parameter is the shaft angle
+            parameter = shaft + (contact.turned if contact.surface == contacts[0].surface else 0.0)
+        metal = ExactMetal(curve, side, parameter)
+        places.append(Place(contact, metal, shaft, contact.own(position), first, eccentric, middle))
+    return places
+
+
+# --- a linkage --------------------------------------------------------------------------------------------------------
+
+
+def _of_linkage(design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
+    """Errors of the output by the support function of the made cam in its frame, each loop closed anew."""
+    if design.driven is None:
+        raise ValueError("there is no linkage")
+    mechanism = design.driven.mechanism
+    loop, breadth, lift = mechanism.linkage, mechanism.breadth, mechanism.lift
+    angles = rows_at(budget, shaft)
+    relative = mechanism.relative(angles)
+    motion = mechanism.at(relative, 0)
+    frame, nominal = motion.frame[0], motion.output[0]
+    coupler = motion.solved.linkage.slide.c[0] - breadth + motion.faces[1][0]  # from the frame's side to the joint
+
+    def errors(drawn: Sizes) -> Array:
+        size, radius = drawn.size, drawn.radius
+        turned, bore, moved = size("angle"), radius(BORE), radius("shaft")
+        near, far = size(PROFILE), size(PROFILE)
+        wider, higher, squared = size("breadth"), size("breadth"), size("face")
+        pivot = radius("pivot") + size("linkage.ground") + radius("joints")
+        play, link = radius("joints"), size("linkage.rocker") + size("linkage.offset")
+        longer, joint = size("linkage.coupler"), size("linkage.joint_offset")
+
+        def support(direction: Array, grown: Array) -> Array:
+            """Distance from the shaft, mm, of the made cam's tangent across a direction in the cam's axes as meant."""
+            inner = direction - turned
+            own = lift.derivatives(np.mod(inner, TURN).ravel(), 0)[0].reshape(inner.shape)
+            shifted: Array = (np.conj(bore) * np.exp(1j * inner)).real
+            reach: Array = own + grown + shifted
+            return reach
+
+        def off(change: Array) -> tuple[Array, Array]:
+            """Distance from closing, mm, and output where the frame stands further by a change, rad."""
+            direction = relative + change
+            middle = support(direction, near) - 0.5 * (breadth + higher)
+            side = support(direction + 0.5 * math.pi + squared, far) + middle * np.sin(squared)
+            across = middle + loop.joint_offset + joint
+            along = breadth + wider + coupler + longer - side / np.cos(squared)
+            u = np.exp(1j * (frame + change))
+            return loop.closure(moved + u * (along + 1j * across) + play, u, pivot, link)
+
+        change = np.zeros((len(turned), len(angles)))
+        slope = (off(change + STEP)[0] - off(change - STEP)[0]) / (2.0 * STEP)
+        for _ in range(MOST_STEPS):
+            open_by, output = off(change)
+            if np.abs(open_by).max() < SETTLED:
+                change_of_output: Array = output - nominal
+                if mechanism.unit == "deg":
+                    change_of_output = np.remainder(change_of_output + math.pi, TURN) - math.pi
+                return change_of_output[None]
+            change = change - open_by / slope
+        raise LostError("the loop of a made part does not close near where it is meant to be")
+
+    return errors

@@ -1,0 +1,147 @@
+"""Made parts by contact: influences against their differences, finite errors, what chance leaves of a budget."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from support.made_cases import CASES
+from support.places import ROOT
+
+from camgeo.capabilities.budget.contact import LostError
+from camgeo.capabilities.budget.influence import influence
+from camgeo.capabilities.budget.keys import Budget
+from camgeo.capabilities.budget.library import budget as split
+from camgeo.capabilities.budget.parts import errors_by_contact, looked_at, simulate
+from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
+from camgeo.recipe.loading import load_text
+from camgeo.synthesis.design import designed
+
+GUIDE = 120.0
+STEPS = np.array([-2.0, -1.0, 1.0, 2.0])  # five-point difference
+SHARES = np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
+SHAFT = np.radians([7.0, 41.0, 98.0, 133.0, 188.0, 226.0, 277.0, 333.0])
+FAMILIES = [
+    "disc-roller",
+    "disc-ring",
+    "disc-flat",
+    "disc-arm",
+    "disc-arm-flat",
+    "conjugate-stem",
+    "conjugate-arm",
+    "conjugate-flat",
+    "groove-stem",
+    "groove-arm",
+    "print-double-roller",
+    "w-ellipse",
+    "print-constant-diameter",
+    "shu-wu",
+    "valve-lobe",
+    "as-figure-8",
+    "as-figure-12",
+    "slider-crank",
+]
+
+
+class Stepped:
+    """Sizes that are off by nothing but one, by some steps of it: a part for each."""
+
+    def __init__(self, name: str, step: float, component: complex = 1.0) -> None:
+        self.name, self.steps, self.component = name, step * STEPS[:, None], component
+
+    def size(self, name: str) -> np.ndarray:
+        return self.steps if name == self.name else 0.0 * self.steps
+
+    def radius(self, name: str) -> np.ndarray:
+        return self.component * (self.steps if name == self.name else 0.0 * self.steps)
+
+
+@cache
+def of_recipe(name: str):
+    return load_text((ROOT / "recipes" / f"{name}.yaml").read_text(encoding="utf-8"), ROOT / "recipes" / f"{name}.yaml")
+
+
+@cache
+def design_of(name: str):
+    return designed(of_recipe(name))
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -> None:
+    recipe = of_recipe(name)
+    design = design_of(name)
+    words = words_of(traits_of(recipe))
+    stated = Budget(1.0, tuple((word, 1.0) for word in words), guide=GUIDE)
+    rows = influence(recipe, design, stated, SHAFT)
+    errors_of = errors_by_contact(recipe, design, stated, SHAFT)
+    for word in words:
+        components = (1.0, 1j) if WORDS[word].radius else (1.0,)
+        for k, component in enumerate(components):
+            step = 2e-4 if WORDS[word].angle else 5e-3
+            errors = errors_of(Stepped(word, step, component))
+            measured = np.einsum("p,cpn->cn", SHARES, errors) / step
+            # sizes that each contact has of its own are all off together
+            ours = np.sum([one.rows[:, k] for one in rows.contributions if one.name == word], axis=0)
+            assert np.abs(measured - ours).max() < 2e-6 * max(1.0, np.abs(ours).max()), (word, component)
+
+
+def test_finite_errors() -> None:
+    """Roller + 0.05, offset + 0.2, both: worked cases by contact at 50, 215 and 300 degrees."""
+    recipe = load_text(CASES["roller on a stem"].cam, "a.yaml")
+    design, shaft = designed(recipe), np.radians([50.0, 215.0, 300.0])
+    errors_of = errors_by_contact(recipe, design, Budget(1.0, (("profile", 1.0),)), shaft)
+
+    class Sizes(Stepped):
+        def size(self, name: str) -> np.ndarray:
+            off = {"follower.radius": [0.05, 0.0, 0.05], "follower.offset": [0.0, 0.2, 0.2]}
+            return np.array(off.get(name, [0.0, 0.0, 0.0]))[:, None]
+
+        def radius(self, _name: str) -> np.ndarray:
+            return np.zeros((3, 1), dtype=complex)
+
+    (errors,) = errors_of(Sizes("", 0.0))
+    worked = [
+        [0.0515869991, 0.0568231843, 0.0512807811],
+        [0.0503940331, -0.1085390488, -0.0460642544],
+        [0.1019296928, -0.0515990204, 0.0052703601],
+    ]
+    assert np.abs(errors - worked).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_deviations_are_those_foreseen(name: str) -> None:
+    recipe, design = of_recipe(name), design_of(name)
+    sizes = tuple((word, 1e-3) for word in words_of(traits_of(recipe)))
+    parts = simulate(recipe, design, Budget(1.0, sizes, guide=GUIDE, runs=1000, seed=3), looked_at([0.3]))
+    assert all(one.agrees for one in parts.spreads)
+    assert parts.within == 1.0
+    for one in parts.spreads:
+        assert one.error < 0.05 * one.deviation
+
+
+def test_deviations_from_where_the_machine_is_set() -> None:
+    recipe = of_recipe("disc-roller")
+    sizes = (("profile", 0.01), ("angle", 1e-3), ("bore", 0.01))
+    stated = Budget(0.05, sizes, zero=math.radians(300.0), runs=2000)
+    parts = simulate(recipe, designed(recipe), stated, looked_at([0.9]))
+    assert all(one.agrees for one in parts.spreads)
+    assert 0.0 < parts.within < 1.0
+
+
+def test_the_same_seed_gives_the_same_parts_and_another_one_others() -> None:
+    text = (ROOT / "recipes" / "disc-roller.yaml").read_text(encoding="utf-8")
+    text += "budget: {permitted: 0.03, tolerances: {profile: 0.01, angle: 0.05}, runs: 500, seed: %d}\n"
+    first, again, other = (split(load_text(text % seed, "a.yaml"))["parts"] for seed in (1, 1, 2))
+    assert first == again
+    assert first["worst"]["sd"] != other["worst"]["sd"]
+    assert first["agrees"]
+
+
+def test_a_contour_that_is_trimmed_is_not_simulated() -> None:
+    recipe = of_recipe("disc-trim")
+    with pytest.raises(LostError, match="trimmed"):
+        simulate(recipe, designed(recipe), Budget(1.0, (("profile", 0.01),), runs=100), SHAFT)
+    text = recipe.text + "budget: {permitted: 0.05, tolerances: {profile: 0.01}}\n"
+    assert split(load_text(text, "a.yaml"))["parts"]["runs"] == 0
