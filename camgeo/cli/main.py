@@ -302,6 +302,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
+    from camgeo.cli.progress import Progress
     from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.loading import load_order
     from camgeo.report.document import encoded
@@ -314,7 +315,12 @@ def _verify(arguments: argparse.Namespace) -> int:
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
         options = {name: getattr(arguments, name) for name in registry.options()}
-        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, **options))
+        progress = Progress(recipe.name)
+        progress("judge")
+        try:
+            report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, **options))
+        finally:
+            progress.clear()
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:

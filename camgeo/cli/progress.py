@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 
 from camgeo.common.terminal import complain, escaped, whisper
 
 PATIENCE = 1.0  # seconds before progress is shown
+LONG = 10.0  # seconds after which a stage is said where there is no terminal
 
 
 class Progress:
     """What is being done, on a terminal's last line, once it takes more than a second.
 
-    With `every`, seconds, it is said elsewhere too, a line each time that so long has passed.
+    Elsewhere a stage that takes long is said in a line of its own; with `every`, seconds, all that is said when so long
+    has passed. A timer says what goes on by itself: a process that has one is not forked before `clear`.
     """
 
     def __init__(self, name: str, every: float | None = None) -> None:
@@ -22,18 +25,39 @@ class Progress:
         self._said = time.perf_counter()
         self._start = time.perf_counter()
         self._shown = False
+        self._timer: threading.Timer | None = None
 
     def __call__(self, stage: str) -> None:
         """Show a stage in place of the last one."""
-        if sys.stderr.isatty() and time.perf_counter() - self._start > PATIENCE:
-            whisper(f"\r\x1b[K{escaped(self._name)}: {stage} ...")
-            self._shown = True
-        elif self._every is not None and not sys.stderr.isatty() and time.perf_counter() - self._said >= self._every:
+        self._stop()
+        passed = time.perf_counter() - self._start
+        if sys.stderr.isatty() and passed > PATIENCE:
+            self._show(stage)
+        elif self._every is None:
+            wait, say = (PATIENCE - passed, self._show) if sys.stderr.isatty() else (LONG, self._say)
+            self._timer = threading.Timer(wait, say, (stage,))
+            self._timer.daemon = True
+            self._timer.start()
+        elif not sys.stderr.isatty() and time.perf_counter() - self._said >= self._every:
             self._said = time.perf_counter()
             complain(f"{self._name}: {stage}")
 
     def clear(self) -> None:
         """Take the line away again."""
+        self._stop()
         if self._shown:
             whisper("\r\x1b[K")
             self._shown = False
+
+    def _show(self, stage: str) -> None:
+        self._shown = True
+        whisper(f"\r\x1b[K{escaped(self._name)}: {stage} ...")
+
+    def _say(self, stage: str) -> None:
+        complain(f"{self._name}: {stage} takes more than {LONG:g} s ...")
+
+    def _stop(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer.join()
+            self._timer = None
