@@ -342,16 +342,17 @@ def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], d
     lows, highs = [], []
     for low, high in stretches:
         count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, int(np.ceil(density * (high - low))))
-        knots = np.linspace(low, high, count + 1)
+        knots = np.unique(np.linspace(low, high, count + 1))  # between neighbours of rounding there is no cell
         lows.append(knots[:-1])
         highs.append(knots[1:])
     low, high = np.concatenate(lows), np.concatenate(highs)
     rows = curve.shape.bounds(low, high).rows()
     for _ in range(HALVINGS):
-        loose = _loose(curve, low, high, rows)
+        middle = 0.5 * (low + high)
+        loose = _loose(curve, low, high, rows) & (low < middle) & (middle < high)
         if not loose.any() or low.size > most:
             break
-        middle = 0.5 * (low[loose] + high[loose])
+        middle = middle[loose]
         new_low = np.concatenate([low[loose], middle])
         new_high = np.concatenate([middle, high[loose]])
         new_rows = curve.shape.bounds(new_low, new_high).rows()
