@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 
 _LEAST_DETUNING = 1e-9  # below, the amplitude at resonance is a matter of rounding
+_MOST_NATURAL = 1e6  # times the shaft's, from which the phase of a free motion after a turn is a matter of rounding
+_LEAST_NATURAL = 1e-9  # times the shaft's, below which a turn brings nothing back
 MOST_SWUNG = 4_000_000  # places at which the free motion of a steady state is looked at: about two seconds
 _SILENT_AFTER = 60.0  # in units of 1/fading and with room: by then a free motion counts no more (`Response.lasting`)
 _STRETCHES = 500  # of a turn that a damping is advised for: a file has more than the intent
@@ -208,11 +210,26 @@ def periodic(running: Running, response: Response) -> Array:
     """State (2,) at shaft angle 0 that a turn brings back to itself; DynamicsError where there is none."""
     oscillator = response.oscillator
     if oscillator.detuning < _LEAST_DETUNING * max(1.0, 1e-6 * oscillator.natural):
-        raise DynamicsError(
-            f"no steady state: the natural frequency is {oscillator.split:.9g} times the shaft's, and without damping "
-            f"a whole multiple resonates; {running.rpm:.9g} rpm"
-        )
+        raise DynamicsError(_no_steady_state(running, oscillator.natural, oscillator.split))
     return response.periodic()
+
+
+def _no_steady_state(running: Running, natural: float, damped: float) -> str:
+    """Say why none is found: resonance, or a natural frequency so high or so low that rounding hides the next one."""
+    ratio, speed = f"the natural frequency is {damped:.9g} times the shaft's", f"{running.rpm:.9g} rpm"
+    if natural > _MOST_NATURAL:
+        return (
+            f"no steady state is found: {ratio}, and rounding does not tell it from a whole multiple, which resonates; "
+            f"{speed}; leave the stiffness out, as the train is as good as rigid, or give a higher rpm"
+        )
+    if natural < _LEAST_NATURAL:
+        least = running.train.mass * (running.speed * _LEAST_NATURAL) ** 2
+        return (
+            f"no steady state: {ratio}, so that nothing holds the follower to the cam; {speed}; "
+            f"give a stiffness above {1.01 * least:.3g}"
+        )
+    remedy = "give damping or another rpm"
+    return f"no steady state: {ratio}, and without damping a whole multiple resonates; {speed}; {remedy}"
 
 
 def _residual(running: Running, response: Response, starts: Array, begin: float, end: float) -> Residual:

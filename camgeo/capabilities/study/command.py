@@ -66,7 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
         skipped = [] if design.contours else [("files", "a check of the exact contour fails")]
         if recipe.part.thickness is None:
             skipped.append(("stl", "part.thickness is not given"))
-        study = document(recipe, found, margins(recipe, design), skipped, failed)
+        names = [surface.name for surface in design.exact.surfaces if surface.name]
+        study = document(recipe, found, margins(recipe, design), skipped, failed=failed, names=names)
         ok = not failed and all(row["ok"] for row in study["rows"])
         _write(recipe, study, Path(arguments.out), ok=ok)
     except RecipeErrors as errors:

@@ -24,9 +24,14 @@ def document(
     steps: Sequence[Rung | Ended],
     margins: Sequence[Margin],
     skipped: Sequence[tuple[str, str]],
+    *,
     failed: Sequence[Check] = (),
+    names: Sequence[str] = (),
 ) -> Entry:
-    """The study, keys as the contract of study.json fixes them, and more; `failed` are checks of the exact cam."""
+    """The study, keys as the contract of study.json fixes them, and more.
+
+    `failed` are checks of the exact cam, `names` those of its surfaces where there are several.
+    """
     length = in_units(recipe, None, "mm")[1]
     rungs = [rung for rung in steps if isinstance(rung, Rung)]
     return {
@@ -34,6 +39,7 @@ def document(
         "camgeo": __version__,
         "units": recipe.units,
         "machine": {"python": platform.python_version(), "system": platform.system(), "processor": platform.machine()},
+        "surfaces": list(names),
         "rows": [_row(recipe, rung) for rung in rungs],
         "ended": [
             {"form": end.form, "tolerance": end.tolerance / recipe.mm, "unit": length, "why": end.why}
@@ -111,6 +117,8 @@ def table(study: Entry) -> str:
         failed = "" if row["ok"] else f"FAILED {', '.join(row['failed'])}"
         rows.append([row["form"], *errors, *times, str(row["pieces"]), least, ratio, str(row["bytes"]), failed])
     text = aligned(rows)
+    if study["surfaces"]:
+        text += f"\n\nerrors are the greatest, pieces, bytes and seconds the sums of {' and '.join(study['surfaces'])}"
     ended = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
     text += "\n\n" + "\n".join(ended)
     if study["failed"]:

@@ -38,9 +38,11 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
     found += [Margin(*margin) for margin in design.exact.margins]
     for check in design.checks:
         if check.name == PRESSURE.name and check.value is not None:
-            found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", "the cam cannot drive the roller"))
+            what = f"{check.surface} the cam cannot drive the roller".strip()
+            found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", what))
         if check.name == WALL.name and check.value is not None:
-            found.append(Margin(WALL.name, check.value, "mm", "the bore breaks through the contour"))
+            what = f"{check.surface} the bore breaks through the contour".strip()
+            found.append(Margin(WALL.name, check.value, "mm", what))
     found += _linkage(design)
     found += _conditions(recipe, design)
     return found
@@ -86,12 +88,14 @@ def _linkage(design: Design) -> list[Margin]:
 def _conditions(recipe: Recipe, design: Design) -> list[Margin]:
     if not design.contours:
         return []
-    follower = design.exact.gauge
-    unit = "deg/mm" if follower.unit == "deg" else ""
-    condition = follower.motion_limit(SMALL) / SMALL
+    factors = []
+    for name, gauge in design.exact.gauges.items():
+        unit, what = (
+            "deg/mm" if gauge.unit == "deg" else "",
+            f"{name} error of the follower by that of the profile".strip(),
+        )
+        factors.append(Margin("motion-condition", gauge.motion_limit(SMALL) / SMALL, unit, what, True))
     size = max(contour.size for _, contour in design.contours)
     precision = recipe.export.tolerance / (EPS * size)
-    return [
-        Margin("motion-condition", condition, unit, "error of the follower by that of the profile", True),
-        Margin("precision", precision, "", "tolerance over the rounding of the contour's coordinates; 64 at least"),
-    ]
+    what = "tolerance over the rounding of the contour's coordinates; 64 at least"
+    return [*factors, Margin("precision", precision, "", what)]

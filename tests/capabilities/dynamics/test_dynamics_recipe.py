@@ -323,6 +323,38 @@ def test_what_has_no_dynamics_is_refused_at_its_field(train: str, cam: str, mess
     assert error.line > 1
 
 
+ROUND = "cam: {kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}, motion: {formula: 5*sin(t)**2}}\n"
+STIFF = "dynamics: {mass: 1.0e-30, stiffness: 1.0e5, preload: 1, rpm: 300}\n"
+SOFT = "dynamics: {mass: 1, stiffness: 1.0e-30, preload: 1, rpm: 300}\n"
+SLOW = "dynamics: {mass: 1, stiffness: 1.0e5, damping: 2, preload: 1, rpm: 1.0e-30}\n"
+HIGH = "rounding does not tell it from a whole multiple"
+LOW = "nothing holds the follower to the cam"
+
+
+@pytest.mark.parametrize(
+    ("train", "message", "change"),
+    [
+        (STIFF, f"1.00658424e+16 times the shaft's, and {HIGH}", ("stiffness: 1.0e5, ", "")),
+        (STIFF.replace("preload: 1,", "preload: 1.0e-30,"), HIGH, ("stiffness: 1.0e5, ", "")),
+        (SLOW, HIGH, ("stiffness: 1.0e5, damping: 2, ", "")),
+        (SLOW, HIGH, ("rpm: 1.0e-30", "rpm: 300")),
+        (SOFT, f"3.18309886e-17 times the shaft's, so that {LOW}", ("1.0e-30", "{}")),
+        (SOFT.replace("mass: 1", "mass: 7"), LOW, ("1.0e-30", "{}")),
+    ],
+)
+def test_a_train_at_the_edge_of_arithmetic_gets_its_reason(train: str, message: str, change: tuple[str, str]) -> None:
+    """No resonance is blamed where none is; what the message says to do lets the train be found."""
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe(train, ROUND))
+    said = str(caught.value)
+    assert message in said
+    before, after = change
+    if after == "{}":
+        after = said.rpartition("give a stiffness above ")[2]
+    report = pipeline.check(recipe(train.replace(before, after), ROUND)).report
+    assert {"dynamics", "forces"} & report.keys()
+
+
 @pytest.mark.parametrize("stiffness", ["2.0e5", "2.1e5", "2.2e5", "2.3e5"])
 def test_too_much_damping_is_told_with_what_will_do(stiffness: str) -> None:
     train = TRAIN.replace("2.0e5", stiffness)

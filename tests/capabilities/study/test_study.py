@@ -109,6 +109,16 @@ def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
     assert not rung.failed
 
 
+def test_a_study_of_two_discs_says_of_which_a_figure_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = str(RECIPES / "conjugate-stem.yaml")
+    assert main.main(["study", recipe, "--form", "arcs", "--patience", "0", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "errors are the greatest, pieces, bytes and seconds the sums of disc 1 and disc 2\n" in said
+    for name in ("undercut", "pressure-angle", "wall", "motion-condition"):
+        rows = [line for line in said.splitlines() if line.startswith(f"{name} ")]
+        assert [disc in row for disc, row in zip(("disc 1", "disc 2"), rows, strict=True)] == [True, True], name
+
+
 def test_margins_of_a_four_bar() -> None:
     found = named("as-figure-9-2a")
     assert found["binding"].value == pytest.approx(51.5953, abs=1e-3)
