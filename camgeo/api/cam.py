@@ -42,6 +42,12 @@ def _judge(
     return pipeline.judged(recipe, paths, tolerance=tolerance, units=units, gap=gap)
 
 
+def _show(
+    recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
+) -> tuple[dict[str, Any], str]:
+    return pipeline.judged_and_shown(recipe, paths, tolerance=tolerance, units=units, gap=gap)
+
+
 def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None) -> str:
     from camgeo.report.failure import failure
 
@@ -66,6 +72,7 @@ ROOT = Root(
     export=_export,
     check=_check,
     judge=_judge,
+    show=_show,
     explain=_explain,
     foresee=_foresee,
 )

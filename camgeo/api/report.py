@@ -72,13 +72,14 @@ class Report(Mapping[str, JSON]):
     """The report on a recipe and its files; as a mapping it is what report.json holds: `dict(report)`, `report["ok"]`.
 
     Values are in the recipe's units. `path` is the folder of the files, `<name>.rejected` where a check failed; None
-    where files were judged and none kept.
+    where files were judged and none kept. `page` is the HTML page of files that `verify` was asked to show.
     """
 
     recipe: Order
     _document: dict[str, Any] = field(repr=False)
     path: Path | None = None
     _paths: tuple[Path, ...] = field(default=(), repr=False)
+    page: str | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, object]:
         """Leave out of a pickle what can be made again."""

@@ -77,16 +77,18 @@ def verify(
     tolerance: float | None = None,
     units: Units | None = None,
     gap: float | None = None,
+    page: bool = False,
     **options: bool,
 ) -> Report:
     """Judge drawings, solids and milling programs of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
     its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
-    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. `options` as in
-    `export`. Raises RecipeErrors where there is no such cam, CallError for what is no file of a known kind and a gap
-    that is too wide, UnitsError where a file states another unit than `units`, SurroundingsError where a library is
-    missing. A file that cannot be read raises nothing: that is a check that fails.
+    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. With `page` the
+    report has the page that shows the files, `Report.page`. `options` as in `export`. Raises RecipeErrors where there
+    is no such cam, CallError for what is no file of a known kind and a gap that is too wide, UnitsError where a file
+    states another unit than `units`, SurroundingsError where a library is missing. A file that cannot be read raises
+    nothing: that is a check that fails.
     """
     from kin.read.formats import suffixes
 
@@ -96,6 +98,7 @@ def verify(
     wide = None if gap is None else number_of("gap", gap)
     if units is not None:
         is_a("units", units, str, "a str")
+    is_a("page", page, bool, "a bool")
     used = _using("verify", recipe, options)
     told = {path: _no_file(path) for path in paths}
     found = [path for path in paths if not told[path]]
@@ -119,8 +122,13 @@ def verify(
     within = None if within is None else within * recipe.mm
     wide = None if wide is None else wide * recipe.mm
     unit = None if units is None else UNIT_MM[units]
-    report = root_of(used).judge(used, paths, within, unit, wide)
-    return _told(Report(recipe, report, None, tuple(paths)))
+    kind = root_of(used)
+    if not page:
+        return _told(Report(recipe, kind.judge(used, paths, within, unit, wide), None, tuple(paths)))
+    if kind.show is None:
+        raise CallError(f"{recipe.name}: a page shows the files of one cam; give {kind.instead}, or leave page out")
+    report, text = kind.show(used, paths, within, unit, wide)
+    return _told(Report(recipe, report, None, tuple(paths), page=text))
 
 
 def _using(function: str, recipe: Order, options: Mapping[str, bool]) -> Order:

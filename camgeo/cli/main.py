@@ -104,6 +104,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     text = "join ends of a drawing this near, at most the tolerance; added to the errors of contour and motion"
     verify.add_argument("--gap", type=_length, metavar="G", help=text)
+    text = "a new file for the page that shows the files, with their errors round the contour"
+    verify.add_argument("--page", type=name_of, metavar="HTML", help=text)
     for name, text in registry.options().items():
         verify.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
@@ -302,6 +304,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
+    from camgeo.cli.new_file import demand_new, write_new
     from camgeo.cli.progress import Progress
     from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.loading import load_order
@@ -315,12 +318,17 @@ def _verify(arguments: argparse.Namespace) -> int:
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
         options = {name: getattr(arguments, name) for name in registry.options()}
+        demand_new(arguments.page)
+        shown = arguments.page is not None
         progress = Progress(recipe.name)
         progress("judge")
         try:
-            report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, **options))
+            found = verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, page=shown, **options)
         finally:
             progress.clear()
+        report = dict(found)
+        if found.page is not None:
+            write_new({arguments.page: found.page})
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:
@@ -345,6 +353,8 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 def _new(arguments: argparse.Namespace) -> int:
     """Print a starter recipe, or write it where no file is yet; print the kinds without one, or for a kind of cam."""
+    from camgeo.cli.new_file import write_new
+    from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.starter import STARTERS, starter, starters_for
 
     kind: str | None = arguments.kind
@@ -361,13 +371,12 @@ def _new(arguments: argparse.Namespace) -> int:
         say(text.removesuffix("\n"))
         return OK
     try:
-        with open(arguments.file, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
-            stream.write(text)
-    except FileExistsError:
-        _complain(f"{escaped(arguments.file)} exists already and is left as it is")
+        write_new({arguments.file: text})
+    except CallError as error:
+        _complain(str(error))
         return WRONG
-    except OSError as error:
-        _complain(f"{escaped(arguments.file)}: {error.strerror}")
+    except SurroundingsError as error:
+        _complain(str(error))
         return SURROUNDINGS
     return OK
 

@@ -117,13 +117,38 @@ def judged(
     `units`, mm, is that of files that state none; raises UnitsError where one states another. Ends in drawings within
     `gap`, mm, are joined; CallError for one above the tolerance of a drawing.
     """
+    _, findings = _judged(recipe, paths, (tolerance, units, gap), Clock())
+    return document(recipe, findings)
+
+
+def judged_and_shown(
+    recipe: Recipe,
+    paths: list[Path],
+    *,
+    tolerance: float | None = None,
+    units: float | None = None,
+    gap: float | None = None,
+) -> tuple[dict[str, Any], str]:
+    """Report on files as `judged` does, and give the page that shows them, with their errors round the contour."""
+    from camgeo.report.page.page import page
+
+    clock = Clock()
+    design, findings = _judged(recipe, paths, (tolerance, units, gap), clock)
+    report = document(recipe, findings)
+    return report, page(recipe, _content(recipe, design, findings, clock), report)
+
+
+def _judged(
+    recipe: Recipe, paths: list[Path], held: tuple[float | None, float | None, float | None], clock: Clock
+) -> tuple[Design, Findings]:
+    """Everything that is found of files of any origin, by tolerance, unit and gap."""
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
     from kin.judge.together import DiscFile, verify_set
     from kin.read.formats import FORMATS
 
-    clock = Clock()
+    tolerance, units, gap = held
     _demand(recipe)
     design = designed(recipe, clock)
     checks, results = list(design.checks), dict[int, FileResult]()
@@ -151,7 +176,7 @@ def judged(
     files = [results[place] for place in sorted(results)]
     for result in _looked(recipe, design, files, checks, clock):
         checks, skipped = [*checks, *result.checks], [*skipped, *result.skipped]
-    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped)))
+    return design, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped))
 
 
 def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:

@@ -46,6 +46,7 @@ class Root(Generic[R]):
     export   writes and judges files: (recipe, folder, kinds of files or none for all, what hears of stages)
     check    makes and judges all files, and keeps none: (recipe, what hears of stages)
     judge    reports on files of any origin: (recipe, paths, tolerance, unit of files that state none, gap)
+    show     reports likewise, and gives the page that shows the files; None where there is none
     explain  tells a failed check of a report over several lines: (check, report, recipe, name of the recipe's file)
     foresee  checks to come
     instead  what to give a command that takes recipes of one cam alone
@@ -59,6 +60,7 @@ class Root(Generic[R]):
     judge: Callable[[R, list[Path], float | None, float | None, float | None], dict[str, Any]]
     explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
     foresee: Callable[[R], Sequence[Foreseen]]
+    show: Callable[[R, list[Path], float | None, float | None, float | None], tuple[dict[str, Any], str]] | None = None
     instead: str = ""
 
 

@@ -100,6 +100,10 @@ class Contour(Pieces):
         """Return the contour enlarged about the origin by a positive factor."""
         return Contour.from_pieces(self.enlarged(factor))
 
+    def moved(self, x: float, y: float) -> Contour:
+        """Return the contour moved by a distance along x and along y, mm."""
+        return Contour.from_pieces(self.shifted(x, y))
+
     def turned(self, angle: float) -> Contour:
         """Return the contour turned counter-clockwise about the origin by an angle, rad."""
         return Contour.from_pieces(self.rotated(angle))

@@ -10,7 +10,7 @@ import numpy as np
 from kin.contour.arcs import unit
 from kin.contour.bezier import Beziers
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -199,6 +199,17 @@ class Pieces:
             sweep=self.sweep,
             curve=self.curve,
             beziers=Beziers(self.beziers.control * factor, self.beziers.weight),
+        )
+
+    def shifted(self, x: float, y: float) -> Pieces:
+        """Return the pieces moved by a distance along x and along y, mm."""
+        by = np.array([x, y])
+        return replace(
+            self,
+            start=self.start + by,
+            end=self.end + by,
+            centre=np.where((self.kind == ARC)[:, None], self.centre + by, 0.0),
+            beziers=Beziers(self.beziers.control + by, self.beziers.weight),
         )
 
     def rotated(self, angle: float) -> Pieces:

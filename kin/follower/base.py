@@ -139,6 +139,15 @@ class Follower(ABC):
     def drives(self, contour: Contour) -> Sequence[Excitation]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
 
+    @abstractmethod
+    def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
+        """Pressure angle at contact 1 and the contour's radius of curvature there, (n,) each, at shaft angles phi (n,).
+
+        The angle, rad, is that from the contour's outward normal counter-clockwise to the way in which the touch
+        travels outwards: above 0 where the cam drives a rise. The radius, mm, is 0 at a corner, negative in a hollow
+        and infinite on a line.
+        """
+
     def resting(self, contour: Contour) -> list[Shifted]:
         """Position, metres or radians, with each of its contacts resting on a contour."""
         each = zip(self.contacts, self.drives(contour), strict=True)

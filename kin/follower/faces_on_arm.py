@@ -203,6 +203,14 @@ class _OnArm(Moved):
         bearing = self.bearing(contour)
         return [OfArmFace(face, bearing, level) for face, level in zip(self.faces, self.levels, strict=True)]
 
+    def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
+        """See `Follower`: the way of the place that is touched stands across the line to it from the pivot."""
+        bearing, face = self.bearing(contour), self.faces[0]
+        theta = face.touch(bearing, phi)[0]
+        q, slope, bend = bearing.derivatives(theta, bearing.find(theta))
+        along = np.sqrt(face.pivot**2 - q * q) - face.side * slope
+        return -face.side * np.arctan2(face.out, along), q + face.out + bend
+
     def _rows(self, bearing: Bearing, i: int, phi: Array, middle: Array | None = None) -> Array:
         """Position and two derivatives by phi, (3, n), with face i resting; `middle` as in `ArmFace.touch`."""
         face, one = self.faces[i], self.contacts[i]

@@ -115,6 +115,12 @@ class FlatFace(Follower):
         bearing = bearing_of(contour)
         return [OfFace(bearing, self.tilt + one.turned, self._share) for one in self.contacts]
 
+    def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
+        """See `Follower`: the angle is that at which the face stands askew, whatever the contour is."""
+        bearing, theta = bearing_of(contour), phi + self.ahead
+        q, _, bend = bearing.derivatives(theta, bearing.find(theta))
+        return np.full(phi.shape, -self.tilt), q + bend
+
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)

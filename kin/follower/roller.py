@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from kin.contour.arcs import left, right
+from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
@@ -92,6 +92,18 @@ class OfRoller:
         rows: Array = guide.si * np.stack([position, *guide.rates(angle, x, tangent, met.curvature)])
         return rows
 
+    def pressed(self, phi: Array) -> tuple[Array, Array]:
+        """Pressure angle, rad, and radius of curvature of the path of the roller's centre, mm, (n,) each."""
+        angle = phi + self.turned
+        r, piece = _touched(self.obstacle, self.guide, phi, self.turned)
+        met = self.obstacle.take(piece)
+        position = self.guide.position(r)
+        outward = right(met.tangent) + met.curvature[:, None] * (self.guide.centre(angle, position) - met.start)
+        across, _ = self.guide.along(angle, position)
+        with np.errstate(divide="ignore"):
+            radius = 1.0 / met.curvature
+        return np.arctan2(cross(outward, across), dot(outward, across)), radius
+
 
 @dataclass(frozen=True, eq=False)
 class _Rollers(Moved):
@@ -119,6 +131,11 @@ class _Rollers(Moved):
         obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)
         each = zip(self.contacts, self.guides, strict=True)
         return [OfRoller(obstacle, guide, one.turned) for one, guide in each]
+
+    def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
+        """See `Follower`."""
+        pressure, radius = self.drives(contour)[0].pressed(phi)
+        return pressure, radius - self.radius
 
     def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
         chain = contour.as_arcs(*spline)[0]

@@ -73,10 +73,11 @@ WRONG: tuple[Any, ...] = (
 )
 
 
-def surface() -> Functions:
+def surface(folder: Path) -> Functions:
     """Every public function with arguments that do, but for those of results, which take none or other records."""
     recipe = camgeo.load(TEXT)
-    design, report = camgeo.design(recipe), camgeo.check(recipe)
+    design, report = camgeo.design(recipe), camgeo.export(recipe, folder)
+    drawing = folder / "small" / "small.dxf"
     return {
         "load": (camgeo.load, {"source": TEXT}),
         "design": (camgeo.design, {"recipe": recipe}),
@@ -85,6 +86,11 @@ def surface() -> Functions:
         "verify": (camgeo.verify, {"recipe": recipe, "file": "a.dxf", "tolerance": 0.1, "units": "mm"}),
         "laws": (camgeo.laws, {}),
         "search": (camgeo.search, {"recipe": camgeo.load(SEARCHED), "out": "out", "jobs": 1, "progress": None}),
+        "follow": (
+            camgeo.follow,
+            {"file": drawing, "roller": 3.0, "flat": False, "arm": None, "at": (0.0, 0.0), "steps": 36},
+        ),
+        "Followed.recipe": (camgeo.follow(drawing, flat=True).recipe, {"table": "lift.csv"}),  # needs: follow
         "Law": (camgeo.laws()["cycloidal"].__call__, {"u": 0.5, "derivative": 1}),
         "Recipe.replace": (recipe.replace, {"path": "name", "value": "other"}),
         "Recipe.save": (recipe.save, {"path": "saved.yaml"}),
@@ -118,8 +124,8 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def functions() -> Functions:
-    return surface()
+def functions(tmp_path_factory: pytest.TempPathFactory) -> Functions:
+    return surface(tmp_path_factory.mktemp("made"))
 
 
 def called(function: Callable[..., object], given: dict[str, object]) -> None:

@@ -31,7 +31,7 @@ def told(step: Any, *arguments: Any) -> Any:
 def exported(path: Path) -> dict[str, Any]:
     begin = time.perf_counter()
     report = camgeo.export(path, OUT)
-    return {"seconds": time.perf_counter() - begin, "report": dict(report), "figures": figures(path)}
+    return {"seconds": time.perf_counter() - begin, "report": json.loads(report.to_json()), "figures": figures(path)}
 
 
 def figures(path: Path) -> dict[str, float | None]:

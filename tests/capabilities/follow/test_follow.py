@@ -1,0 +1,223 @@
+"""The motion of a contour without a recipe: against the laws that contours were made for, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from support.cases import few
+from support.heavy import ezdxf
+from support.places import RECIPES
+
+import camgeo
+from camgeo.cli.exit_status import OK, WRONG
+from camgeo.cli.main import main
+from kin.follower.measured import measured
+from kin.law.contacts import Contact
+from kin.read.files import read_drawing
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FOLLOWERS: dict[str, dict[str, Any]] = {
+    "disc-roller": {"roller": 9.0, "offset": 10.0},
+    "disc-arm": {"roller": 8.0, "arm": (80.0, 65.0)},
+    "disc-flat": {"flat": True},
+    "disc-knife-edge": {"roller": 0.0},
+}
+
+
+@pytest.fixture(scope="module")
+def drawings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    out = tmp_path_factory.mktemp("drawings")
+    found = {}
+    for name in FOLLOWERS:
+        recipe = camgeo.load(RECIPES / f"{name}.yaml").replace({"export.files": ["dxf"], "export.tolerance": 1e-5})
+        report = camgeo.export(recipe, out)
+        assert report.path is not None
+        found[name] = report.path / f"{name}.dxf"
+    return found
+
+
+def asked(name: str) -> dict[str, Any]:
+    return FOLLOWERS[name] | {"rotation": camgeo.load(RECIPES / f"{name}.yaml").rotation}
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_the_motion_is_that_of_the_law(drawings: dict[str, Path], name: str) -> None:
+    """Within what a contour that is 1e-5 mm off gives a follower, at pressure angles below 40 degrees."""
+    followed = camgeo.follow(drawings[name], **asked(name))
+    design = camgeo.design(RECIPES / f"{name}.yaml")
+    law = design.motion(followed.theta)
+    scale = 1.0 if followed.unit == "mm" else 65.0
+    lift = followed.position - followed.least[0]
+    np.testing.assert_allclose(scale * lift, scale * (law - law.min()), atol=2e-5)
+    speed = design.motion(followed.theta, derivative=1)
+    np.testing.assert_allclose(scale * followed.velocity, scale * speed, atol=0.02)
+    pressure = design.exact.exact.surfaces[0].pressure(followed.theta)
+    np.testing.assert_allclose(followed.pressure_angle, pressure, atol=1e-3)
+    assert followed.lift == pytest.approx(float(np.ptp(law)), abs=2e-5)
+    text = design.recipe.text
+    assert followed.base_radius == pytest.approx(float(text.split("base_radius: ")[1].split()[0]), abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["disc-arm-flat", "disc-shoe"])
+def test_pressure_angles_are_those_of_the_exact_cam(tmp_path: Path, name: str) -> None:
+    """Of a face that stands nearer the shaft than its pivot's parallel, and of a shoe."""
+    recipe = camgeo.load(RECIPES / f"{name}.yaml")
+    exact = camgeo.design(recipe).exact
+    report = camgeo.export(recipe.replace({"export.files": ["dxf"], "export.tolerance": 1e-5}), tmp_path)
+    assert report.path is not None
+    contour = read_drawing(report.path / f"{name}.dxf").contour
+    contour = contour.mirrored() if recipe.rotation == "ccw" else contour
+    contact = exact.follower.contacts[0]
+    motion = measured(contour, [Contact(contact.guide, contact.touch)], 360)
+    np.testing.assert_allclose(motion.pressure, exact.exact.surfaces[0].pressure(motion.phi), atol=2e-3)
+
+
+def test_dwells_are_found_and_noses_are_none(drawings: dict[str, Path]) -> None:
+    rests = camgeo.follow(drawings["disc-roller"], **asked("disc-roller")).rests
+    assert len(rests) == 2
+    for rest, (begin, end) in zip(rests, [(100.0, 140.0), (280.0, 360.0)], strict=True):
+        assert math.degrees(rest.begin) == pytest.approx(begin, abs=4.0)
+        assert math.degrees(rest.end) == pytest.approx(end, abs=4.0)
+        assert rest.flatness <= 0.01
+    assert camgeo.follow(drawings["disc-knife-edge"], **asked("disc-knife-edge"), reading=0.05).rests == ()
+
+
+def polygon(path: Path, points: np.ndarray[Any, Any], *, unit: int = 4) -> Path:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = unit
+    document.modelspace().add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "0"})
+    document.saveas(path)
+    return path
+
+
+def circle(count: int, radius: float, middle: tuple[float, float]) -> np.ndarray[Any, Any]:
+    angle = 2.0 * np.pi * np.arange(count) / count
+    return np.column_stack((middle[0] + radius * np.cos(angle), middle[1] + radius * np.sin(angle)))
+
+
+def test_a_polygon_of_few_points_comes_near_its_law(tmp_path: Path) -> None:
+    """240 points of the exact contour of a roller's cam: a chord lies 0.005 mm within it."""
+    recipe = camgeo.load(RECIPES / "disc-roller.yaml")
+    design = camgeo.design(recipe)
+    path = polygon(tmp_path / "points.dxf", design.contour(240))
+    followed = camgeo.follow(path, **asked("disc-roller"))
+    law = design.motion(followed.theta)
+    error = followed.position - followed.least[0] - law
+    assert 1e-4 < float(np.abs(error - error.mean()).max()) < 0.012
+
+
+def test_an_eccentric_circle_by_hand(tmp_path: Path) -> None:
+    """A knife edge, a flat face and a yoke on a circle of radius 20 about a point 5 mm from the shaft."""
+    path = tmp_path / "eccentric.dxf"
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 4
+    document.modelspace().add_circle((5.0, 0.0), 20.0, dxfattribs={"layer": "0"})
+    document.modelspace().add_circle((0.0, 0.0), 6.0, dxfattribs={"layer": "0"})
+    document.saveas(path)
+    flat = camgeo.follow(path, flat=True, yoke=True)
+    np.testing.assert_allclose(flat.position, 20.0 + 5.0 * np.cos(flat.theta), atol=1e-12)
+    np.testing.assert_allclose(flat.velocity, -5.0 * np.sin(flat.theta), atol=1e-12)
+    np.testing.assert_allclose(flat.acceleration, -5.0 * np.cos(flat.theta), atol=1e-12)
+    np.testing.assert_allclose(flat.radius, 20.0, atol=1e-12)
+    assert flat.breadth == pytest.approx((40.0, 40.0), abs=1e-12)
+    assert (flat.lift, flat.bore) == pytest.approx((10.0, 12.0), abs=1e-12)
+    edge = camgeo.follow(path, roller=0.0)
+    reach = 5.0 * np.cos(edge.theta) + np.sqrt(400.0 - 25.0 * np.sin(edge.theta) ** 2)
+    np.testing.assert_allclose(edge.position, reach, atol=1e-12)
+    roller = camgeo.follow(path, roller=3.0)
+    np.testing.assert_allclose(
+        roller.position, 5.0 * np.cos(edge.theta) + np.sqrt(529.0 - 25.0 * np.sin(edge.theta) ** 2)
+    )
+    np.testing.assert_allclose(roller.radius, 20.0, atol=1e-9)
+    np.testing.assert_allclose(np.sin(roller.pressure_angle), -5.0 * np.sin(roller.theta) / 23.0, atol=1e-12)
+
+
+def test_the_shaft_stands_where_the_call_says(tmp_path: Path) -> None:
+    moved = polygon(tmp_path / "moved.dxf", circle(720, 20.0, (105.0, 40.0)))
+    with pytest.raises(camgeo.CallError, match="no closed contour goes round the shaft at 0, 0 mm; give at"):
+        camgeo.follow(moved, flat=True)
+    followed = camgeo.follow(moved, flat=True, at=(100.0, 40.0))
+    np.testing.assert_allclose(followed.position, 20.0 + 5.0 * np.cos(followed.theta), atol=2e-4)
+
+
+@pytest.mark.parametrize("name", few([*FOLLOWERS], 2))
+def test_its_recipe_makes_the_file_again(drawings: dict[str, Path], tmp_path: Path, name: str, capsys) -> None:
+    """Within the reading, by the judge; and a page shows how far off the file is all round."""
+    words = {"disc-roller": "--roller 9 --offset 10", "disc-arm": "--roller 8 --arm 80,65", "disc-flat": "--flat"}
+    call = ["follow", str(drawings[name]), *words.get(name, "--roller 0").split()]
+    call += ["--rotation", camgeo.load(RECIPES / f"{name}.yaml").rotation, "--reading", "0.002"]
+    files = {key: tmp_path / f"{name}.{end}" for key, end in {"recipe": "yaml", "page": "html"}.items()}
+    files["table"] = tmp_path / "turn.csv"
+    for key, path in files.items():
+        call += [f"--{key}", str(path)]
+    assert main(call) == OK, capsys.readouterr()
+    assert "lift" in capsys.readouterr().out
+    report = camgeo.verify(files["recipe"], drawings[name], tolerance=0.006)
+    assert [check.name for check in report.checks if not check.ok and check.name not in {"bore", "holes"}] == []
+    assert "Error of the files round the contour" in files["page"].read_text("utf-8")
+    head, first = files["table"].read_text("utf-8").splitlines()[:2]
+    assert head.startswith("shaft_deg,position_")
+    assert first.startswith("0,")
+    assert main(call) == WRONG
+    assert "exists already and is left as it is" in capsys.readouterr().err
+
+
+def test_as_json(drawings: dict[str, Path], capsys) -> None:
+    assert main(["follow", str(drawings["disc-flat"]), "--flat", "--yoke", "--json"]) == OK
+    found = json.loads(capsys.readouterr().out)
+    assert found["lift"] == pytest.approx(12.0, abs=1e-4)
+    assert found["breadth"][1] == pytest.approx(72.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ({}, "a follower has a roller, of radius 0 for a knife edge, or is flat: give one of both"),
+        ({"roller": 1.0, "flat": True}, "give one of both"),
+        ({"roller": -1.0}, "a roller has a radius of 0 or above, not -1.0; 0 is a knife edge"),
+        ({"roller": 3.0, "arm": 80.0}, "give arm as pivot distance and length, 80,65"),
+        ({"flat": True, "arm": (80.0, 65.0)}, "give arm as the pivot's distance alone"),
+        ({"roller": 3.0, "arm": (80.0, 65.0), "offset": 1.0}, "an arm has no offset: leave one of them out"),
+        ({"roller": 3.0, "leading": True}, "only an arm leads: leave leading out, or give arm"),
+        ({"roller": 3.0, "yoke": True, "offset": 2.0}, "leave arm and offset out"),
+        ({"roller": 3.0, "arm": (80.0, 65.0, 3.0)}, "arm is the distance of its pivot"),
+        ({"roller": 3.0, "at": (1.0,)}, "at is the place of the shaft in the file"),
+        ({"roller": 3.0, "reading": 0.0}, "a reading is a length above 0"),
+        ({"roller": 3.0, "steps": 3}, "a turn is looked at in 36 to 100000 steps"),
+        ({"roller": 3.0, "units": "inch"}, "the file states its unit itself: leave units out"),
+        ({"roller": 3.0, "arm": (80.0, 20.0)}, "the roller does not touch the contour at"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(drawings: dict[str, Path], call: dict[str, Any], message: str) -> None:
+    with pytest.raises(camgeo.CallError) as refused:
+        camgeo.follow(drawings["disc-roller"], **call)
+    assert message in str(refused.value)
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    (tmp_path / "bad.dxf").write_text("nothing", encoding="utf-8")
+    (tmp_path / "table.csv").write_text("1,2\n", encoding="utf-8")
+    for name, message in {
+        "bad.dxf": "bad.dxf: ",
+        "table.csv": "no drawing and no solid: give one of .dxf, .svg",
+        "gone.dxf": "the file does not exist",
+    }.items():
+        with pytest.raises(camgeo.CallError) as refused:
+            camgeo.follow(tmp_path / name, roller=3.0)
+        assert message in str(refused.value)
+    unstated = polygon(tmp_path / "unstated.dxf", circle(360, 1.0, (0.25, 0.0)), unit=0)
+    with pytest.raises(camgeo.CallError, match="the drawing states no unit: give units"):
+        camgeo.follow(unstated, flat=True)
+    assert camgeo.follow(unstated, flat=True, units="inch").lift == pytest.approx(12.7, abs=1e-3)
+
+
+def test_a_recipe_of_a_yoke_is_refused(drawings: dict[str, Path]) -> None:
+    followed = camgeo.follow(drawings["disc-flat"], flat=True, yoke=True)
+    with pytest.raises(camgeo.CallError, match="a recipe is made of one contact: leave yoke out"):
+        followed.recipe("lift.csv")
