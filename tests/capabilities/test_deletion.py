@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 TESTS = ("tests/recipe", "tests/cli", "tests/report", "tests/docs", "tests/capabilities/sweep")
 
+DELETED = ("dynamics", "study", "sweep")  # the others' tests and pages are not marked yet
+
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     surroundings = {**os.environ, "PYTHONPATH": str(folder)}
@@ -27,7 +29,7 @@ def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["dynamics"])
+@pytest.mark.parametrize("name", DELETED)
 def test_without_a_capability_all_else_works(name: str, tmp_path: Path) -> None:
     folder = copy_without(name, tmp_path / "copy")
     assert not (folder / "camgeo" / "capabilities" / name).exists()
@@ -40,7 +42,7 @@ def test_without_a_capability_all_else_works(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["dynamics"])
+@pytest.mark.parametrize("name", DELETED)
 def test_its_words_are_unknown(name: str, tmp_path: Path) -> None:
     label = registry.labels()[name]
     folder = copy_without(name, tmp_path / "copy")

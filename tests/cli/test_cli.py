@@ -14,6 +14,7 @@ from support.starters import OF_CAMS
 
 from camgeo.cli.main import main
 from camgeo.recipe.starter import starter
+from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -243,17 +244,21 @@ def test_the_module_is_the_command() -> None:
     assert call.stderr.startswith("camgeo: no starter for 'nothing'; there is support, ")
 
 
+ADDED = [command for label in registry.labels().values() for command in label.commands]
 EMPTY = {
     "export, out": ["export", "{recipe}", "--out", ""],
     "check, out": ["check", "{recipe}", "--out", ""],
     "report, out": ["report", "{recipe}", "--out", ""],
+    # needs: study
     "study, out": ["study", "{recipe}", "--out", ""],
+    # needs: sweep
     "sweep, out": ["sweep", "{recipe}", "--out", ""],
+    # needs: sweep
     "sweep, scheduler": ["sweep", "{recipe}", "--scheduler", ""],
     "verify, file": ["verify", "{recipe}", ""],
     "new, file": ["new", "support", ""],
     "laws, picture": ["laws", "--picture", ""],
-    **{command: [command, ""] for command in ("export", "check", "report", "study", "sweep")},
+    **{command: [command, ""] for command in ("export", "check", "report", *ADDED)},
     "verify": ["verify", "", "x.dxf"],
     "watch": ["export", "--watch", ""],
 }
@@ -278,7 +283,13 @@ def test_a_starter_that_is_misspelled_names_the_near_one(capsys: pytest.CaptureF
     assert capsys.readouterr().err == "camgeo: no starter for 'disc-rollr'; did you mean disc-roller?\n"
 
 
-@pytest.mark.parametrize("call", [["report", "r.yaml", "--at"], ["study", "r.yaml", "--patience"]])
+UNDERSCORED = [
+    ["report", "r.yaml", "--at"],
+    ["study", "r.yaml", "--patience"],  # needs: study
+]
+
+
+@pytest.mark.parametrize("call", UNDERSCORED)
 def test_digits_with_an_underscore_are_no_number(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main([*call, "1_0"])

@@ -33,7 +33,6 @@ def up(self):
 entry._Interrupts.listen = up
 entry.main()
 """
-SWEEP = (RECIPES / "sweep-four-bar.yaml").read_text(encoding="utf-8")
 
 
 SWALLOWED = """
@@ -107,11 +106,12 @@ def test_several_recipes_at_any_moment(tmp_path: Path, jobs: str) -> None:
         assert_quiet(interrupted(["check", *paths, "--jobs", jobs], 0.02 * step))
 
 
+# needs: sweep
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     path = tmp_path / "many.yaml"
-    path.write_text(SWEEP, encoding="utf-8")
+    path.write_text((RECIPES / "sweep-four-bar.yaml").read_text(encoding="utf-8"), encoding="utf-8")
     status, said = interrupted(["sweep", str(path), "--out", str(tmp_path / "out"), "--jobs", jobs], 0.4)
     assert status == 130
     assert said.count("\n") == 1

@@ -169,11 +169,12 @@ def test_every_command_of_camgeo_is_known(capsys):
             assert words[1] in STARTERS or starters_for(words[1]), f"{page}: camgeo {shlex.join(words)}"
         seen.add(words[0])
     capsys.readouterr()
-    assert seen >= {"export", "check", "verify", "sweep", "study", "report", "new", "laws", "schema"}
+    added = [command for label in registry.labels().values() for command in label.commands]
+    assert seen >= {"export", "check", "verify", "report", "new", "laws", "schema", *added}
 
 
 def test_an_unknown_command_is_found(capsys):
-    for words in (["exprot"], ["exprot", "RECIPE"], ["export", "RECIPE", "--fast"], ["sweep", "RECIPE", "--jobs"]):
+    for words in (["exprot"], ["exprot", "RECIPE"], ["export", "RECIPE", "--fast"], ["export", "RECIPE", "--jobs"]):
         assert "error" in complaint(words, capsys)
     assert complaint(["export", "RECIPE...", "--jobs", "N"], capsys) == ""
 
@@ -194,7 +195,9 @@ def test_other_commands_name_what_is_there():
 def test_the_starters_that_pages_name_are_written(capsys):
     text = (ROOT / "docs" / "which-cam.md").read_text(encoding="utf-8")
     named = {
-        name for cell in re.findall(r"^\|.*\| `camgeo new (.*) \|$", text, re.MULTILINE) for name in cell.split("`, `")
+        name
+        for cell in re.findall(r"^\|.*\| `camgeo new (.*?) \|(?: <!-- .* -->)?$", text, re.MULTILINE)
+        for name in cell.split("`, `")
     }
     assert {name.rstrip("`") for name in named} == set(OF_CAMS)
     assert main(["new", "support"]) == 0

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camgeo.capabilities.sweep.keys import Sweep
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.schema.edit import with_values
@@ -173,22 +172,7 @@ def test_points_of_a_motion() -> None:
     assert load_text(carried, "a.yaml") == load_text(plain, "a.yaml")
 
 
-def test_a_sweep_varies_in_the_unit_of_its_field() -> None:
-    sweep = "sweep:\n  vary: {{{}}}\n  rank: size\n"
-    at = "'cam.shaft[0]': "
-    found = load_text(support("1 cm") + sweep.format(at + "{from: 1 cm, to: 0.75 in, steps: 4}"), "a.yaml").of(Sweep)
-    assert found is not None
-    assert (found.vary[0].low, found.vary[0].high) == (10.0, 19.05)
-    listed = load_text(support("1", "inch") + sweep.format(at + "[12.7 mm, 1]"), "a.yaml").of(Sweep)
-    assert listed is not None
-    assert listed.vary[0].values == (0.5, 1.0)
-    assert "'kg' is no unit of a length" in refusal(support("1") + sweep.format(at + "[1 kg]"))
-    unknown = refusal(support("1") + sweep.format("cam.shoft: [1 mm]"))
-    assert "unknown field" in unknown
-    assert "no unit" not in unknown
-
-
-def test_a_design_of_a_sweep_is_written_in_the_recipes_unit() -> None:
+def test_a_value_is_written_in_the_recipes_unit() -> None:
     text = with_values(support("12 mm", "inch"), {"cam.shaft[0]": 0.5})
     assert "shaft: [0.5, 4]" in text
     with pytest.raises(ValueError, match="no number at units"):

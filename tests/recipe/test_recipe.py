@@ -652,13 +652,13 @@ SUPPORT = "{kind: support, p: 9}"
         (SUPPORT, "{linkage: {kind: inverted-slider-crank, ground: 80, rocker: -1}}"),
         (SUPPORT, "{linkage: {kind: slider-crank, coupler: 70, offset: 5}, dwell: {at_least: 40}}"),
         (SUPPORT, "{linkage: {kind: slider-crank, coupler: 70, offset: 5, dyads: [{kind: rpr, point: [1, 2]}]}}"),
-        (SUPPORT, "{sweep: {vary: {}, rank: size}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: []}, rank: size}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: {from: 1}}, rank: size}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: volume}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, limits: {size: {}}}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, limits: {volume: {at_least: 1}}}}"),
-        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, refine: 'yes'}}"),
+        (SUPPORT, "{sweep: {vary: {}, rank: size}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: []}, rank: size}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: {from: 1}}, rank: size}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: volume}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, limits: {size: {}}}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, limits: {volume: {at_least: 1}}}}"),  # needs: sweep
+        (SUPPORT, "{sweep: {vary: {cam.x: [1]}, rank: size, refine: 'yes'}}"),  # needs: sweep
     ],
 )
 def test_the_json_schema_refuses_linkages_and_sweeps_that_load_refuses(body: str, more: str) -> None:

@@ -119,13 +119,12 @@ def test_a_dwell_may_be_told_without_a_check() -> None:
     assert found.dwell == DwellAsked(math.pi, None, "relative")
 
 
-@pytest.mark.parametrize("kind", ["four-bar", "inverted-slider-crank", "slider-crank", "sweep"])
+@pytest.mark.parametrize("kind", ["four-bar", "inverted-slider-crank", "slider-crank"])
 def test_starters_have_their_linkage(kind: str) -> None:
     found = recipe(starter(kind))
-    types = {FourBar: ("four-bar", "sweep"), InvertedSliderCrank: ("inverted-slider-crank",)}
+    types = {FourBar: ("four-bar",), InvertedSliderCrank: ("inverted-slider-crank",)}
     assert kind in types.get(type(found.linkage.loop), ("slider-crank",))
     assert found.dwell
-    assert ("sweep" in found.uses) == (kind == "sweep")
     assert all(" #" in line or "{from" in line for line in starter(kind).splitlines()[1:])
 
 
@@ -135,7 +134,7 @@ def test_starters_without_a_linkage_offer_no_keys_that_need_one(kind: str) -> No
     offered = {line.split(":")[0] for line in lines}
     assert not offered & {"# dwell", "  # output_error"}
     assert ("# linkage" in offered) == (kind in {"support", "constant-breadth"})
-    assert "# sweep" in offered
+    assert "# sweep" in offered  # needs: sweep
 
 
 # --- what is said about faults ----------------------------------------------------------------------------------------

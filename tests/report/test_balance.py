@@ -128,6 +128,7 @@ def test_limits_and_what_they_need() -> None:
         load_text(LOBE.replace("thickness: 14, ", ""), "r")
 
 
+# needs: sweep
 def test_sweep_ranks_by_mass(tmp_path, capsys) -> None:
     sweep = "sweep: {vary: {cam.base_radius: [18, 20, 22]}, rank: mass, keep: 3}\n"
     (tmp_path / "lobe.yaml").write_text(LOBE.replace("density: 7850", "density: 7850, bore: 37") + sweep)
