@@ -308,12 +308,11 @@ class CheckItem(pytest.Item):
     def _missing(self, foreseen: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
         from camgeo.checks.declared import CHECKS, MOTION
-        from camgeo.recipe.recipe import Recipe
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
 
         recipe = self.run.recipe
-        assert isinstance(recipe, Recipe)  # none is foreseen of another kind
+        assert recipe is not None
         for entry in report["skipped"]:
             if entry.get("missing") and entry["what"] == foreseen.file:
                 _fail(f"{foreseen}: not judged: {entry['why']}")
@@ -321,7 +320,7 @@ class CheckItem(pytest.Item):
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
-        if recipe.cam.undercut == "trim" and (
+        if recipe.trims and (
             foreseen.name == MOTION.name or (foreseen.name in CHECKS and CHECKS[foreseen.name].backlash)
         ):
             reason = (

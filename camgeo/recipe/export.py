@@ -195,8 +195,12 @@ def export_of(
     default: str = "[dxf]",
     *,
     variants: collections.abc.Sequence[Variant] = (),
+    unfit: collections.abc.Collection[str] = (),
 ) -> Field:
-    """Make the field of the files that are written, in these formats; `variants` add options to those of formats."""
+    """Make the field of the files that are written, in these formats.
+
+    `variants` add options to those of formats; `unfit` are formats that are known only to say what to do instead.
+    """
     options = Options(formats, variants)
     form = Form(
         "a list of files",
@@ -213,7 +217,7 @@ def export_of(
         Field(
             "files",
             Kind.OWN,
-            f"{', '.join(formats)}, or mappings such as {example}",
+            f"{', '.join(name for name in formats if name not in unfit)}, or mappings such as {example}",
             default=default,
             form=form,
         ),

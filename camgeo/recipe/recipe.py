@@ -86,6 +86,11 @@ class Order(Document):
         """The files of other recipes that this one is made of, each once; none of a cam."""
         return ()
 
+    @property
+    def trims(self) -> bool:
+        """Whether undercut is cut off, so that motion is lost and not judged."""
+        return False
+
     def field_of(self, request: FileRequest | None) -> str:
         """Give the path of a request; that of the list for one that does not stand there."""
         files = self.export.files
@@ -196,6 +201,11 @@ class Recipe(Order):
     def told_for(self, request: FileRequest) -> Recipe:
         """Give the recipe as one in the unit of a file."""
         return self.told_in(request.told_in(self.units))
+
+    @property
+    def trims(self) -> bool:
+        """Whether undercut is cut off."""
+        return self.cam.undercut == "trim"
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
         """Name the files of a request that hold the cam: one, or one for each of its discs."""

@@ -110,16 +110,18 @@ LOBE = "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8}, 
 SHAFT = "camshaft: {shaft: {diameter: 22, to: 30}, lobes: [{recipe: ../lobe.yaml, at: 0, z: 10, length: 10}]}\n"
 
 
-def test_a_camshaft_is_an_item_with_all_its_checks(project: Pytester) -> None:
-    """Its lobes' checks are told apart by the lobe; what fails is placed at the lobe in the recipe of the shaft."""
+def test_each_check_of_a_camshaft_is_an_item(project: Pytester) -> None:
+    """One for all lobes; what fails is told by the lobe, and placed at it in the recipe of the shaft."""
     add(project, "lobe", LOBE, ".")
     add(project, "shaft", SHAFT + "export: {tolerance: 0.01, files: [svg]}\n")
     shown = collected(project)
     assert "cams/shaft.yaml::recipe" in shown
+    assert "cams/shaft.yaml::pressure-angle" in shown
+    assert "cams/shaft.yaml::shaft" in shown
     run(project).assert_outcomes(passed=len(shown))
     add(project, "shaft", SHAFT.replace("22", "62"))
     result = run(project, "cams/shaft.yaml")
-    result.assert_outcomes(failed=1)
+    result.assert_outcomes(failed=1, passed=5, skipped=8)
     result.stdout.fnmatch_lines(
         ["shaft, lobe: 30 mm, at least 31 mm", "*recipe   cams/shaft.yaml:1:* camshaft.lobes[[]0[]].recipe"]
     )

@@ -110,6 +110,11 @@ class CamshaftRecipe(Order):
         """The recipes of its lobes, each once."""
         return tuple(dict.fromkeys(lobe.recipe.path for lobe in self.lobes))
 
+    @property
+    def trims(self) -> bool:
+        """Whether undercut of a lobe is cut off."""
+        return any(lobe.recipe.trims for lobe in self.lobes)
+
 
 # --- keys -------------------------------------------------------------------------------------------------------------
 
@@ -254,7 +259,7 @@ SHAFT = Table(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
         CAMSHAFT,
-        export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]"),
+        export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]", unfit=OF_A_LOBE),
         CORE.field("verify"),
     )
 )

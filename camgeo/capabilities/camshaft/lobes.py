@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.camshaft.events import event, stretches, valves_of
-from camgeo.capabilities.camshaft.keys import of_a_lobe
+from camgeo.capabilities.camshaft.keys import ROUNDING, of_a_lobe
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.recipe.part import THINNEST
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.expected_checks import Foreseen
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
@@ -162,6 +163,35 @@ def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[C
         own += _outside_shaft(recipe, lobe)
         checks += [replace(check, surface=lobe.lobe.name) for check in own]
     return checks
+
+
+OF_SOLID = ("watertight", "thickness", "phase", "contour", "motion", "position")
+"""Checks of every solid of a camshaft, those of lobes among them."""
+
+
+def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
+    """Tell the checks that are sure to come, each once whatever its lobes; raises kin.law.programme.IntentError."""
+    from camgeo.checks.declared import CHECKS, LIMIT
+    from camgeo.recipe.figures import FIGURES
+    from camgeo.synthesis.expected_checks import Foreseen, foreseen
+
+    found: dict[Foreseen, None] = {}
+    for lobe in recipe.lobes:
+        made = replace(lobe.made, export=replace(lobe.made.export, files=()))
+        for one in foreseen(made):
+            figure = one.name.startswith(LIMIT) and FIGURES[one.name.removeprefix(LIMIT)]
+            if figure.of == "design" if figure else not CHECKS.owner(one.name):  # a lobe's train does not run
+                found[one] = None
+    found[Foreseen("shaft")] = None
+    shaft, *journals = recipe.bars
+    taken = math.fsum(lobe.high - lobe.low for lobe in recipe.lobes)
+    rounds = ["journal"] if journals or shaft.high - shaft.low > taken + ROUNDING else []
+    rounds += ["bore"] if recipe.bore is not None else []
+    for request in recipe.export.files:
+        if request.format.solid and request.format.contour:
+            (name,) = recipe.filenames(request)
+            found |= dict.fromkeys(Foreseen(check, name) for check in (*OF_SOLID, *rounds, "volume"))
+    return tuple(found)
 
 
 def _outside_shaft(recipe: CamshaftRecipe, lobe: PlacedLobe) -> list[Check]:

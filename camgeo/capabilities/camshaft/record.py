@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.starter import Starter
     from camgeo.schema.fields import Table
     from camgeo.schema.yaml_source import Source
+    from camgeo.synthesis.expected_checks import Foreseen
 
 
 def _table() -> Table:
@@ -64,6 +65,12 @@ def _explain(check: dict[str, Any], _: dict[str, Any], recipe: CamshaftRecipe, s
     return failed(check, recipe, shown)
 
 
+def _foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
+    from camgeo.capabilities.camshaft.lobes import foresee
+
+    return foresee(recipe)
+
+
 def _starters() -> Mapping[str, Starter]:
     from camgeo.capabilities.camshaft.starter import STARTERS
 
@@ -78,7 +85,7 @@ ROOT = Root(
     check=_check,
     judge=_judge,
     explain=_explain,
-    foresee=lambda _: (),  # the item of the recipe itself has all its checks
+    foresee=_foresee,
     instead="the recipe of a lobe",
 )
 CAPABILITY = Capability(roots={"camshaft": ROOT}, starters=_starters)
