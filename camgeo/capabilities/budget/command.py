@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.cli.arguments import name_of
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, say, say_json
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `budget`")
+    text = "a drawing or a solid of the cam, on whose contour parts are simulated in place of the exact one"
+    parser.add_argument("file", nargs="?", type=name_of, metavar="FILE", help=text)
     parser.add_argument("--json", action="store_true", help="all figures, for machines")
 
 
@@ -21,15 +24,18 @@ def run(arguments: argparse.Namespace) -> int:
     """Work out one budget: 0 kept, 1 not kept or a wrong cam, 2 a wrong recipe, 3 the surroundings."""
     from camgeo.capabilities.budget.library import budget
     from camgeo.capabilities.budget.outcome import table
-    from camgeo.common.errors import SurroundingsError
+    from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
     try:
         recipe = load(arguments.recipe)
-        found = budget(recipe)
+        found = budget(recipe, arguments.file)
     except RecipeErrors as errors:
         complain(str(errors))
+        return WRONG
+    except CallError as error:
+        complain(f"camgeo: {error}")
         return WRONG
     except (SurroundingsError, OSError) as error:
         complain(f"camgeo: {error}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget
@@ -10,17 +11,20 @@ from camgeo.synthesis.design import designed
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from camgeo.capabilities.budget.outcome import Outcome
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
 
-def budget(recipe: Recipe) -> dict[str, Any]:
+def budget(recipe: Recipe, file: str | PathLike[str] | None = None) -> dict[str, Any]:
     """The budget of a recipe as plain data, in the recipe's unit and degrees; docs/budget.md names its keys.
 
-    Parts are made by chance within its tolerances, `runs` of them, and looked at by contact. `ok` is whether the budget
-    is kept. Raises RecipeErrors for a recipe without a budget, for one whose tolerances leave nothing for a free
-    dimension, and for a linkage that does not turn.
+    Parts are made by chance within its tolerances, `runs` of them, and looked at by contact on the exact contour, or on
+    that of a `file`. `ok` is whether the budget is kept. Raises RecipeErrors for a recipe without a budget, for one
+    whose tolerances leave nothing for a free dimension, and for a linkage that does not turn; CallError for a file that
+    holds no contour of the cam.
     """
     stated = recipe.of(Budget)
     if stated is None:
@@ -32,18 +36,23 @@ def budget(recipe: Recipe) -> dict[str, Any]:
     found = outcome(recipe, design, stated)
     entry = section(recipe, found)
     if stated.runs:
-        entry["parts"] = _parts(recipe, design, found)
+        entry["parts"] = _parts(recipe, design, found, None if file is None else Path(file))
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
 
 
-def _parts(recipe: Recipe, design: Design, found: Outcome) -> dict[str, Any]:
+def _parts(recipe: Recipe, design: Design, found: Outcome, file: Path | None) -> dict[str, Any]:
     """What a simulation says, or why there is none."""
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import looked_at, simulate
 
+    read = None
+    if file is not None:
+        from camgeo.capabilities.budget.read_contours import read_contours
+
+        read = read_contours(recipe, design, file)
     shaft = looked_at([worst.at for worst in found.sums.values()])
     try:
-        parts = simulate(recipe, design, found.budget, shaft)
+        parts = simulate(recipe, design, found.budget, shaft, read)
     except LostError as error:
         return {"runs": 0, "why": str(error)}
     rows: list[dict[str, Any]] = [
@@ -63,6 +72,7 @@ def _parts(recipe: Recipe, design: Design, found: Outcome) -> dict[str, Any]:
     return {
         "runs": parts.runs,
         "seed": parts.seed,
+        "file": None if file is None else file.name,
         "unit": told(recipe, 1.0)[1],
         "within": parts.within,
         "greatest": max(row["greatest"] for row in rows),

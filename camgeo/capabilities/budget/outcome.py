@@ -260,10 +260,11 @@ def _simulated(parts: dict[str, Any]) -> list[str]:
         return [f"  no parts were simulated: {parts['why']}"]
     worst, unit = parts["worst"], parts["unit"]
     agrees = "agrees" if worst["agrees"] else "does not agree"
+    where = "" if parts["file"] is None else f" on {parts['file']}"
     kept, greatest = f"{parts['within']:.2%} keep it", f"the greatest error is {parts['greatest']:.4g} {unit}"
     deviation = f"standard deviation at {worst['at_deg']:.4g} deg {worst['sd']:.4g} {unit}"
     return [
-        f"  of {parts['runs']:,} parts by contact {kept}, {greatest}",
+        f"  of {parts['runs']:,} parts by contact{where} {kept}, {greatest}",
         f"  {deviation}, which {agrees} with {worst['foreseen']:.4g} by the influences",
     ]
 

@@ -11,20 +11,23 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from camgeo.capabilities.budget.contact import LostError, Off, Place, positions
+from camgeo.capabilities.budget.contact import LostError, Metal, Off, Place, positions
 from camgeo.capabilities.budget.exact_metal import MOST_STEPS, SETTLED, ExactMetal
 from camgeo.capabilities.budget.influence import influence
+from camgeo.capabilities.budget.read_metal import read_metal
 from camgeo.capabilities.budget.sums import spread
-from camgeo.capabilities.budget.words import BORE, PROFILE
+from camgeo.capabilities.budget.words import BORE, PROFILE, WORDS
+from kin.follower.influence import bearing
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.capabilities.budget.influence import Influence
     from camgeo.capabilities.budget.keys import Budget
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
+    from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Complexes
 
 EVEN = 36  # even angles of a turn at which parts are looked at, besides the worst ones
@@ -75,11 +78,16 @@ def looked_at(worst: Sequence[float]) -> Array:
     return np.unique(np.append(np.linspace(0.0, TURN, EVEN, endpoint=False), worst))
 
 
-def simulate(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Parts:
-    """Make parts by chance at shaft angles (n,); raises LostError where one has no contact."""
+def simulate(
+    recipe: Recipe, design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None = None
+) -> Parts:
+    """Make parts by chance at shaft angles (n,), on the exact contours or on those `read` from a file, by surface.
+
+    Raises LostError where one has no contact.
+    """
     rng = np.random.default_rng(budget.seed)
     rows = influence(recipe, design, budget, shaft)
-    errors_of = errors_by_contact(recipe, design, budget, shaft)
+    errors_of = errors_by_contact(recipe, design, budget, shaft, read)
     blocks = []
     for begin in range(0, budget.runs, AT_ONCE):
         count = min(AT_ONCE, budget.runs - begin)
@@ -90,12 +98,16 @@ def simulate(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Pa
     return Parts(budget.runs, budget.seed, tuple(_spreads(rows, errors)), float(within))
 
 
-def errors_by_contact(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
+def errors_by_contact(
+    recipe: Recipe, design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None = None
+) -> Callable[[Sizes], Array]:
     """What sizes that are off make of the motion: errors (contacts, parts, n), mm or rad, at shaft angles.
 
-    After the angles stands the one at which the machine is set, if any. The errors raise LostError.
+    After the angles stands the one at which the machine is set, if any. `read` as of `simulate`. Raises LostError, as
+    the errors do.
     """
-    return _of_linkage(design, budget, shaft) if recipe.linkage else _of_follower(design, budget, shaft)
+    of_any = _of_linkage if recipe.linkage else _of_follower
+    return of_any(design, budget, rows_at(budget, shaft), read)
 
 
 def rows_at(budget: Budget, shaft: Array) -> Array:
@@ -155,9 +167,10 @@ class Drawn:
 # --- a follower -------------------------------------------------------------------------------------------------------
 
 
-def _of_follower(design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
-    angles = rows_at(budget, shaft)
-    places = places_of(design, angles, budget.guide or 0.0)
+def _of_follower(
+    design: Design, budget: Budget, angles: Array, read: Mapping[str, Contour] | None
+) -> Callable[[Sizes], Array]:
+    places = places_of(design, budget, angles, read)
     nominal = design.motion.travel(angles, 0)[0]
     several, discs = len(places), design.follower.arrangement.discs
     on_one_arm = several > 1 and places[0].contact.apart != 0.0
@@ -205,38 +218,54 @@ def offs(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Of
     return found
 
 
-def places_of(design: Design, shaft: Array, middle: float) -> list[Place]:
-    """Each contact of a follower at shaft angles (n,); raises LostError for a contour that is trimmed or not made."""
-    if design.trimmed or not design.contours:
-        raise LostError("parts are simulated on whole contours, and this one is trimmed, or a check forbids it")
-    contours = {surface.name: (surface.side, contour) for surface, contour in design.contours}
+def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None) -> list[Place]:
+    """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`.
+
+    Raises LostError for an exact contour that is trimmed or not made, and for a knife edge on one that was read.
+    """
+    if read is None and (design.trimmed or not design.contours):
+        raise LostError("parts are simulated on whole contours or on a file, and this contour is trimmed or forbidden")
     contacts = design.follower.contacts
-    position = design.motion.travel(shaft, 0)[0]
+    position = design.motion.travel(shaft, 1)
     parameters = list(design.motion.parameters(shaft, shaft).values())
     first = np.exp(1j * (shaft + contacts[0].turned))
-    eccentric = design.follower.offset
     places = []
     for i, contact in enumerate(contacts):
-        side, curve = contours[contact.surface]
-        if i < len(parameters):
-            parameter = parameters[i]
+        surface = next(surface for surface in design.exact.surfaces if surface.name == contact.surface)
+        if read is not None:
+            meant = bearing(contact, surface.side, shaft, position).point
+            metal: Metal = read_metal(contact, surface.side, read[contact.surface], meant, _wander(budget, meant))
+        elif i < len(parameters):
+            metal = ExactMetal(surface.curve, surface.side, parameters[i])
         else:  # opposite on one surface, or on one of its own, whose parameter is the shaft angle
-            parameter = shaft + (contact.turned if contact.surface == contacts[0].surface else 0.0)
-        metal = ExactMetal(curve, side, parameter)
-        places.append(Place(contact, metal, shaft, contact.own(position), first, eccentric, middle))
+            turned = contact.turned if contact.surface == contacts[0].surface else 0.0
+            metal = ExactMetal(surface.curve, surface.side, shaft + turned)
+        own = contact.own(position[0])
+        places.append(Place(contact, metal, shaft, own, first, design.follower.offset, budget.guide or 0.0))
     return places
+
+
+def _wander(budget: Budget, meant: Complexes) -> float:
+    """How far a contact wanders along the contour, about, mm: as far as all sizes together displace it."""
+    size = float(np.abs(meant).max())
+    return sum((tolerance or 0.0) * (size if WORDS[name].angle else 1.0) for name, tolerance in budget.tolerances)
 
 
 # --- a linkage --------------------------------------------------------------------------------------------------------
 
 
-def _of_linkage(design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes], Array]:
+def _of_linkage(
+    design: Design,
+    budget: Budget,  # noqa: ARG001 - one call for followers and linkages
+    angles: Array,
+    read: Mapping[str, Contour] | None,
+) -> Callable[[Sizes], Array]:
     """Errors of the output by the support function of the made cam in its frame, each loop closed anew."""
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
     loop, breadth, lift = mechanism.linkage, mechanism.breadth, mechanism.lift
-    angles = rows_at(budget, shaft)
+    contour = None if read is None else read[""]
     relative = mechanism.relative(angles)
     motion = mechanism.at(relative, 0)
     frame, nominal = motion.frame[0], motion.output[0]
@@ -254,7 +283,8 @@ def _of_linkage(design: Design, budget: Budget, shaft: Array) -> Callable[[Sizes
         def support(direction: Array, grown: Array) -> Array:
             """Distance from the shaft, mm, of the made cam's tangent across a direction in the cam's axes as meant."""
             inner = direction - turned
-            own = lift.derivatives(np.mod(inner, TURN).ravel(), 0)[0].reshape(inner.shape)
+            flat = np.mod(inner, TURN).ravel()
+            own = (lift.derivatives(flat, 0)[0] if contour is None else contour.support(flat).q).reshape(inner.shape)
             shifted: Array = (np.conj(bore) * np.exp(1j * inner)).real
             reach: Array = own + grown + shifted
             return reach

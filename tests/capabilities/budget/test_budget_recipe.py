@@ -151,7 +151,7 @@ def test_a_bore_with_a_class_is_round_as_any() -> None:
 
 
 def run(folder: Path, body: str, *words: str, cam: str = CAM) -> int:
-    (folder / "c.yaml").write_text(f"{cam}budget: {{{body}}}\n", encoding="utf-8")
+    (folder / "c.yaml").write_text(f"{cam}budget: {{{body}, runs: 100}}\n", encoding="utf-8")
     return main(["budget", str(folder / "c.yaml"), *words])
 
 

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from support.made_cases import CASES
 from support.places import ROOT
 
+import camgeo
 from camgeo.capabilities.budget.contact import LostError
 from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.library import budget as split
 from camgeo.capabilities.budget.parts import errors_by_contact, looked_at, simulate
+from camgeo.capabilities.budget.read_contours import read_contours
 from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
+from camgeo.cli.main import main
+from camgeo.common.errors import CallError
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 GUIDE = 120.0
 STEPS = np.array([-2.0, -1.0, 1.0, 2.0])  # five-point difference
@@ -43,6 +51,8 @@ FAMILIES = [
     "as-figure-12",
     "slider-crank",
 ]
+
+READ = ["disc-roller", "disc-ring", "disc-flat", "disc-arm", "disc-arm-flat", "groove-stem"]
 
 
 class Stepped:
@@ -110,6 +120,7 @@ def test_finite_errors() -> None:
     assert np.abs(errors - worked).max() < 1e-9
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_deviations_are_those_foreseen(name: str) -> None:
     recipe, design = of_recipe(name), design_of(name)
@@ -137,6 +148,56 @@ def test_the_same_seed_gives_the_same_parts_and_another_one_others() -> None:
     assert first == again
     assert first["worst"]["sd"] != other["worst"]["sd"]
     assert first["agrees"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Drawings of some cams, coarse: their errors are far above what a simulation may sink between points."""
+    folder = tmp_path_factory.mktemp("made")
+    for name in READ:
+        text = of_recipe(name).text.replace("tolerance: 0.001", "tolerance: 0.01")
+        camgeo.export(load_text(text, f"{name}.yaml"), folder, only=["dxf"])
+    return folder
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("name", READ)
+def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> None:
+    """Nothing off, the error by contact is the one that the judge finds of the file."""
+    recipe, design = of_recipe(name), design_of(name)
+    contours = read_contours(recipe, design, made / name / f"{name}.dxf")
+    errors_of = errors_by_contact(recipe, design, Budget(1.0, (("profile", 0.01),)), SHAFT, contours)
+    errors = errors_of(Stepped("", 0.0))[0, 0]
+    surface = design.exact.surfaces[0].name
+    judged = design.exact.gauges[surface].judge(contours[surface], SHAFT).motion
+    rms = np.sqrt((errors**2).mean())
+    assert abs((math.degrees(rms) if judged.unit == "deg" else rms) - judged.rms) < 2e-6
+
+
+def test_the_command_simulates_a_file(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "c.yaml"
+    text = (
+        of_recipe("disc-roller").text
+        + "budget: {permitted: 0.05, tolerances: {profile: 0.01, bore: 0.01}, runs: 500}\n"
+    )
+    path.write_text(text, encoding="utf-8")
+    assert main(["budget", str(path), str(made / "disc-roller" / "disc-roller.dxf")]) == 0
+    out = capsys.readouterr().out
+    assert "of 500 parts by contact on disc-roller.dxf" in out
+    assert "which agrees with" in out
+    assert main(["budget", str(path), str(path)]) == 2
+    assert "c.yaml" in capsys.readouterr().err
+    assert main(["budget", str(path), str(tmp_path / "none.dxf")]) == 2
+    assert "none.dxf" in capsys.readouterr().err
+
+
+def test_what_no_file_can_show_is_said(made: Path, tmp_path: Path) -> None:
+    drawing = made / "disc-roller" / "disc-roller.dxf"
+    with pytest.raises(CallError, match="several discs"):
+        read_contours(of_recipe("conjugate-stem"), design_of("conjugate-stem"), drawing)
+    (tmp_path / "a.dxf").write_text("no drawing", encoding="utf-8")
+    with pytest.raises(CallError, match=r"a\.dxf"):
+        read_contours(of_recipe("disc-roller"), design_of("disc-roller"), tmp_path / "a.dxf")
 
 
 def test_a_contour_that_is_trimmed_is_not_simulated() -> None:
