@@ -51,13 +51,13 @@ def test_its_words_are_unknown(name: str, tmp_path: Path) -> None:
     path = folder / "cam.yaml"
     for word in (*label.words, *label.roots):
         path.write_text(f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\n{word}: {{}}\n", encoding="utf-8")
-        assert f"{word}: unknown field" in run(folder, "-m", "camgeo", "check", str(path)).stderr
+        assert f"{word}: unknown key" in run(folder, "-m", "camgeo", "check", str(path)).stderr
     figures = registry.capability(name).figures if label.record else {}
     for figure in figures:
         path.write_text(
             f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\nlimits: {{{figure}: {{at_most: 1}}}}\n", encoding="utf-8"
         )
-        assert f"limits.{figure}: unknown" in run(folder, "-m", "camgeo", "check", str(path)).stderr
+        assert f"limits.{figure}: unknown figure" in run(folder, "-m", "camgeo", "check", str(path)).stderr
 
 
 def test_what_is_marked_goes() -> None:
