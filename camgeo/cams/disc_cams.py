@@ -64,7 +64,8 @@ class DiscCam(GuidedCam):
         return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
 
     def _turn(self) -> Motion:
-        return self.motion.motion(2.0 * math.pi, "motion", 1)
+        asked = self.motion.of_follower(Contact(self.guide, self.touch, self.datum), self.side)
+        return asked.motion(2.0 * math.pi, "motion", 1)
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the turn, or of the part of it that repeats."""

@@ -11,18 +11,21 @@ from abc import ABC, abstractmethod
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
 
+from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
 from camgeo.motions.segments import read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, join
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, join
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
+    from camgeo.motions.contour_motion import Drawn
     from camgeo.motions.segments import MotionSegment
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.sources.motion import Motion
     from kin.law.sources.table import Suspects
     from kin.law.sources.tabled import Rest
@@ -30,6 +33,7 @@ if TYPE_CHECKING:
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
 _ROUNDING = 1e-9  # of a stroke that is just as great as it may be
 _ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
+MM_PER_INCH = 25.4
 MOST_POINTS = 1000
 MOST_REPEATS = 100
 LEAST_READING = 1e-9  # of the stroke, where a recipe gives none: a table may show every digit of its computer
@@ -68,6 +72,10 @@ class MotionAsked(ABC):
                 field,
                 math.degrees(at),
             )
+
+    def of_follower(self, contact: Contact[Guide, Touch], side: Side) -> MotionAsked:  # noqa: ARG002
+        """The motion where it depends on the follower; the metal lies inside its contour (1) or outside (-1)."""
+        return self
 
     @property
     def covered(self) -> float | None:
@@ -169,6 +177,31 @@ def _kept(table: TableAsked, total: float, field: str, around: int | None) -> Mo
         return from_table(samples, table.reading, total, around=around, rest=rest, suspects=suspects, field=field)
     except TableError as error:
         raise IntentError(f"{table.file}, {error.message}", field, error.at_deg) from error
+
+
+@dataclass(frozen=True)
+class ContourAsked(MotionAsked):
+    """What the follower does on a drawing's contour, by contact, within a reading error, mm or rad."""
+
+    drawn: Drawn
+    reading: float
+    scale: float
+    contact: Contact[Guide, Touch] | None = None
+    side: Side = 1
+    source: ClassVar[str] = ".contour"
+
+    def of_follower(self, contact: Contact[Guide, Touch], side: Side) -> ContourAsked:
+        """The same with its follower."""
+        return replace(self, contact=contact, side=side)
+
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
+        from camgeo.motions.contour_motion import felt
+        from kin.law.programme import IntentError
+
+        field = f"{field}.contour"
+        if self.contact is None or around != 1 or abs(total - 2.0 * math.pi) > _ANGLE:
+            raise IntentError("a contour gives the motion of one follower on a disc over a whole turn", field)
+        return felt(self.drawn, self.contact, self.side, self.reading, field)
 
 
 @dataclass(frozen=True)
@@ -363,11 +396,12 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
     if not whole_turn:
         return Table(fields, alternatives)
+    contour = Field("contour", Kind.OWN, "drawing of a cam, whose motion under the follower is taken", form=DRAWING)
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
     form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
     inner = _segment(stroke, 360)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
-    return Table((repeat, segments, *fields), (("segments", ("repeat",)), *alternatives))
+    return Table((repeat, segments, *fields, contour), (("segments", ("repeat",)), *alternatives, ("contour", ())))
 
 
 def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> MotionAsked | None:
@@ -378,10 +412,11 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
         raise AssertionError(field.name)
     found = len(reader.errors)
     values = reader.table(field.form.instead, node, path)
+    of_contours = {"units", "reading"} if "contour" in values else set()
     for key in (*(field.name for field in SHEET), "units", "reading", "rest", "suspect"):
-        if key in values and f"{path}.table" not in reader.marks:
+        if key in values and f"{path}.table" not in reader.marks and key not in of_contours:
             reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
-    if "units" in values and stroke in reader.angular:
+    if "units" in values and stroke in reader.angular and "contour" not in values:
         reader.fault_at(f"{path}.units", "the follower swings: its table is in degrees", None, "leave it out")
     if len(reader.errors) > found:
         return None
@@ -398,7 +433,23 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
         if (ramp := given.pop("ramp", None)) is not None:
             given["ramp"] = ramp["height"], ramp["velocity"] / math.radians(1.0)
         return LobeAsked(**given, scale=scale)
+    if "contour" in values:
+        return _contour(reader, values, join(path, "contour"), scale)
     return _table(stroke, reader, values, join(path, "table"))
+
+
+def _contour(reader: Reader, values: Values, path: str, scale: float) -> ContourAsked | None:
+    """Read the contours of a drawing now, so that the recipe needs no file any more."""
+    reading = values.get("reading")
+    if reading is None or reading == "auto":
+        reader.fault_at(path, "a contour shows no digits", None, "give reading beside it, such as reading: 0.02")
+        return None
+    root = reader.source.root
+    turned = entries(root).get("rotation") if isinstance(root, Mapping) else None
+    mirrored = isinstance(turned, Scalar) and turned.text == "ccw"
+    unit = {"mm": 1.0, "inch": MM_PER_INCH, "thou": 1e-3 * MM_PER_INCH}[values.get("units", reader.units)]
+    drawn = read_contours(reader, values["contour"], path, mirrored=mirrored, unit=unit)
+    return None if drawn is None else ContourAsked(drawn, reading, scale)
 
 
 def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> SegmentsAsked | None:

@@ -151,7 +151,7 @@ def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
 
 def _kept(findings: Findings, kept: Kept) -> dict[str, Any]:
     scale, unit = findings.displacements
-    return {"distance": kept.distance * scale, "unit": unit, "line": kept.line}
+    return {"distance": kept.distance * scale, "unit": unit, "line": kept.line or None}
 
 
 def _file(recipe: Order, file: FileResult) -> dict[str, Any]:

@@ -1,0 +1,83 @@
+"""The motion that a follower has on a contour that exists: an old drawing becomes a recipe."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.motions.lift_table import read_path
+from camgeo.schema.fields import Form
+from camgeo.schema.scalars import MOST_TEXT
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader
+    from kin.contour.contour import Contour
+    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.sources.motion import Motion
+
+ANGLES = 720  # shaft angles at which the follower is felt
+_DIGITS = 3  # beyond that of the reading, to which positions are rounded
+
+DRAWING = Form(
+    "the path of a drawing",
+    "the path of a DXF or SVG, such as old.dxf",
+    read_path,
+    lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
+)
+
+
+class Drawn(NamedTuple):
+    """Closed contours of a drawing about the shaft at its origin, as those of a cam that turns clockwise."""
+
+    file: str
+    contours: tuple[Contour, ...]
+
+
+def read_contours(reader: Reader, file: str, path: str, *, mirrored: bool, unit: float) -> Drawn | None:
+    """Read the contours of a drawing, whose unit, mm, is that of one that states none; notes what is wrong."""
+    from kin.read.errors import ReadError
+    from kin.read.files import read_drawing
+
+    where = Path(reader.source.file).parent / file
+    try:
+        drawing = read_drawing(where, deepest=2, unstated=unit)
+    except FileNotFoundError:
+        reader.fault_at(path, "the file does not exist", repr(file), "give its path as seen from the recipe's folder")
+        return None
+    except (OSError, ReadError, ValueError) as error:
+        reader.fault_at(path, f"{file}: {error}", None, "give a DXF or an SVG with the cam's closed contour")
+        return None
+    contours = [chain.contour for chain in drawing.chains]
+    return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours))
+
+
+@lru_cache(maxsize=8)
+def felt(drawn: Drawn, contact: Contact[Guide, Touch], side: Side, reading: float, field: str) -> Motion:
+    """The motion of least mean square jerk within `reading` of what a follower does on the drawing, mm or rad.
+
+    Raises kin's IntentError where no contour goes round the shaft, or the follower finds no contact.
+    """
+    import numpy as np
+
+    from kin.follower.motion_error import ContactError
+    from kin.follower.rolled import rolled, track
+    from kin.law.programme import IntentError
+    from kin.law.sources.ring import Samples
+    from kin.law.sources.table import from_table
+    from kin.numeric.records import replace
+
+    contour = track(list(drawn.contours), side)
+    if contour is None:
+        raise IntentError(f"{drawn.file}: no closed contour goes round the origin, where the shaft is", field)
+    phi = np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) + math.pi / ANGLES
+    try:
+        position = rolled(contact, contour, side, phi)
+    except (ContactError, ValueError) as error:
+        raise IntentError(f"{drawn.file}: the follower does not run on the contour: {error}", field) from error
+    digit = 10.0 ** (math.floor(math.log10(reading)) - _DIGITS)  # so that a round part of the contour is a dwell
+    rows = Samples(phi, np.round(position / digit) * digit, np.arange(ANGLES) + 1)
+    motion = from_table(rows, reading, suspects="keep", field=field)
+    kept = motion.kept
+    return motion if kept is None else replace(motion, kept=kept._replace(line=0, remarks=()))

@@ -1,0 +1,100 @@
+"""The motion of a follower on a drawing that exists: what was exported comes back, whoever follows it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from camgeo.output import pipeline
+from camgeo.recipe.loading import load_text
+from camgeo.schema.errors import RecipeErrors
+
+MOTION = "[{rise: 8, over: 100, law: modified-sine}, {dwell: 60}, {return: 8, over: 120, law: cycloidal}, {dwell: 80}]"
+FOLLOWERS = {
+    "roller": "{kind: roller, radius: 8}",
+    "offset": "{kind: roller, radius: 8, offset: 6}",
+    "knife": "{kind: knife-edge}",
+    "flat": "{kind: flat}",
+    "arm": "{kind: roller, radius: 8, arm: {length: 65, pivot: 80}}",
+}
+
+
+def recipe(motion, folder, follower, files="dxf", more=""):
+    return load_text(
+        f"{more}cam: {{kind: disc, base_radius: 40, follower: {FOLLOWERS[follower]}, motion: {motion}}}\n"
+        f"part: {{thickness: 8}}\nexport: {{tolerance: 0.001, files: [{files}]}}\n",
+        folder / "cam.yaml",
+    )
+
+
+def exported(folder, follower, files="dxf", more=""):
+    made = recipe(MOTION, folder, follower, files, more)
+    assert pipeline.export(made, folder / "out").report["ok"]
+    return made.cam.exact()
+
+
+def moved(exact, order=0):
+    rows = exact.motion.rows((np.arange(720) + 0.3) * 2 * math.pi / 720, order)
+    rows[0] -= rows[0].min()
+    return rows
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("files", ["dxf", "svg", "{dxf: {as: spline}}"])
+@pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
+@pytest.mark.parametrize("follower", FOLLOWERS)
+def test_a_drawing_becomes_the_motion_that_it_was_made_of(follower, more, files, tmp_path):
+    intended = exported(tmp_path, follower, files, more)
+    ending = "svg" if files == "svg" else "dxf"
+    reading = 0.003 if follower != "arm" else 0.003 * math.degrees(1 / 65)
+    made = recipe(
+        f"{{contour: out/cam/cam.{ending}, reading: {reading:.6f}}}", tmp_path, follower, more=more
+    ).cam.exact()
+    size = 1.0 if follower != "arm" else 1 / 65
+    assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.006 * size)
+    peak = np.abs(moved(intended, 2)[2]).max()
+    assert np.abs(moved(made, 2)[2]).max() == pytest.approx(peak, rel=0.1)
+    assert made.kept.distance <= 0.003 * size
+    assert made.kept.remarks == ()
+
+
+def test_another_follower_on_the_same_contour_moves_otherwise(tmp_path):
+    exported(tmp_path, "roller")
+    given = "{contour: out/cam/cam.dxf, reading: 0.003}"
+    other = moved(recipe(given, tmp_path, "knife").cam.exact())[0]
+    assert np.abs(other - moved(recipe(given, tmp_path, "roller").cam.exact())[0]).max() > 0.05
+
+
+def test_a_drawing_in_another_unit(tmp_path):
+    intended = exported(tmp_path, "roller", "{dxf: {units: inch}}")
+    made = recipe("{contour: out/cam/cam.dxf, reading: 0.003}", tmp_path, "roller").cam.exact()
+    assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.006)
+
+
+def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
+    exported(tmp_path, "roller")
+    report = pipeline.check(recipe("{contour: out/cam/cam.dxf, reading: 0.003}", tmp_path, "roller")).report
+    assert report["table"] == {"distance": pytest.approx(0.003, rel=0.1), "unit": "mm", "line": None}
+    assert report["ok"]
+
+
+@pytest.mark.parametrize(
+    ("motion", "message"),
+    [
+        ("{contour: none.dxf, reading: 0.01}", "the file does not exist, given 'none.dxf'"),
+        ("{contour: cam.yaml, reading: 0.01}", "cam.yaml: "),
+        ("{contour: out/cam/cam.dxf}", "a contour shows no digits; give reading beside it, such as reading: 0.02"),
+        ("{contour: aside.svg, reading: 0.01}", "aside.svg: no closed contour goes round the origin"),
+        ("{contour: out/cam/cam.dxf, reading: 0.01, columns: [1, 2]}", "columns: cannot stand without a table"),
+    ],
+)
+def test_what_is_no_contour_is_refused(motion, message, tmp_path):
+    exported(tmp_path, "roller")
+    square = "M 60 60 L 70 60 L 70 70 L 60 70 Z"
+    size = 'width="99mm" height="99mm" viewBox="0 0 99 99"'
+    aside = f'<svg xmlns="http://www.w3.org/2000/svg" {size}><path d="{square}"/></svg>'
+    (tmp_path / "aside.svg").write_text(aside)
+    (tmp_path / "cam.yaml").write_text("a: 1\n")
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe(motion, tmp_path, "roller"))
+    assert message in str(caught.value)
