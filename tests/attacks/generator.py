@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, recipes, shafts, wider
+from attacks import calls, files, recipes, shafts, tables, wider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,7 +18,8 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     recipes.wrong,
     files.altered,
     wider.furnished,
-    wider.tabled,
+    tables.tabled,
+    tables.mangled,
     recipes.wrong,
     files.altered,
     calls.called,
@@ -29,6 +30,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     wider.furnished,
     files.altered,
     wider.bomb,
+    tables.redrawn,
     recipes.sound,
     recipes.wrong,
     files.altered,

@@ -9,57 +9,16 @@ import zipfile
 from typing import TYPE_CHECKING
 
 import numpy as np
-from support.brute_disc import motion
 
-from attacks.cams import SHARE, drawn, reported
+from attacks.cams import drawn
 from attacks.outcome import Attack
+from attacks.tables import with_motion
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from random import Random
 
-    from attacks.outcome import Done
 
 LONG = 60.0  # s: a set of bodies is moved against one another, a search makes many designs
-SMOOTH = ("cycloidal", "polynomial-345", "polynomial-4567")
-
-
-def with_motion(text: str, given: str) -> str:
-    """The recipe with another motion."""
-    return re.sub(r"motion: \[.*\]\}", lambda _: f"motion: {given}}}", text, count=1)
-
-
-def tabled(rng: Random, number: int) -> Attack:
-    """A law as a table, rounded to its last digit; the motion felt on the drawing stays at the rows."""
-    cam = drawn(rng)
-    while cam.touching.sense or any(law not in {*SMOOTH, ""} for _, _, law in cam.rows):
-        cam = drawn(rng)
-    # rows far apart with many digits do not tell where a law joins a dwell: they may rightly be refused
-    step, decimals = rng.choice([(1, 2), (1, 3), (1, 4), (2, 2), (2, 3)])
-    degrees = np.arange(0.0, 360.0, step)
-    rows = np.round(motion(list(cam.rows), degrees), decimals)
-    table = "angle;lift\n" + "".join(
-        f"{angle:g};{lift:.{decimals}f}\n" for angle, lift in zip(degrees, rows, strict=True)
-    )
-    reading = 10.0**-decimals * rng.choice([0.5, 1.0, 2.0])
-    text = with_motion(cam.text("{dxf: {as: arcs}}"), f"{{table: table.csv, reading: {reading:.6f}}}")
-
-    def judge(done: Done, folder: Path) -> list[str]:
-        path = folder / "out" / "cam" / "cam.dxf"
-        report = reported(done)
-        if done.status or report is None:
-            refused = [word for word in ("scatter", "the displacement steps", "stands out") if word in done.err]
-            return [f"verdict: a sound table is refused: {done.err[:300]}"] if refused else []
-        limit = next(check["limit"] for check in report["checks"] if check["name"] == "motion")
-        off = cam.error(path)
-        # the rows are half a digit off the law, the motion a reading off the rows, the file a limit off the motion
-        most = 0.5 * 10.0**-decimals + reading + limit
-        return (
-            [] if off <= SHARE * most + cam.margin else [f"verdict: {off:.6g} off the table's law, {most:.6g} at most"]
-        )
-
-    files = {"cam.yaml": text.encode(), "table.csv": table.encode()}
-    return Attack(f"table {number}", ("export", "cam.yaml", "--json"), files, (0, 1, 2), judge)
 
 
 def sized(rng: Random, number: int) -> Attack:

@@ -625,3 +625,35 @@ def test_points_over_a_half_turn_go_on_upside_down():
     motion = from_points(theta, 6 * (1 - np.cos(theta)) + 0.3 * (1 - np.cos(3 * theta)), math.pi, around=-1)
     assert motion.joints == ()
     assert lift_constant_breadth(40.0, motion).derivatives(0.0, 0)[0, 0] == pytest.approx(40, abs=1e-12)
+
+
+def test_a_row_of_few_digits_does_not_stand_out_for_them():
+    """A quantised slope: less than three readings off its neighbours."""
+    theta = np.radians(np.arange(0.0, 360.0, 2.0))
+    rows = Samples(theta, np.round(0.1 - 0.1 * np.cos(theta), 2), np.arange(180) + 1)
+    for k in range(20):
+        s = np.roll(rows.s, k)
+        s[60 + k] += 0.01
+        assert from_table(rows._replace(s=s), 0.005).kept.distance <= 0.005
+
+
+def test_rows_that_are_one_row_many_times_are_no_table():
+    rows = Samples(np.full(5, 0.3), np.full(5, 2.0), np.arange(5) + 1)
+    with pytest.raises(IntentError, match="a table has at least 4 rows, not 1"):
+        from_table(rows, 0.01)
+
+
+def test_a_rest_that_there_is_not_is_refused():
+    third = np.radians(np.arange(0.0, 100.0, 3.0))
+    part = Samples(third, np.round(2 * (1 - np.cos(3 * third)), 3), np.arange(34) + 1)
+    for rows, rest, message in (
+        (plate(), "cycle", "the rows cover the turn: there is no rest of it"),
+        (plate(), "dwell", "the rows cover the turn"),
+        (part, "cycle", "a cycle of the rows is neither 99 nor 102 degrees, of which a whole number fill the turn"),
+        (part, "mirror", "rows that are mirrored cover 180 degrees, not 99"),
+    ):
+        with pytest.raises(IntentError, match=message) as caught:
+            from_table(rows, 0.0005, rest=rest)
+        assert caught.value.field == "motion.table.rest"
+    with pytest.raises(IntentError, match="the rest of a turn is that of a motion that repeats with it"):
+        from_table(plate().part(slice(0, 181)), 0.0005, math.pi, around=-1, rest="dwell")

@@ -204,6 +204,7 @@ def test_the_schema_takes_what_the_reader_takes():
         ["table"],
         ["points"],
         ["lobe"],
+        ["contour"],
     ]
     part = motion_field("law", Kind.ANGLE, "a part of a turn")
     assert set(table_schema(part.form.instead)["properties"]) == {

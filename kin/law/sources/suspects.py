@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _FALLS = 2.0  # times less the mean square is without a row that is told of
 _SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
 _LEAST_ROWS = 5  # that a stroke spans, where one of them can be told from it
+_OFF = 3.0  # readings at least, by which a certain row is off what the others suggest
 _ABOUT = 2  # rows to either side: about a row
 _CALMER = 10.0  # times less the mean square about a certain row is without it
 _SHARP = 0.5  # of the mean square that is left: where so much of it lies about a row, the law itself is sharp there
@@ -79,6 +80,10 @@ def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
 
 def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) -> bool:
     """Whether rows are no part of a law that is sharp there: a stroke of many rows tells more than one of few."""
+    which = list(places)
+    off = np.abs(rows.s[which] - without.curve(rows.x[which])) / rows.reading[which]
+    if off.max() < _OFF:
+        return False
     span = min(spanned(rows, place) for place in places)
     if span < _LEAST_ROWS or (span < _MANY and plain.square < _SURE * without.square):
         return False

@@ -24,6 +24,8 @@ _KEPT = 1.0 - 1e-3  # of a reading: what a motion keeps within it, so that its z
 _LEAST_ROWS = 4
 _GAP = 1.5  # of the widest step: what is more is no row's
 _LEAST_READING = 1e-6  # of a row's, of one that two rows bound
+_WHOLE = 1e-6  # of a cycle: so nearly must a whole number of them fill the turn
+_SAME = 1e-9  # of the stroke: rows that differ by less are one
 _MOST_FILLED = 400  # rows with which the rest of a turn is filled
 FLOOR = 1e-10  # of the stroke: by so much a motion may be below its least level
 
@@ -146,8 +148,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
     apart, allowed = abs(float(rows.s[-1] - rows.s[0])), float(within[0] + within[-1])
     space = Space(float(rows.theta[0]), float(rows.theta[0]) + total)
     if over > total - SAME_ANGLE:
-        if rest is not None:
-            raise IntentError("the rows cover the turn: there is no rest of it; leave it out", f"{field}.rest")
+        _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):
             problem = f"the motion does not close: {_told(apart, rows)} off the first row, a turn later"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
@@ -158,8 +159,8 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
             least, most = max(low[0], low[-1]), min(high[0], high[-1])
             s[0], readings[0] = 0.5 * (least + most), max(0.5 * (most - least), _LEAST_READING * within[0])
         return Tabled(rows.theta[:-1], s, readings, rows.lines[:-1], space, rows.unit)
-    widest = float(np.diff(rows.theta).max())
-    if rest is None and total - over <= _GAP * widest:
+    if total - over <= _GAP * float(np.diff(rows.theta).max()):
+        _demand_no_rest(rest, field)
         return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
     if rest is None and apart > allowed:
         ends = f"the table ends after {math.degrees(over):.6g} degrees, {_told(apart, rows)} off its first row"
@@ -174,6 +175,11 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
         space,
         rows.unit,
     )
+
+
+def _demand_no_rest(rest: Rest | None, field: str) -> None:
+    if rest is not None:
+        raise IntentError("the rows cover the turn: there is no rest of it; leave it out", f"{field}.rest")
 
 
 def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, Array, Indices]:
@@ -193,25 +199,24 @@ def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, A
             raise IntentError(f"{problem}; add those that are missing, or give rest: dwell", f"{field}.rest")
         of = np.arange(n - 2, 0, -1)
         return 2.0 * last - rows.theta[of], rows.s[of], of
-    step = float(np.median(np.diff(rows.theta)))
-    times, closed = total / over, False
-    if abs(times - round(times)) < 1e-6 and abs(float(rows.s[-1] - rows.s[0])) <= 1e-9 * max(
-        1.0, float(np.ptp(rows.s))
-    ):
-        closed = True
-    else:
-        times = total / (over + step)
-        if abs(times - round(times)) > 1e-6:
-            problem = f"{math.degrees(over):.6g} degrees, or with a further row {math.degrees(over + step):.6g}"
-            raise IntentError(f"a cycle of {problem}, fills no turn a whole number of times", f"{field}.rest")
-    count, length = round(times), total / round(times)
-    of = np.arange(n - closed)
-    x = np.concatenate([rows.theta[of] + k * length for k in range(1, count)])
-    s = np.tile(rows.s[of], count - 1)
-    if closed:  # the last row was the first of the next cycle
-        x, s, of = x[1:], s[1:], np.tile(of, count - 1)[1:]
-        return x, s, of
-    return x, s, np.tile(of, count - 1)
+    return _cycle(rows, total, field)
+
+
+def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indices]:
+    """The rows again and again; the last one may be the first one of the next cycle, or a step before it."""
+    over = float(rows.theta[-1] - rows.theta[0])
+    lengths = over, over + float(np.median(np.diff(rows.theta)))
+    whole = [abs(total / length - round(total / length)) <= _WHOLE for length in lengths]
+    closed = whole[0] and abs(float(rows.s[-1] - rows.s[0])) <= _SAME * float(np.ptp(rows.s))
+    if not (closed or whole[1]):
+        told = " nor ".join(f"{math.degrees(length):.6g}" for length in lengths)
+        problem = f"a cycle of the rows is neither {told} degrees, of which a whole number fill the turn"
+        raise IntentError(f"{problem}; add rows, or give rest: dwell", f"{field}.rest")
+    count = round(total / lengths[0 if closed else 1])
+    of = np.tile(np.arange(len(rows.s) - closed), count)
+    x = rows.theta[of] + np.repeat(np.arange(count), len(of) // count) * (total / count)
+    more = slice(len(rows.s), None)
+    return x[more], rows.s[of[more]], of[more]
 
 
 def _told(value: float, rows: Samples) -> str:
@@ -222,18 +227,18 @@ def demand_rows(
     rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
 ) -> Samples:
     """Rows without such as are written twice; TableError for other doubled angles, and for more than the whole."""
-    if len(rows.theta) < least:
-        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
     for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
             raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
-    if (np.diff(rows.theta) < 0.0).all():
+    if len(rows.theta) > 1 and (np.diff(rows.theta) < 0.0).all():
         rows = rows.part(slice(None, None, -1))
     twice = (np.diff(rows.theta) == 0.0) & (np.diff(rows.s) == 0.0)
     if twice.any():
         keep = np.append(True, ~twice)
         rows = rows._replace(theta=rows.theta[keep], s=rows.s[keep], lines=rows.lines[keep])
+    if len(rows.theta) < least:
+        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
     falls = np.flatnonzero(np.diff(rows.theta) <= SAME_ANGLE)
     if len(falls):
         i = int(falls[0]) + 1
