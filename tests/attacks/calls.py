@@ -53,6 +53,7 @@ OPTIONS: dict[str, list[list[str]]] = {
     "schema": [["--json"]],
     "study": [["--help"]],
     "sweep": [["--help"]],
+    "budget": [["--json"], ["--out"]],
 }
 GIVEN = {
     "--only": [*FORMATS, "dwg", ""],

@@ -36,6 +36,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     files.altered,
     calls.called,
     wider.searched,
+    wider.budgeted,
     wider.on_a_shaft,
     shafts.flush,
 )

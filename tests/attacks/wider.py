@@ -153,6 +153,39 @@ def searched(rng: Random, number: int) -> Attack:
     return Attack(f"sweep {number}", ("sweep", "cam.yaml", "--jobs", "1"), {"cam.yaml": text.encode()}, seconds=LONG)
 
 
+BUDGETED = (
+    "profile",
+    "angle",
+    "bore",
+    "shaft",
+    "pivot",
+    "guide",
+    "face",
+    "follower.radius",
+    "follower.offset",
+    "breadth",
+)
+
+
+def budgeted(rng: Random, number: int) -> Attack:
+    """A budget of some dimensions by chance, some of them free, with fits, a zero, or words that the cam has not."""
+    cam = drawn(rng)
+    sizes = ["0.01"] * 12 + ["0", "2", "1e-9", "-1", "nan"]
+    words = rng.sample(BUDGETED[:4], 2) + rng.choice([[], [], [], [rng.choice(BUDGETED)], ["motion", "x"]])
+    tolerances = ", ".join(f"{word}: {rng.choice(sizes)}" for word in dict.fromkeys(words))
+    if rng.random() < 0.3:
+        tolerances = tolerances.replace("0.01", "free", 1)
+    ways = ["zero: 40", "zero: none", "sum: rss", "sum: rss", "play: 0.1", "guide: 80", "cost: {profile: 2, angle: 1}"]
+    more = rng.sample(ways, rng.choice([0, 0, 1, 1, 2]))
+    options = "".join(f", {option}" for option in [*more, f"runs: {rng.choice([0, 50, 500])}"])
+    permitted = rng.choice(["0.05", "0.5", "1e-9", "100"])
+    text = cam.text("dxf", f"budget: {{permitted: {permitted}, tolerances: {{{tolerances}}}{options}}}\n")
+    if rng.random() < 0.2:
+        text = text.replace("bore: 8}", "bore: {diameter: 8, fit: H7}}").replace("budget: {", "budget: {fit: g6, ")
+    call = ("budget", "cam.yaml", *rng.choice([(), (), ("--json",), ("cam.yaml",)]))
+    return Attack(f"budget {number}", call, {"cam.yaml": text.encode()}, (0, 1, 2))
+
+
 def on_a_shaft(rng: Random, number: int) -> Attack:
     """A camshaft of one cam by chance, several times, with an engine or without, and its diagrams, tables and page."""
     engine = rng.random() < 0.6

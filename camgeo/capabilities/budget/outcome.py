@@ -17,7 +17,7 @@ from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.budget.influence import Influence
+    from camgeo.capabilities.budget.influence import Influence, Output
     from camgeo.capabilities.budget.keys import Budget
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-9  # share of what is permitted by which a sum may exceed it: tolerances that were found just keep it
 SUMS: tuple[Sum, ...] = ("worst", "rss")
+SHARES_STEP = 5  # degrees from one angle of the report's shares to the next
 LEFT_STEP = 10  # degrees from one angle of the report's list of what is left to the next
 
 
@@ -138,12 +139,19 @@ def section(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
         "zero_deg": None if budget.zero is None else degrees(budget.zero),
         "angles": len(outcome.influence.shaft),
         **{kind: _sum(recipe, found) for kind, found in outcome.sums.items()},
+        "contacts": [
+            {"name": output.name, **_greatest(recipe, outcome, output)} for output in outcome.influence.outputs()
+        ],
         "dimensions": _dimensions(recipe, outcome),
+        "over_turn": _over_turn(recipe, outcome),
     }
     if budget.fit is not None:
         angle = budget.fit.angle
         play = {"bore": budget.fit.bore / recipe.mm, "unit": UNIT_NAMES[recipe.units]}
         entry["fit"] = play | ({} if angle is None else {"key_deg": 2.0 * math.degrees(angle)})
+    middle = outcome.influence.middle()
+    if middle is not None:
+        entry["middle"] = _greatest(recipe, outcome, middle)
     if outcome.play is not None:
         least, most = (told(recipe, value)[0] for value in outcome.play)
         limit = None if budget.play is None else told(recipe, budget.play)[0]
@@ -164,6 +172,11 @@ def _sum(recipe: Recipe, found: Worst) -> dict[str, Any]:
         "contact": found.contact,
         "shares": dict(found.shares),
     }
+
+
+def _greatest(recipe: Recipe, outcome: Outcome, output: Output) -> dict[str, float]:
+    """The greatest sums of one output over the angles, as told."""
+    return {kind: told(recipe, float(total(outcome.influence, output, kind).max()))[0] for kind in SUMS}
 
 
 def _dimensions(recipe: Recipe, outcome: Outcome) -> list[dict[str, Any]]:
@@ -278,10 +291,23 @@ def _shown(row: dict[str, Any]) -> str:
     return downward(row["tolerance"]) if row["free"] and row["tolerance"] > 0.0 else f"{row['tolerance']:.6g}"
 
 
-def shares(recipe: Recipe, outcome: Outcome, shaft: Array) -> dict[str, Array]:
-    """What each dimension adds to the worst case at shaft angles (n,), as told, at the contact that is worst of all."""
+def over_turn(recipe: Recipe, outcome: Outcome, shaft: Array) -> dict[Sum, Array]:
+    """Both sums at shaft angles (n,), as told, at the contact that is worst of all, between the angles looked at."""
+    rows, output = outcome.influence, _worst_output(outcome)
+    scale, turn = told(recipe, 1.0)[0], 2.0 * math.pi
+    return {kind: scale * np.interp(shaft, rows.shaft, total(rows, output, kind), period=turn) for kind in SUMS}
+
+
+def _worst_output(outcome: Outcome) -> Output:
+    contact = outcome.sums["worst"].contact
+    return next(output for output in outcome.influence.outputs() if output.name == contact)
+
+
+def _over_turn(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
+    """What each dimension adds to the worst case every few degrees, at the contact that is worst of all."""
     rows = outcome.influence
-    (output,) = (output for output in rows.outputs() if output.name == outcome.sums["worst"].contact)
+    step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
+    added = by_name(rows, powers(rows, _worst_output(outcome), "worst")[:, ::step])
     scale = told(recipe, 1.0)[0]
-    added = by_name(rows, powers(rows, output, "worst"))
-    return {name: scale * np.interp(shaft, rows.shaft, values, period=2.0 * math.pi) for name, values in added.items()}
+    at = [degrees(float(angle)) for angle in rows.shaft[::step]]
+    return {"at_deg": at, "worst": {name: (scale * values).tolist() for name, values in added.items()}}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget, build_budget, check_budget, fields
@@ -70,49 +69,24 @@ def _examine(recipe: Recipe, design: Design, _files: Sequence[FileResult], clock
 
 
 def _panel(report: dict[str, Any]) -> str:
-    """A table of the dimensions, and what is permitted."""
-    entry = report.get("budget")
-    if entry is None:
-        return ""
-    rows = "".join(
-        f'<tr><th scope="row">{escape(row["name"])}</th><td>{row["tolerance"]:.6g} {escape(row["unit"])}</td>'
-        f"<td>{row['influence']:.4g} {escape(row['influence_unit'])}</td><td>{row['share']:.1%}</td></tr>"
-        for row in entry["dimensions"]
-    )
-    worst, rss, unit = entry["worst"], entry["rss"], entry["unit"]
-    sums = "".join(
-        f'<tr><th scope="row">{name}</th><td>{value["value"]:.4g} {unit}</td>'
-        f"<td>at {value['at_deg']:.4g} deg</td><td>{entry['permitted']:.6g} {unit} permitted</td></tr>"
-        for name, value in (("worst case", worst), ("root sum of squares", rss))
-    )
-    head = "".join(f'<th scope="col">{word}</th>' for word in ("dimension", "plus and minus", "influence", "share"))
-    return (
-        f'<section><table class="plain"><caption>Budget</caption><thead><tr>{head}</tr></thead>'
-        f"<tbody>{rows}{sums}</tbody></table></section>"
-    )
+    from camgeo.capabilities.budget.panel import panel
+
+    return panel(report)
 
 
 def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
-    """The shares of the worst case over the turn, each on top of those before."""
-    import numpy as np
-
-    from camgeo.capabilities.budget.outcome import outcome, shares, told
+    """Both sums over the turn, at the contact that is worst of all."""
+    from camgeo.capabilities.budget.outcome import outcome, over_turn, told
     from camgeo.report.page.curves import Plot, Series
     from camgeo.report.page.followers import SHAFT
 
     budget = recipe.of(Budget)
     if budget is None or not _can_move(design):
         return ()
-    found = outcome(recipe, design, budget)
-    rows: list[Series] = []
-    whole = np.zeros(SHAFT.shape)
-    for name, added in shares(recipe, found, SHAFT).items():
-        whole = whole + added
-        rows.append(Series(f"+ {name}" if rows else name, whole))
+    sums = over_turn(recipe, outcome(recipe, design, budget), SHAFT)
     permitted, unit = told(recipe, budget.permitted)
-    note = "Worst case: each curve adds its dimension to those below it"
-    title = "Budget of errors"
-    return (Plot(title, unit, tuple(rows), limits=((permitted, "permitted"),), note=note, axis="error", holds=(0.0,)),)
+    rows = (Series("worst", sums["worst"]), Series("rss", sums["rss"]))
+    return (Plot("Budget", unit, rows, limits=((permitted, "permitted"),), axis="error", holds=(0.0,)),)
 
 
 CAPABILITY = Capability(

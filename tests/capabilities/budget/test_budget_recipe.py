@@ -201,5 +201,6 @@ def test_report_limit_and_page(tmp_path: Path) -> None:
     assert failed == ["limit:budget-worst"]
     assert result["budget"]["worst"]["value"] > 0.01
     page = next(result.path.glob("*.html")).read_text(encoding="utf-8")
-    assert "<caption>Budget</caption>" in page
-    assert "Budget of errors" in page
+    assert "Budget of errors</h2>" in page
+    assert page.count("<polygon") >= 2
+    assert '"title":"Budget"' in page
