@@ -48,6 +48,12 @@ def test_what_needs_solids_is_left_out_and_said(answers: dict[str, Any]) -> None
     assert "this part needs solids" in found["missing"]["hubbed.stl"]
 
 
+def test_scenes_and_contours_are_shown_and_followed(answers: dict[str, Any]) -> None:
+    assert answers["shown"]["plots"] >= 5
+    assert answers["shown"]["bodies"] >= 4
+    assert answers["shown"]["lift"] == pytest.approx(4.0, abs=0.002)
+
+
 def test_a_missing_package_is_an_error_of_the_surroundings(answers: dict[str, Any]) -> None:
     assert answers["none"]["error"] == answers["second"]["error"] == "SurroundingsError"
     assert "this part needs solids" in answers["none"]["text"]

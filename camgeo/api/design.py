@@ -16,11 +16,15 @@ from camgeo.schema.fields import MOST
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike
 
+    from camgeo.api.report import JSON
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design as Exact
+    from kin.judge.check import Check as Checked
     from kin.numeric.arrays import Array
 
 MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly made
@@ -47,12 +51,16 @@ class Design:
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """The checks that need no file: curvature, undercut, walls, and the recipe's limits of figures."""
+        return tuple(Check.of(self.recipe, check) for check in self._checks)
+
+    @cached_property
+    def _checks(self) -> tuple[Checked, ...]:
         found = self.exact.checks
         if self.recipe.limits:
             from camgeo.measures.limits import limit_checks
 
             found = (*found, *limit_checks(self.recipe, self.exact, found, (), None))
-        return tuple(Check.of(self.recipe, check) for check in found)
+        return found
 
     @property
     def ok(self) -> bool:
@@ -170,6 +178,26 @@ class Design:
         return contour
 
     # --- to look at ---------------------------------------------------------------------------------------------------
+
+    def scene(self) -> Mapping[str, JSON]:
+        """Everything that a page draws of the design, as plain data, without any file; lengths in the recipe's unit.
+
+        `drawing` is the mechanism at shaft angle 0 as SVG, in which the group of body k has the id `body-k`; `bodies`
+        has the rows of x, y and angle of each over a turn, `plots` the curves, `marks` the places on the contour where
+        checks fail and remarks are made, `checks` and `remarks` what a report has of them. The script of the report's
+        page plays it (docs/page.md). Angles are degrees. Rows of numbers are packed: `{"c": value}` is constant,
+        `{"n": [...]}` are plain, `{"d": digits, "v": [...]}` differences in units of the last digit.
+        """
+        from camgeo.measures.remarks import remarks_of
+        from camgeo.report.document import Findings, document, finite
+        from camgeo.report.page.content import content
+        from camgeo.report.page.page import scene
+
+        remarks = remarks_of(self.recipe, self.exact, self._checks)
+        findings = Findings(self._checks, (), (), (), self.exact.follower.name, remarks=remarks)
+        report = document(self.recipe, findings)
+        shown = scene(self.recipe, content(self.recipe, self.exact, ()), report)
+        return {**shown, "checks": finite(report["checks"]), "remarks": finite(report["remarks"])}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.recipe.name!r}, {self.exact.follower.name})"

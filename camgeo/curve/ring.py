@@ -99,9 +99,19 @@ class Ring(ArcChain):
 
     def flattened(self) -> Array:
         """Return points (m, 2) along it, arcs in steps of `FLAT`; the first is repeated at the end if it is closed."""
-        counts = [max(1, math.ceil(abs(4.0 * math.atan(bulge)) / FLAT)) for bulge in self.bulges.tolist()]
-        found = [steps_along(*piece, count) for piece, count in zip(self.pieces(), counts, strict=True)]
-        return np.concatenate([*found, self.points[:1]] if self.closed else [*found[:-1], self.points[-1:]])
+        count = len(self.points) - (not self.closed)
+        start, bulge = self.points[:count], self.bulges[:count]
+        chord, sweep = self.chords[:count], 4.0 * np.arctan(bulge)
+        steps = np.maximum(1, np.ceil(np.abs(sweep) / FLAT)).astype(np.intp)
+        piece = np.repeat(np.arange(count), steps)
+        share = (np.arange(len(piece)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[piece]
+        # along chords from the start, as in `steps_along`
+        half = 0.5 * sweep[piece]
+        heading = (np.arctan2(chord[:, 1], chord[:, 0]) - 0.5 * sweep)[piece] + share * half
+        along = np.divide(np.sin(share * half), np.sin(half), out=share.copy(), where=half != 0.0)
+        length = np.hypot(chord[:, 0], chord[:, 1])[piece] * along
+        points = start[piece] + length[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
+        return np.concatenate((points, self.points[:1] if self.closed else self.points[-1:]))
 
     def path(self, digits: int) -> str:
         """Return the ring as the data of an SVG path, coordinates rounded to so many digits."""

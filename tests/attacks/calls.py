@@ -43,14 +43,23 @@ LENGTHS = [
     "10",
     "1 mm mm",
 ]
+FOLLOWED = ("roller", "offset", "arm", "at", "units", "rotation", "reading", "table", "recipe", "page")
 OPTIONS: dict[str, list[list[str]]] = {
     "export": [["-v"], ["--json"], ["--only"], ["--out"], ["--tolerance"], ["--jobs"], ["--nothing"]],
     "check": [["-v"], ["--json"], ["--out"], ["--tolerance"], ["--jobs"]],
-    "verify": [["-v"], ["--json"], ["--units"], ["--tolerance"], ["--gap"], ["--second-opinion"]],
+    "verify": [["-v"], ["--json"], ["--units"], ["--tolerance"], ["--gap"], ["--second-opinion"], ["--page"]],
     "report": [["--out"], ["--picture"], ["--at"], ["--check"]],
     "laws": [["--picture"], ["--json"], ["--only"]],
     "new": [],
     "schema": [["--json"]],
+    # needs: follow
+    "follow": [
+        ["--flat"],
+        ["--yoke"],
+        ["--leading"],
+        ["--json"],
+        *([f"--{name}"] for name in FOLLOWED),
+    ],
     "study": [["--help"]],
     "sweep": [["--help"]],
     "budget": [["--json"], ["--out"]],
@@ -60,11 +69,25 @@ GIVEN = {
     "--out": ["out", "folder", "cam.yaml", "", "/dev/null/out", "a/b/c", "."],
     "--tolerance": LENGTHS,
     "--gap": LENGTHS,
+    "--page": ["page.html", "cam.yaml", "", "a/b/c", "."],
+    "--table": ["turn.csv", "cam.yaml", "", "/dev/null/out"],
+    "--recipe": ["found.yaml", "cam.yaml", "found", "a/b/c", "."],
+    "--roller": LENGTHS,
+    "--offset": LENGTHS,
+    "--reading": LENGTHS,
+    "--arm": [*LENGTHS, "30,20", "30,20,10", ",", "1e400,2", "30"],
+    "--at": ["0,0", "1", "x,y", "1,2,3", "nan,0", "60", "nan", "x", "1e400", "-720", ""],
+    "--rotation": ["cw", "ccw", "left", ""],
     "--jobs": ["1", "0", "-1", "x", "1.5", "\u0661", ""],
     "--units": ["mm", "inch", "cm", "furlong", ""],
     "--picture": ["svg", "png", "gif", "", "laws.svg", "folder"],
-    "--at": ["60", "nan", "x", "1e400", "-720", ""],
 }
+
+
+ROUND = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="-30 -30 60 60">'
+    b'<circle cx="4" cy="0" r="20" fill="none" stroke="black"/></svg>'
+)
 
 
 def called(rng: Random, number: int) -> Attack:
@@ -79,6 +102,8 @@ def called(rng: Random, number: int) -> Attack:
         names[0] = rng.choice([*STARTERS, "disc", "disc-rollr", "", "DISC", "support "])
     if command in {"verify", "report", "check", "export"} and names:
         names[0] = rng.choice(["cam.yaml", names[0]])
+    if command == "follow" and names:
+        names[0] = rng.choice(["round.svg", "cam.dxf", names[0]])
     words += names
     for option in rng.sample(OPTIONS.get(command, []), min(len(OPTIONS.get(command, [])), rng.randrange(3))):
         words += option
@@ -87,5 +112,11 @@ def called(rng: Random, number: int) -> Attack:
     if command in {"study", "sweep"} and "--help" not in words:
         words.append("--help")
     drawing = b"0\nEOF\n"
-    files = {"cam.yaml": SMALL, "other.yaml": SMALL.replace(b"9 +", b"10 +"), "empty.yaml": b"", "cam.dxf": drawing}
+    files = {
+        "round.svg": ROUND,
+        "cam.yaml": SMALL,
+        "other.yaml": SMALL.replace(b"9 +", b"10 +"),
+        "empty.yaml": b"",
+        "cam.dxf": drawing,
+    }
     return Attack(f"call {number}", tuple(words), {**files, "folder/kept.txt": b"kept"})

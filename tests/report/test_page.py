@@ -33,7 +33,7 @@ from camgeo.report.page.asset import asset
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read
 from camgeo.report.page.pack import packed
-from camgeo.report.page.page import LOCAL, RELOAD, data, encoded, page
+from camgeo.report.page.page import LOCAL, RELOAD, encoded, page, scene
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
@@ -554,7 +554,7 @@ def test_the_page_imports_nothing_heavy() -> None:
 
 
 def test_the_data_is_small_and_holds_no_infinity(made: Made) -> None:
-    text = encoded(data(made.recipe, made.content))
+    text = encoded(scene(made.recipe, made.content, made.outcome.report))
     assert len(text) < 300_000
     assert "Infinity" not in text
     assert "NaN" not in text

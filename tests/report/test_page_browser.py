@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import json
 import math
 import re
 import threading
@@ -15,6 +17,7 @@ from support.browser import Browser, executable
 from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
 from support.rendered import rendered, share
 
+import camgeo
 from camgeo.cli.watch import watch
 from camgeo.report.page.page import page
 from camgeo.synthesis.design import designed
@@ -327,3 +330,53 @@ def test_it_prints_and_follows_the_colours(browser: Browser, tmp_path: Path) -> 
     assert page_.ask(ground) != light
     page_.size(1280, 800)
     assert page_.problems == []
+
+
+UNDERCUT = "cam: {kind: support, p: 10 + 2*cos(3*t)}\npart: {thickness: 5}\n"
+
+
+def test_one_player_shows_one_scene_after_another(browser: Browser, tmp_path: Path) -> None:
+    """What a program plays is a design's scene; what was shown before is gone, and hears of nothing."""
+    made = of("shu-wu")
+    held = replace_once(made.text, "playScene(JSON", "window.endScene = playScene(JSON")
+    page_ = opened(browser, made, tmp_path)
+    (tmp_path / "page.html").write_text(held, encoding="utf-8")
+    page_.open((tmp_path / "page.html").as_uri() + "#deg=0")
+    other = camgeo.design(camgeo.load(UNDERCUT)).scene()
+    page_.ask(f"(() => {{ endScene(); window.endScene = playScene({json.dumps(other)}); return 1; }})()")
+    plots = page_.ask("[...document.querySelectorAll('#plots figcaption b')].map((b) => b.textContent)")
+    assert plots == [plot["title"] for plot in other["plots"]]
+    assert page_.ask("document.querySelectorAll('#drawing .body').length") == len(other["bodies"])
+    assert page_.ask("document.querySelectorAll('#drawing .mark.failed').length") > 0
+    assert page_.ask("document.querySelector('#drawing .mark title').textContent").startswith(
+        "radius-of-curvature: -6 mm"
+    )
+    assert page_.ask("document.getElementById('errors').hidden")
+    page_.ask(SLIDE.format(90))
+    assert page_.ask("document.documentElement.dataset.degrees") == "90.0000"
+    page_.key("ArrowRight")
+    assert page_.ask("document.documentElement.dataset.degrees") == "91.0000"  # one player hears the key
+    assert page_.problems == []
+
+
+def test_a_frame_without_an_origin_shows_the_page(browser: Browser, tmp_path: Path) -> None:
+    """Its address cannot be written there; the page turns all the same."""
+    hear = "<script>addEventListener('error', (event) => parent.postMessage(event.message, '*'))</script></head>"
+    turn = (
+        "<script>const slider = document.getElementById('slider'); slider.value = 90;"
+        "slider.dispatchEvent(new Event('input')); const told = () => document.documentElement.dataset.degrees;"
+        "setTimeout(() => parent.postMessage(told(), '*'), 600);</script></body>"
+    )
+    text = replace_once(replace_once(of("shu-wu").text, "</head>", hear), "</body>", turn)
+    note = "addEventListener('message', (event) => document.title += event.data + ';')"
+    frame = f'<iframe sandbox="allow-scripts" srcdoc="{html.escape(text)}"></iframe>'
+    outer = f'<!DOCTYPE html><html data-ready="true"><head><script>{note}</script></head><body>{frame}</body></html>'
+    (tmp_path / "outer.html").write_text(outer, encoding="utf-8")
+    browser.open((tmp_path / "outer.html").as_uri())
+    browser.wait("document.title.includes('90.0000')")
+    assert browser.ask("document.title") == "90.0000;"
+
+
+def replace_once(text: str, old: str, new: str) -> str:
+    assert text.count(old) == 1
+    return text.replace(old, new)

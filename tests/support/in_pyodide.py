@@ -21,6 +21,9 @@ OUT = Path("/tmp/out")  # of its own file system
 HUBBED = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 10, hub: {diameter: 18, height: 4}}\n"
 
 
+TEXT = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nname: again\nexport: {files: [%s]}\n"
+
+
 def told(step: Any, *arguments: Any) -> Any:
     try:
         return step(*arguments)
@@ -53,9 +56,8 @@ def large() -> int:
 
 def again() -> list[str]:
     """Files of a set that takes the place of another one."""
-    text = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nname: again\nexport: {files: [%s]}\n"
     for files in ("dxf, svg", "svg"):
-        camgeo.export(camgeo.load(text % files), OUT)
+        camgeo.export(camgeo.load(TEXT % files), OUT)
     return sorted(path.name for path in (OUT / "again").iterdir())
 
 
@@ -64,12 +66,23 @@ def left_out() -> dict[str, Any]:
     return {"ok": report.ok, "missing": report.missing, "files": [file.name for file in report.files]}
 
 
+def shown() -> dict[str, Any]:
+    """Lengths of a scene, and of a contour followed in a file made here."""
+    design = camgeo.design(camgeo.load(TEXT % "dxf"))
+    report = camgeo.export(design.recipe, OUT)
+    assert report.path is not None
+    followed = camgeo.follow(report.path / "again.dxf", flat=True)
+    scene = design.scene()
+    return {"plots": len(scene["plots"]), "bodies": len(scene["bodies"]), "lift": followed.lift}
+
+
 answer, *recipes = map(Path, sys.argv[1:])
 answers = {
     "index": np.dtype(np.intp).itemsize,
     "large": told(large),
     "again": told(again),
     "left out": told(left_out),
+    "shown": told(shown),
     "none": told(lambda: camgeo.export(camgeo.load(HUBBED + "export: {files: [stl]}\n"), OUT)),
     "second": told(lambda: camgeo.check(camgeo.load(HUBBED), second_opinion=True)),
     "recipes": {path.stem: told(exported, path) for path in recipes},

@@ -36,9 +36,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reading", type=_length, default=0.01, metavar="E", help=text)
     parser.add_argument("--table", type=name_of, metavar="CSV", help="a new file for the motion over the turn")
     text = "a new file for the recipe of a cam with this motion; its lifts stand in a table beside it"
-    parser.add_argument("--recipe", type=name_of, metavar="YAML", help=text)
+    parser.add_argument("--recipe", type=_recipe, metavar="YAML", help=text)
     parser.add_argument("--page", type=name_of, metavar="HTML", help="a new file for the page of that recipe and FILE")
     parser.add_argument("--json", action="store_true", help="what is printed as JSON, for machines")
+
+
+def _recipe(text: str) -> str:
+    import argparse
+
+    if Path(text).suffix not in {".yaml", ".yml"}:
+        raise argparse.ArgumentTypeError(f"a file whose name ends in .yaml is expected, not {escaped(text)}")
+    return text
 
 
 def _length(text: str) -> float:

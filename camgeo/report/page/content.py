@@ -138,16 +138,22 @@ def _on_face(disc_design: Disc) -> list[Shape]:
 
 
 def _exact_rings(recipe: Recipe, design: Design) -> tuple[tuple[Ring, ...], ...]:
-    bore = recipe.part.bore
-    holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
     rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
     found = []
     for each in design.discs:
         contours = [outline.exact(contour) for _, contour in each.contours] if design.contours else []
         if not contours:
             contours = [outline.exact(made.surface.curve, whole=True) for made in each.surfaces]
-        found.append((*rim, *contours, *holes))
+        found.append((*rim, *contours, *_openings(recipe, each)))
     return tuple(found)
+
+
+def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
+    """Return what is cut through a disc; of one that is not made the bore."""
+    if disc_design.body is None:
+        return (disc(0.0, 0.0, 0.5 * recipe.part.bore),) if recipe.part.bore else ()
+    cut = [opening.outline for opening in disc_design.body.openings if opening.depth is None]
+    return tuple(Ring(outline.points, outline.bulges) for outline in cut)
 
 
 def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:

@@ -1,8 +1,12 @@
 "use strict";
-(() => {
+// the one player: moves and plots a scene in the elements of this document, and returns what ends that, for another one
+function playScene(data) {
   const find = (id) => document.getElementById(id);
-  const data = JSON.parse(find("data").textContent);
   const root = document.documentElement;
+  const ended = new AbortController();
+  const until = { signal: ended.signal };
+  if (data.drawing) find("stage").querySelector("figure").innerHTML = data.drawing;
+  if ("note" in data) find("stage").querySelector(".note").textContent = data.note;
   const drawing = find("drawing");
   const N = data.steps;
 
@@ -62,6 +66,12 @@
     return { text, x, y, body: bodies[Number(text.dataset.body)] };
   });
   const [scale, left, top] = data.view;
+  const space = drawing.namespaceURI;
+  const marks = data.marks.map(({ kind, x, y, text }) => {
+    const mark = made("circle", { class: `mark ${kind}`, cx: x, cy: y }, drawing.querySelector(".cam"));
+    made("title", {}, mark).textContent = text;
+    return mark;
+  });
   let px = 1; // units of the drawing that one px of the screen is
   let degrees = 0;
   let playing = false;
@@ -121,7 +131,13 @@
   let later = 0;
   function noted() {
     clearTimeout(later);
-    later = setTimeout(() => history.replaceState(null, "", `#deg=${Number(degrees.toFixed(2))}`), 250);
+    later = setTimeout(() => {
+      try {
+        history.replaceState(null, "", `#deg=${Number(degrees.toFixed(2))}`);
+      } catch {
+        // a frame without an origin has no address of its own
+      }
+    }, 250);
   }
 
   function held(next) {
@@ -149,7 +165,6 @@
 
   // --- plots --------------------------------------------------------------------------------------------------------
 
-  const space = drawing.namespaceURI;
   function made(name, attributes, parent) {
     const element = document.createElementNS(space, name);
     for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
@@ -443,6 +458,7 @@
 
   const ring = find("ring");
   const chosen = find("error-file");
+  find("errors").hidden = !data.errors.length;
   if (data.errors.length) {
     const [px0, py0, nx, ny] = data.contour.map((row) => unpacked(row) || Array(N).fill(row.c));
     const y0 = py0.map((y) => -y);
@@ -483,24 +499,22 @@
         `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${Number(by.toPrecision(3))} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
     };
-    chosen.addEventListener("change", redraw);
-    find("magnify").addEventListener("input", redraw);
+    chosen.addEventListener("change", redraw, until);
+    find("magnify").addEventListener("input", redraw, until);
     followers.push((x) => {
       const i = Math.floor(data.linked ? (((relative(x) % 360) + 360) % 360) / 360 * N : x) % N;
       place.setAttribute("cx", px0[i]);
       place.setAttribute("cy", y0[i]);
     });
     redraw();
-  } else {
-    find("errors").hidden = true;
   }
 
   // --- controls -----------------------------------------------------------------------------------------------------
 
-  find("play").addEventListener("click", turned);
-  find("slider").addEventListener("input", (event) => held(Number(event.target.value)));
+  find("play").addEventListener("click", turned, until);
+  find("slider").addEventListener("input", (event) => held(Number(event.target.value)), until);
   for (const kind of ["contacts", "forces", "overlays"]) {
-    find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked));
+    find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked), until);
   }
   for (const kind of ["forces", "overlays"]) find(`${kind}-label`).hidden = !drawing.querySelector(`.${kind}`);
   const contours = [...drawing.querySelectorAll(".cam .metal")];
@@ -510,12 +524,12 @@
   find("contour-label").hidden = names.length < 2;
   find("contour").addEventListener("change", (event) => {
     for (const path of contours) path.classList.toggle("other", named(path) !== event.target.value);
-  });
+  }, until);
   for (const button of document.querySelectorAll(".go")) {
     button.addEventListener("click", () => {
       const at = Number(button.dataset.deg);
       held(button.dataset.over === "relative" ? shaftAt(at) : ((at % 360) + 360) % 360);
-    });
+    }, until);
   }
 
   document.addEventListener("keydown", (event) => {
@@ -533,7 +547,7 @@
     if (own || !(event.key in keys)) return;
     event.preventDefault();
     keys[event.key]();
-  });
+  }, until);
 
   // drag the cam about its shaft
   let grip = null;
@@ -571,26 +585,28 @@
   function fit() {
     px = 1 / (drawing.getScreenCTM()?.a || 1);
     drawing.style.setProperty("--px", px.toFixed(4));
+    for (const mark of marks) mark.setAttribute("r", ((5 * px) / scale).toPrecision(4));
     for (const plot of plots) plot.draw();
     show();
   }
   let width = 0;
-  new ResizeObserver(() => {
+  const observer = new ResizeObserver(() => {
     if (document.body.clientWidth === width) return;
     width = document.body.clientWidth;
     fit();
-  }).observe(document.body);
+  });
+  observer.observe(document.body);
   // what is folded up on a screen stands open on paper
   let folded = [];
   window.addEventListener("beforeprint", () => {
     folded = [...document.querySelectorAll("details:not([open])")];
     for (const one of folded) one.open = true;
     fit();
-  });
+  }, until);
   window.addEventListener("afterprint", () => {
     for (const one of folded) one.open = false;
     fit();
-  });
+  }, until);
   fit();
   // #deg=90 goes there and stands still, #deg=90&play turns on from there
   function addressed() {
@@ -600,7 +616,16 @@
     play(Boolean(place[2]));
     return true;
   }
-  window.addEventListener("hashchange", addressed);
+  window.addEventListener("hashchange", addressed, until);
   if (!addressed()) play(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
   root.dataset.ready = "true";
-})();
+
+  return () => {
+    play(false);
+    clearTimeout(later);
+    ended.abort();
+    observer.disconnect();
+    for (const part of [rests, now, chosen, ring, find("contour")]) part.replaceChildren();
+    find("plots").replaceChildren(rests);
+  };
+}

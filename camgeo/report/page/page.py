@@ -11,6 +11,7 @@ import numpy as np
 
 from camgeo.registry import registry
 from camgeo.report.document import finite
+from camgeo.report.failure import headline
 from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.asset import asset
 from camgeo.report.page.pack import packed
@@ -28,10 +29,11 @@ LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watch
 
 def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
     """Return the page of a recipe from what it shows and what the report says."""
+    shown = scene(recipe, content, report)
     parts = {
-        "note": escape(content.scene.note),
+        "note": escape(shown.pop("note")),
         "facts": tables.facts(report),
-        "drawing": svg.moving(content.scene),
+        "drawing": shown.pop("drawing"),
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
@@ -39,7 +41,7 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
         "script": asset("page.js"),
-        "data": encoded(data(recipe, content)),
+        "data": encoded(shown),
     }
     return head(recipe, report) + _filled("page.html", parts)
 
@@ -78,13 +80,21 @@ def encoded(values: object) -> str:
     return text.replace("<", "\\u003c")
 
 
-def data(recipe: Recipe, content: Content) -> dict[str, Any]:
-    """Return what the script moves and plots; angles in degrees, lengths in the recipe's unit."""
+def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str, Any]:
+    """Return all that the script draws, as plain data; angles in degrees, lengths in the recipe's unit.
+
+    `drawing` is the mechanism at shaft angle 0 as SVG, the group of body k with the id `body-k`, and `bodies` how each
+    moves: rows of x, y and angle at equal steps of a turn, packed (`camgeo.report.page.pack`). `marks` are the places
+    on the contour, in the axes of the cam, where checks of `report` fail and remarks are made.
+    """
     view = svg.View.of(content.scene)
     extent = max(view.width, view.height) / view.scale
     at = [*content.point.T, *content.normal.T]
     return {
         "name": recipe.name,
+        "note": content.scene.note,
+        "drawing": svg.moving(content.scene),
+        "marks": _marks(content, report),
         "unit": "in" if recipe.units == "inch" else "mm",
         "sense": -1 if recipe.rotation == "cw" else 1,
         "steps": STEPS,
@@ -105,6 +115,20 @@ def data(recipe: Recipe, content: Content) -> dict[str, Any]:
             for error in content.errors
         ],
     }
+
+
+def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return where on the contour checks of the design fail and remarks are made, of a cam of one surface."""
+    found = [(check, "failed") for check in report["checks"] if not check["ok"] and "file" not in check]
+    found += [(remark, "remark") for remark in report["remarks"]]
+    marks = []
+    for entry, kind in found:
+        if entry["at_deg"] is None or entry.get("surface"):
+            continue
+        x, y = content.point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
+        text = entry.get("sentence") or headline(entry)
+        marks.append({"name": entry["name"], "kind": kind, "at_deg": entry["at_deg"], "x": x, "y": y, "text": text})
+    return marks
 
 
 def _pose(body: Body, extent: float) -> list[dict[str, Any]]:

@@ -89,10 +89,12 @@ class Scene:
         for body in self.bodies:
             if body.kind == "forces":
                 continue  # they reach far where they say little
-            points = np.concatenate([ring.flattened() for shape in body.shapes for ring in shape.rings])
-            for step in range(0, len(body.pose), SEEN) if len(body.pose) > 1 else (0,):
-                placed = body.placed(points, step)
-                low, high = np.minimum(low, placed.min(axis=0)), np.maximum(high, placed.max(axis=0))
+            u, v = np.concatenate([ring.flattened() for shape in body.shapes for ring in shape.rings]).T
+            x, y, angle = body.pose[::SEEN].T[:, :, None]
+            c, s = np.cos(angle), np.sin(angle)
+            placed = u * c - v * s + x, u * s + v * c + y
+            low = np.minimum(low, [part.min() for part in placed])
+            high = np.maximum(high, [part.max() for part in placed])
         margin = 0.03 * float((high - low).max())
         return (*(low - margin).tolist(), *(high + margin).tolist())
 

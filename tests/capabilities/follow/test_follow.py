@@ -221,3 +221,11 @@ def test_a_recipe_of_a_yoke_is_refused(drawings: dict[str, Path]) -> None:
     followed = camgeo.follow(drawings["disc-flat"], flat=True, yoke=True)
     with pytest.raises(camgeo.CallError, match="a recipe is made of one contact: leave yoke out"):
         followed.recipe("lift.csv")
+
+
+@pytest.mark.parametrize("name", [".", "found", "found.csv"])
+def test_a_recipe_has_the_name_of_one(name: str, capsys) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["follow", "cam.dxf", "--flat", "--recipe", name])
+    assert left.value.code == WRONG
+    assert "a file whose name ends in .yaml is expected" in capsys.readouterr().err
