@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _FALLS = 2.0  # times less the mean square is without a row that is told of
 _SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
-_LEAST_ROWS = 5  # that a stroke spans, where one of them can be told from it
+_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # that a stroke spans where one can be told from it, and how many times less then
 _OFF = 3.0  # readings at least, by which a certain row is off what the others suggest
 _ABOUT = 2  # rows to either side: about a row
 _CALMER = 10.0  # times less the mean square about a certain row is without it
@@ -85,7 +85,8 @@ def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) 
     if off.max() < _OFF:
         return False
     span = min(spanned(rows, place) for place in places)
-    if span < _LEAST_ROWS or (span < _MANY and plain.square < _SURE * without.square):
+    sure = _SURE if span > _LEAST_ROWS else _SURE_OF_FEW
+    if span < _LEAST_ROWS or (span < _MANY and plain.square < sure * without.square):
         return False
     before, after = (max(_about(rows, found, place) for place in places) for found in (plain, without))
     return before >= _CALMER * after and after <= _SHARP * without.square
@@ -150,7 +151,7 @@ def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
 
 
 def spanned(rows: Tabled, place: int) -> int:
-    """Rows that the stroke of a row spans, without it; of one between two strokes, the lesser of them."""
+    """Rows that the stroke of a row spans, with it; of one between two strokes, without it, the lesser of them."""
     n = len(rows.s)
     sides = []
     for way in (-1, 1):
@@ -160,4 +161,8 @@ def spanned(rows: Tabled, place: int) -> int:
         run = int(changes[0]) if len(changes) else len(signs)
         sides.append((run + 1, way * float(signs[0]) if len(signs) else 0.0))
     (left, rising), (right, later) = sides
-    return left + right if rising == later else min(left, right)
+    if rising == later:
+        return left + right + 1
+    if not rising or not later:  # at the foot of a stroke, beside a dwell
+        return (left if rising else right) + 1
+    return min(left, right)
