@@ -148,6 +148,13 @@ class Follower(ABC):
         and infinite on a line.
         """
 
+    @abstractmethod
+    def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
+        """Shaft angle and the follower's position (n,) with each contact touching metal at points (n, 2), mm.
+
+        `normals` (n, 2) are outward of the contour; angles and positions are radians or mm, nan out of reach.
+        """
+
     def resting(self, contour: Contour) -> list[Shifted]:
         """Position, metres or radians, with each of its contacts resting on a contour."""
         each = zip(self.contacts, self.drives(contour), strict=True)

@@ -10,7 +10,7 @@ global, so they hold for a trimmed undercut as well. Nothing but the intent is u
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -26,6 +26,21 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 
+class Frames(NamedTuple):
+    """An exact contour at n parameters: what moves along with it, the tangent being the normal turned to the left.
+
+    points (n, 2)   mm
+    normals (n, 2)  unit vectors, outward
+    speed (n,)      of the point along the tangent, mm by the parameter
+    turn (n,)       of the normal, rad by the parameter
+    """
+
+    points: Array
+    normals: Array
+    speed: Array
+    turn: Array
+
+
 class Envelope(Protocol):
     """An exact contour over a parameter of period 2 pi."""
 
@@ -38,6 +53,9 @@ class Envelope(Protocol):
 
     def points(self, parameter: Array) -> Array:
         """Points (n, 2) of the contour, mm, at parameters (n,); of an undercut one also of what is cut off."""
+
+    def frames(self, parameter: Array) -> Frames:
+        """Points, outward normals and their rates at parameters (n,)."""
 
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
@@ -143,6 +161,12 @@ class FlatEnvelope:
         u = unit(t[0])
         points: Array = p[:, None] * u + slope[:, None] * left(u)
         return points
+
+    def frames(self, parameter: Array) -> Frames:
+        """Points, outward normals and their rates."""
+        (p, slope, bend), t = self._support(np.asarray(parameter, dtype=float))
+        u = unit(t[0])
+        return Frames(p[:, None] * u + slope[:, None] * left(u), u, (p + bend) * t[1], t[1])
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array]:
@@ -275,6 +299,14 @@ class RollerEnvelope:
         point, first, _ = self.pitch.points(parameter)
         points: Array = point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
         return points
+
+    def frames(self, parameter: Array) -> Frames:
+        """Points, outward normals and their rates."""
+        point, first, second = self.pitch.points(np.asarray(parameter, dtype=float))
+        speed = np.hypot(first[:, 0], first[:, 1])
+        normal = right(first) / speed[:, None]
+        turn = cross(first, second) / speed**2
+        return Frames(point - self.radius * normal, normal, speed - self.radius * turn, turn)
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:

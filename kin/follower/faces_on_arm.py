@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from kin.contour.arcs import dot
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
 from kin.follower.flat import NEAR
@@ -210,6 +211,17 @@ class _OnArm(Moved):
         q, slope, bend = bearing.derivatives(theta, bearing.find(theta))
         along = np.sqrt(face.pivot**2 - q * q) - face.side * slope
         return -face.side * np.arctan2(face.out, along), q + face.out + bend
+
+    def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
+        """See `Follower`."""
+        direction = np.arctan2(normals[:, 1], normals[:, 0])
+        found = []
+        for face, one, level in zip(self.faces, self.contacts, self.levels, strict=True):
+            w = (dot(points, normals) - face.out) / face.pivot
+            with np.errstate(invalid="ignore"):
+                swing = face.side * np.arccos(w)
+            found.append((direction + swing, one.sense * (level - one.zero) - one.sense * face.side * swing))
+        return found
 
     def _rows(self, bearing: Bearing, i: int, phi: Array, middle: Array | None = None) -> Array:
         """Position and two derivatives by phi, (3, n), with face i resting; `middle` as in `ArmFace.touch`."""

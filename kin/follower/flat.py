@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from kin.contour.arcs import dot
 from kin.follower.base import Closure, Follower, Rests
 from kin.follower.envelope import FlatEnvelope, LiftPitch
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
@@ -120,6 +121,12 @@ class FlatFace(Follower):
         bearing, theta = bearing_of(contour), phi + self.ahead
         q, _, bend = bearing.derivatives(theta, bearing.find(theta))
         return np.full(phi.shape, -self.tilt), q + bend
+
+    def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
+        """See `Follower`."""
+        direction = np.arctan2(normals[:, 1], normals[:, 0])
+        own = dot(points, normals) / self._share
+        return [(direction - self.tilt - one.turned, one.position(own)) for one in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""

@@ -137,6 +137,15 @@ class _Rollers(Moved):
         pressure, radius = self.drives(contour)[0].pressed(phi)
         return pressure, radius - self.radius
 
+    def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
+        """See `Follower`."""
+        centres = points + self.side * self.radius * normals
+        distance = np.hypot(centres[:, 0], centres[:, 1])
+        return [
+            (guide.shaft_angle(centres) - one.turned, one.position(guide.position(distance)))
+            for one, guide in zip(self.contacts, self.guides, strict=True)
+        ]
+
     def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
         chain = contour.as_arcs(*spline)[0]
         return dilated(chain if self.side > 0 else chain.reversed(), self.radius)

@@ -50,6 +50,12 @@ class Feet:
         return self.parameter, self.excess, self.normal, self.curvature
 
 
+def equal_steps(count: int) -> Array:
+    """Angles (count,) at equal steps of a turn from 0 on, rad."""
+    steps: Array = np.arange(count, dtype=np.float64) * (TURN / count)
+    return steps
+
+
 def grid(breaks: Array, count: int = COARSE) -> Array:
     """`count` equal steps of [0, 2 pi), the breaks, and `WITHIN` parts of short stretches between, rising, distinct."""
     ends = np.sort(np.mod(breaks, TURN))

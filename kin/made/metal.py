@@ -1,0 +1,133 @@
+"""The metal as it was made: the exact contour and the smoothed deviation along its normals, and what runs on it.
+
+Every point of the metal and its normal would put a contact at one shaft angle in one position (`Follower.touching`).
+Over the parameter these pairs are a curve; where the metal is hollow beyond what the contact reaches into, it folds.
+The contact rests where no metal is in its way: of all places with the same shaft angle on the one that puts it the
+farthest out. So contacts that leap over a dent are found as they are, which no formula of first order tells.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import left
+from kin.follower.motion_error import ContactError
+from kin.numeric.angles import TURN
+from kin.numeric.feet import grid
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.follower.base import Follower
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array, Indices
+
+    Deviation = Callable[[Array], Array]  # of parameters (n,): deviation, mm, and its derivative (2, n)
+
+COARSE = 4096  # places of the turn between which contact is looked for, at least
+PER_SPAN = 12  # of them in a span of the smoothed deviation
+STEPS = 12  # of the search within two places: to rounding
+SETTLED = 1e-14  # rad
+ROUNDING = 1e-12  # rad, by which neighbouring places overlap
+NO_BREAKS = np.zeros(0)
+
+
+@dataclass(frozen=True, eq=False)
+class Metal:
+    """Metal whose surface lies at `deviation` from a follower's exact contour, above 0 for metal too much.
+
+    `side` is that of the contour on which the metal lies: 1 inside, -1 outside. `places` are parameters (m,), rising
+    over a turn, close enough that between two of them nothing of the deviation is lost. `gauge` is what runs on the
+    metal: the follower itself, or a probe on its guide.
+    """
+
+    follower: Follower
+    side: Side
+    deviation: Deviation
+    places: Array
+    gauge: Follower
+
+    @staticmethod
+    def of(
+        follower: Follower, side: Side, deviation: Deviation, finest: int = 0, gauge: Follower | None = None
+    ) -> Metal:
+        """Metal whose deviation has `finest` spans or waves a turn."""
+        places = grid(NO_BREAKS, max(COARSE, PER_SPAN * finest))
+        return Metal(follower, side, deviation, places, gauge or follower)
+
+    def surface(self, parameter: Array) -> tuple[Array, Array]:
+        """Points (n, 2), mm, and normals (n, 2) outward of the contour."""
+        frame = self.follower.envelope.frames(parameter)
+        off, slope = self.side * self.deviation(parameter)
+        along = frame.speed + off * frame.turn
+        normal = along[:, None] * frame.normals - slope[:, None] * left(frame.normals)
+        size = np.hypot(normal[:, 0], normal[:, 1])
+        return frame.points + off[:, None] * frame.normals, normal / size[:, None]
+
+    def positions(self, shaft: Array) -> tuple[Array, Array]:
+        """Position of the follower with each contact resting on the metal at shaft angles (n,), and where it rests.
+
+        Positions are mm or radians, (c, n); so are the parameters. ContactError where a contact finds no metal.
+        """
+        rest = [self._resting(i, shaft) for i in range(len(self.gauge.contacts))]
+        return np.stack([position for position, _ in rest]), np.stack([place for _, place in rest])
+
+    def _touching(self, parameter: Array, contact: int) -> tuple[Array, Array]:
+        return self.gauge.touching(*self.surface(parameter))[contact]
+
+    def _resting(self, contact: int, shaft: Array) -> tuple[Array, Array]:
+        outwards = self.gauge.contacts[contact].sense  # own positions grow outwards
+        low = self.places
+        angle, _ = self._touching(low, contact)
+        if not np.isfinite(angle).all():
+            at = int(np.argmin(np.isfinite(angle)))
+            raise ContactError("the metal is out of the follower's reach", float(low[at]))
+        high = np.append(low[1:], low[0] + TURN)
+        step = np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi
+        query, piece = _pairs(np.mod(shaft, TURN), angle, step)
+        a, b = low[piece], high[piece]
+        off = np.mod(shaft[query] - angle[piece] + np.pi, TURN) - np.pi
+        place = self._found(contact, shaft[query], (a, b), (-off, step[piece] - off))
+        _, position = self._touching(place, contact)
+        best = np.full(len(shaft), -np.inf)
+        np.maximum.at(best, query, outwards * position)
+        if not np.isfinite(best).all():
+            raise ContactError("the follower finds no metal", float(shaft[int(np.argmin(best))]))
+        parameter = np.empty_like(shaft)
+        won = outwards * position == best[query]
+        parameter[query[won]] = place[won]
+        return outwards * best, parameter
+
+    def _found(self, contact: int, shaft: Array, ends: tuple[Array, Array], off: tuple[Array, Array]) -> Array:
+        """Parameters between two ends (n,) at which the contact stands at shaft angles (n,): Illinois' rule.
+
+        `off` are the shaft angles at the ends less those.
+        """
+        (a, b), (at_a, at_b) = ends, off
+        place = a
+        for _ in range(STEPS):
+            width = at_b - at_a
+            place = np.where(width != 0.0, b - at_b * (b - a) / np.where(width != 0.0, width, 1.0), a)
+            angle, _ = self._touching(place, contact)
+            at = np.mod(angle - shaft + np.pi, TURN) - np.pi
+            same = (at > 0.0) == (at_b > 0.0)
+            a, at_a = np.where(same, a, b), np.where(same, 0.5 * at_a, at_b)
+            b, at_b = place, at
+            if np.abs(at).max(initial=0.0) < SETTLED:
+                break
+        return place
+
+
+def _pairs(shaft: Array, angle: Array, step: Array) -> tuple[Indices, Indices]:
+    """Which shaft angles (n,), in [0, 2 pi), lie between which ends: pairs of an index of either."""
+    order = np.argsort(shaft, kind="stable")
+    ring = np.concatenate([shaft[order], shaft[order] + TURN])
+    low = np.mod(np.minimum(angle, angle + step) - ROUNDING, TURN)
+    first = np.searchsorted(ring, low, side="left")
+    count = np.searchsorted(ring, low + np.abs(step) + 2.0 * ROUNDING, side="right") - first
+    piece = np.repeat(np.arange(len(angle)), count)
+    number = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
+    return order[(first[piece] + number) % len(shaft)], piece

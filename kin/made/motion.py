@@ -1,0 +1,216 @@
+"""The motion that a made part will make, by contact on its metal, against what is meant; with its uncertainty.
+
+Velocity and acceleration errors are derivatives by the shaft angle of the error itself, by five-point differences:
+their step is a share of the smoothing's span, so that nothing of that is lost, and far above rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.follower.frame_contact import CENTRED, QUARTER, WAYS, driven
+from kin.made.metal import Metal
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from kin.follower.base import Follower
+    from kin.law.contacts import Side
+    from kin.linkage.mechanism import Mechanism
+    from kin.made.smooth import Smooth
+    from kin.numeric.arrays import Array
+
+STEP_SHARE, MOST_STEP = 0.05, 2e-3  # of a span, and rad: the step of the differences
+OFFSETS = (-2.0, -1.0, 0.0, 1.0, 2.0)
+FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
+BESIDE = 3.0  # steps about a break of the motion, where differences mix both sides
+RAISED = 1e-4  # mm: metal raised by as much tells how the motion depends on it
+COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Errors of a motion at shaft angles (n,), with their standard deviations; mm or rad, derivatives by rad.
+
+    shaft (n,)     shaft angles, rad
+    rows (3, n)    error, its velocity and its acceleration; nan about breaks of the motion, where that jumps
+    sds (3, n)     standard deviations by the noise of the points
+    gain (n,)      what a mm more of metal adds to the position
+    meant (3, n)   the intended position, velocity and acceleration
+    """
+
+    shaft: Array
+    rows: Array
+    sds: Array
+    gain: Array
+    meant: Array
+
+    @property
+    def offset(self) -> float:
+        """Mean error over the turn: it is set on assembly."""
+        return float(self.rows[0].mean())
+
+    @property
+    def remaining(self) -> Array:
+        """Error less the offset (n,)."""
+        remaining: Array = self.rows[0] - self.offset
+        return remaining
+
+    @property
+    def phase(self) -> tuple[float, Array]:
+        """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
+        columns = np.column_stack([np.ones_like(self.shaft), -self.meant[1]])
+        if not float(np.ptp(self.meant[1])) > 0.0:
+            return 0.0, self.remaining
+        found = np.linalg.lstsq(columns, self.rows[0], rcond=None)[0]
+        return float(found[1]), self.rows[0] - columns @ found
+
+    def uncertainty(self, systematic: Array | float = 0.0) -> Array:
+        """Expanded uncertainty of the error (n,), k = 2; `systematic` is that of the metal, k = 2, mm, (n,) or one."""
+        expanded: Array = np.hypot(COVERAGE * self.sds[0], np.abs(self.gain) * systematic)
+        return expanded
+
+    @property
+    def peak_acceleration(self) -> tuple[float, float]:
+        """Greatest acceleration that the part gives, and that intended, by rad^2."""
+        made = self.meant[2] + self.rows[2]
+        return float(np.nanmax(np.abs(made))), float(np.abs(self.meant[2][np.isfinite(made)]).max())
+
+
+@dataclass(frozen=True, eq=False)
+class Play:
+    """What two opposite contacts leave a follower at shaft angles (n,), mm or rad; below 0 they interfere."""
+
+    shaft: Array
+    gap: Array
+    sds: Array
+
+
+def metal_of(follower: Follower, side: Side, curve: Smooth, raised: float = 0.0) -> Metal:
+    """The metal of a smoothed deviation, raised all round by mm."""
+
+    def deviation(t: Array) -> Array:
+        rows = curve.rows(t, 1)
+        rows[0] += raised
+        return rows
+
+    return Metal.of(follower, side, deviation, curve.spans)
+
+
+def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array) -> list[Errors]:
+    """Errors of a follower with each of its contacts on the metal; raises ContactError where one finds none."""
+    step = min(STEP_SHARE * TURN / curve.spans, MOST_STEP)
+    every = (shaft + step * np.array(OFFSETS)[:, None]).ravel()
+    metal = metal_of(follower, side, curve)
+    positions, places = metal.positions(every)
+    raised = metal_of(follower, side, curve, RAISED).positions(shaft)[0]
+    lowered = metal_of(follower, side, curve, -RAISED).positions(shaft)[0]
+    breaks = _beside(shaft, follower.motion.breaks, BESIDE * step)
+    intended = follower.intended(every)
+    meant = follower.motion.derivatives(shaft, 2)[:3]
+    found = []
+    for k in range(len(positions)):
+        error = (positions[k] - intended).reshape(len(OFFSETS), -1)
+        rows = np.stack([error[2], FIRST @ error / step, SECOND @ error / step**2])
+        rows[2, breaks] = np.nan
+        place = np.unwrap(places[k].reshape(len(OFFSETS), -1), axis=0, period=TURN)
+        rate = np.abs(FIRST @ place / step)
+        gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
+        at = place[2]
+        sds = np.stack([np.abs(gain) * rate**q * curve.deviations(at, q) for q in range(3)])
+        found.append(Errors(shaft, rows, sds, gain, meant))
+    return found
+
+
+def _beside(shaft: Array, breaks: Array, width: float) -> NDArray[np.bool_]:
+    """Whether shaft angles (n,) lie within a width of a break."""
+    if not len(breaks):
+        return np.zeros(len(shaft), dtype=bool)
+    ring = np.sort(np.mod(breaks, TURN))
+    ring = np.concatenate([ring[-1:] - TURN, ring, ring[:1] + TURN])
+    at = np.mod(shaft, TURN)
+    after = np.clip(np.searchsorted(ring, at), 1, len(ring) - 1)
+    near: NDArray[np.bool_] = np.minimum(at - ring[after - 1], ring[after] - at) <= width
+    return near
+
+
+def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
+    """Motion midway between two opposite contacts, and the play that they leave; the first bounds it from below."""
+    rows = 0.5 * (pushing.rows + stopping.rows)
+    sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
+    gap = stopping.rows[0] - pushing.rows[0]
+    middle = Errors(pushing.shaft, rows, sds, np.maximum(np.abs(pushing.gain), np.abs(stopping.gain)), pushing.meant)
+    return middle, Play(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
+
+
+def paired(follower: Follower, errors: Sequence[Errors]) -> tuple[Errors, Play | None]:
+    """Motion of a follower on one surface, and its play where two contacts hold it from both sides."""
+    if len(errors) == 1:
+        return errors[0], None
+    first, second = errors if follower.contacts[0].sense > 0 else (errors[1], errors[0])
+    return between(first, second)
+
+
+@dataclass(frozen=True, eq=False)
+class OutputErrors:
+    """Errors of a mechanism's output over the relative angle (n,): centred in its frame, and the worst way it may rest.
+
+    shaft (n,)     shaft angle, rad
+    centred (n,)   mm or rad
+    worst (n,)     of greatest size
+    sds (n,)       standard deviation of the centred one
+    """
+
+    shaft: Array
+    centred: Array
+    worst: Array
+    sds: Array
+
+
+def output_errors(
+    mechanism: Mechanism, follower: Follower, curve: Smooth, relative: Array, overlap: float = 0.0
+) -> OutputErrors:
+    """Errors of the output that a linkage makes of a square frame on the metal, at relative angles (n,).
+
+    `overlap`, mm, is what the metal is meant to overlap each face by. Raises FrameError where the frame binds.
+    """
+    metal = metal_of(follower, 1, curve)
+    ring = np.stack([metal.positions(relative + k * QUARTER)[0][0] - overlap for k in range(4)])
+
+    def output(first: float, second: float, reach: Array) -> tuple[Array, Array]:
+        s = first * reach[0] + (1.0 - first) * (mechanism.breadth - reach[2])
+        s1 = second * reach[1] + (1.0 - second) * (mechanism.breadth - reach[3])
+        shaft, made = driven(mechanism, relative, s[None], s1[None])[:, 0]
+        meant = mechanism.at(mechanism.relative(shaft), 0).output[0]
+        off = made - meant
+        return shaft, off - TURN * np.round(off / TURN) if mechanism.unit == "deg" else off
+
+    shaft, centred = output(CENTRED.first, CENTRED.second, ring)
+    ways = np.stack([output(way.first, way.second, ring)[1] for way in WAYS])
+    worst = np.take_along_axis(ways, np.abs(ways).argmax(axis=0)[None], axis=0)[0]
+    square = np.zeros_like(centred)
+    for face in range(4):
+        moved = ring.copy()
+        moved[face] += curve.deviations(relative + face * QUARTER)
+        square += (output(CENTRED.first, CENTRED.second, moved)[1] - centred) ** 2
+    return OutputErrors(shaft, centred, worst, np.sqrt(square))
+
+
+def least_fault(sigma: float, squares: float, places: int) -> float:
+    """Least height, mm, of a fault that is found in 95 % of parts, where noise alone gives one in 5 %.
+
+    `squares` is the sum of squares of its shape, peak 1, over the points; `places` how many such shapes are looked at.
+    """
+    from statistics import NormalDist
+
+    normal = NormalDist()
+    z = normal.inv_cdf(1.0 - 0.05 / (2.0 * max(places, 1)))
+    return (z + normal.inv_cdf(0.95)) * sigma / math.sqrt(squares)

@@ -1,0 +1,320 @@
+"""Measured points against an exact contour: signed deviations along its normals, placed as a datum lets them be.
+
+The foot of a point q on the contour P(t) is where q - P has no part along the tangent (`Envelope.feet`); its deviation
+e = (q - P).N, N out of the metal, is above 0 where there is too much of it.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from kin.contour.arcs import cross
+from kin.made.placing import ILL, conditions, interval, least_squares, minimax
+from kin.numeric.angles import TURN
+from kin.numeric.errors import CamgeoError, UnsettledError
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.follower.base import Follower
+    from kin.law.contacts import Side
+    from kin.made.placing import Minimax
+    from kin.numeric.arrays import Array
+
+Datum: TypeAlias = Literal["part", "bore", "none"]
+FREE: dict[Datum, str] = {"part": "", "bore": "g", "none": "gxy"}
+"""What may be turned (g) and shifted (x, y) about the axes that each datum fixes."""
+STEPS = 16  # of placing and taking feet anew
+STILL = 1e-10  # rad, and share of the size: a step that changes nothing
+AT_ONCE = 100_000  # points whose feet are found at a time: memory
+COARSE_TURNS = 120  # angles at which a turn is looked for
+FEW = 120  # points that do for that
+FAR = 0.01  # of the mean radius: points that lie farther from the contour, on average, are of something else
+BETTER = 0.1  # of their distance: what another placing has to bring it down to, to be what they look like
+MANY = 2000  # points that do to tell what they look like
+LIKE = 1.5  # ratio of mean radii within which points may be of this cam
+SHIFT = 0.25  # of the mean radius: a shift above is none
+MIRRORED = 3.0  # times nearer than any other placing points are to be, to look mirrored
+FACTORS = {25.4: "inch", 1.0 / 25.4: "mm", 10.0: "cm", 1000.0: "m"}  # of points read in mm or inches by mistake
+
+
+class UnlikePointsError(CamgeoError, ValueError):
+    """Points that are not on this contour; the message says what they look like."""
+
+
+@dataclass(frozen=True, eq=False)
+class Deviations:
+    """Deviations of n points on one surface.
+
+    parameter (n,)   of their feet
+    e (n,)           mm, above 0 where metal is too much
+    normals (n, 2)   of the contour at the feet, out of the metal
+    moment (n,)      mm: what a turn of the metal by a radian, counter-clockwise, adds to e
+    """
+
+    parameter: Array
+    e: Array
+    normals: Array
+    moment: Array
+
+    def columns(self, free: str) -> Array:
+        """What a turn (g) and shifts (x, y) add to the deviations, in the order of their letters (n, k)."""
+        each = {"g": self.moment, "x": self.normals[:, 0], "y": self.normals[:, 1]}
+        return np.column_stack([each[name] for name in free]) if free else np.empty((len(self.e), 0))
+
+
+@dataclass(frozen=True, eq=False)
+class Placing:
+    """How far the metal is turned, rad counter-clockwise, and shifted, mm, against the contour as drawn."""
+
+    turn: float = 0.0
+    shift: tuple[float, float] = (0.0, 0.0)
+
+    def back(self, points: Array, directions: Array | None = None) -> tuple[Array, Array | None]:
+        """Points (n, 2), and directions, as if the metal were neither turned nor shifted."""
+        c, s = math.cos(self.turn), math.sin(self.turn)
+        rotation = np.array([[c, -s], [s, c]])
+        return (points - self.shift) @ rotation, None if directions is None else directions @ rotation
+
+    def on(self, step: Array, free: str) -> Placing:
+        """The placing after a step of the unknowns `free`, which are counted in the frame that it leads to."""
+        by = dict(zip(free, step.tolist(), strict=True))
+        x, y = by.get("x", 0.0), by.get("y", 0.0)
+        c, s = math.cos(self.turn), math.sin(self.turn)
+        shift = (self.shift[0] + c * x - s * y, self.shift[1] + s * x + c * y)
+        return Placing(self.turn + by.get("g", 0.0), shift)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePoints:
+    """Points measured on a surface, in the axes of the drawing as if not mirrored, mm.
+
+    follower         whose exact contour they are held against
+    side             of that contour on which the metal lies
+    places (n, 2)    points, or centres of a probe's ball
+    ball             radius of the ball whose centres the places are; 0 for points of the metal
+    directions       normals out of the metal as measured (n, 2), None without
+    placing          of the metal against the drawing, which is taken out
+    """
+
+    follower: Follower
+    side: Side
+    places: Array
+    ball: float = 0.0
+    directions: Array | None = None
+    placing: Placing = Placing()
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    @cached_property
+    def deviations(self) -> Deviations:
+        """Deviations of the points as they are placed. UnsettledError where a foot is not found."""
+        parts = [self._deviations(slice(i, i + AT_ONCE)) for i in range(0, len(self), AT_ONCE)]
+        rows = zip(*((one.parameter, one.e, one.normals, one.moment) for one in parts), strict=True)
+        return Deviations(*(np.concatenate(row) for row in rows))
+
+    def _deviations(self, part: slice) -> Deviations:
+        directions = None if self.directions is None else self.directions[part]
+        places, directions = self.placing.back(self.places[part], directions)
+        if self.ball and directions is not None:
+            places = places - self.ball * directions
+        feet = self.follower.envelope.feet(places)
+        normals = self.side * feet.normal
+        touched = places - (self.side * feet.excess)[:, None] * normals
+        e = self.side * feet.excess - (0.0 if directions is not None else self.ball)
+        return Deviations(feet.parameter, e, normals, cross(touched, normals))
+
+    def placed(self, placing: Placing) -> SurfacePoints:
+        """The same points with another placing taken out."""
+        return replace(self, placing=placing)
+
+    def part(self, chosen: Array) -> SurfacePoints:
+        """Some of the points, by index or mask."""
+        directions = None if self.directions is None else self.directions[chosen]
+        return replace(self, places=self.places[chosen], directions=directions)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """The profile deviation of points under a datum (ISO 1101, ISO 1660): the value is twice the greatest |e|.
+
+    datum, free      what fixes the axes, and which unknowns it leaves free and the points can tell: of g, x, y
+    placing          minimax: of least greatest deviation; as the points stand where nothing is free
+    deviations       of all points so placed, surface by surface
+    certified        touching points with multipliers; None where nothing is free
+    turns            least and greatest turn, rad, with that deviation, where only a turn is free
+    least            placing by least squares, and its greatest deviation, mm
+    """
+
+    datum: Datum
+    free: str
+    placing: Placing
+    deviations: tuple[Deviations, ...]
+    certified: Minimax | None
+    turns: tuple[float, float] | None
+    least: tuple[Placing, float]
+
+    @property
+    def e(self) -> Array:
+        """Deviations of all points (n,), mm."""
+        return np.concatenate([one.e for one in self.deviations])
+
+    @property
+    def greatest(self) -> float:
+        """Greatest |e|, mm."""
+        return float(np.abs(self.e).max())
+
+
+def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
+    """Profile deviation of the surfaces of one part, which is placed as a whole."""
+    wanted = FREE[datum]
+    standing = _stacked(surfaces, surfaces[0].placing)
+    free = told_apart(standing, wanted)
+    if not free:
+        return Profile(datum, free, surfaces[0].placing, standing, None, None, (surfaces[0].placing, _most(standing)))
+    least = settled(surfaces, free)
+    rough = _stacked(surfaces, least)
+    best, found, turns = least, None, None
+    for _ in range(STEPS):
+        columns, e = _columns(rough, free), np.concatenate([one.e for one in rough])
+        found = minimax(columns, e)
+        step = found.x
+        if free == "g":
+            turns = interval(columns[:, 0], e, found.value)
+            step = np.array([min(max(float(least_squares(columns, e)[0]), turns[0]), turns[1])])
+            turns = (best.turn + turns[0], best.turn + turns[1])
+        best = best.on(step, free)
+        rough = _stacked(surfaces, best)
+        if _still(step, free, surfaces):
+            break
+    else:
+        raise UnsettledError("the placing of the points does not come to rest")
+    return Profile(datum, free, best, rough, found, turns, (least, _most(_stacked(surfaces, least))))
+
+
+def settled(surfaces: Sequence[SurfacePoints], free: str) -> Placing:
+    """Placing by least squares over the unknowns `free`, with feet taken anew until it is still."""
+    placing = surfaces[0].placing
+    for _ in range(STEPS):
+        now = _stacked(surfaces, placing)
+        step = least_squares(_columns(now, free), np.concatenate([one.e for one in now]))
+        placing = placing.on(step, free)
+        if _still(step, free, surfaces):
+            break
+    return placing
+
+
+def told_apart(deviations: Sequence[Deviations], wanted: str) -> str:
+    """Those of the unknowns that the points can tell: without the turn where it is a mix of the shifts, or nothing."""
+    if "g" not in wanted:
+        return wanted
+    columns = _columns(deviations, wanted)
+    size = float(np.abs(columns[:, 1:]).max(initial=1.0))
+    turning = float(np.sqrt(np.mean(columns[:, 0] ** 2)))
+    reach = max(float(np.abs(np.concatenate([one.moment for one in deviations])).max()), 1e-300)
+    scaled = columns / np.array([max(turning, 1e-12), *[1.0] * (len(wanted) - 1)])
+    if turning < 1e-6 * size or reach < 1e-6 or conditions(scaled).min() < ILL:
+        return wanted.replace("g", "")
+    return wanted
+
+
+def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
+    """Placing by least squares from the best of equal turns: points whose zero of the angle is arbitrary."""
+    few = [one.part(np.linspace(0, len(one) - 1, min(FEW, len(one))).astype(np.intp)) for one in surfaces]
+    turns = np.arange(COARSE_TURNS) * (TURN / COARSE_TURNS)
+    turn = min(turns.tolist(), key=lambda angle: _off(few, Placing(angle)))
+    turn = math.remainder(turn, TURN)
+    return settled([one.placed(Placing(turn)) for one in surfaces], free)
+
+
+def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool) -> None:
+    """Raise UnlikePointsError for points that lie far from the contours, saying what they look like."""
+    far, size = _off(surfaces, surfaces[0].placing), _size(surfaces)
+    if far <= FAR * size:
+        return
+    told = f"the points lie {far:.3g} mm off its contour on average"
+    few = [one.part(np.linspace(0, len(one) - 1, min(MANY, len(one))).astype(np.intp)) for one in surfaces]
+    radius = float(np.mean([np.hypot(*one.places.T).mean() for one in few]))
+    looks: list[tuple[float, str]] = []
+    for factor in (1.0, *FACTORS):
+        if not 1.0 / LIKE < factor * radius / size < LIKE:
+            continue
+        for mirrored in (False, True):
+            scaled = [_altered(one, factor, mirrored=mirrored) for one in few]
+            try:
+                placing = turned_at(scaled, "g")
+                if _off(scaled, placing) > FAR * size:
+                    placing = settled([one.placed(placing) for one in scaled], "gxy")
+            except (UnsettledError, np.linalg.LinAlgError):
+                continue
+            left = _off(scaled, placing)
+            if math.hypot(*placing.shift) <= SHIFT * size and left <= BETTER * min(far, size):
+                words = _likeness(placing, factor, size, mirrored=mirrored, aligned=aligned)
+                looks.append((left * (MIRRORED if mirrored else 1.0), words))
+    if looks:
+        raise UnlikePointsError(f"{told}: {min(looks)[1]}")
+    raise UnlikePointsError(f"{told}, however they are turned or mirrored: they look like those of another cam")
+
+
+def _likeness(placing: Placing, factor: float, size: float, *, mirrored: bool, aligned: bool) -> str:
+    words, remedies = [], []
+    if factor != 1.0:
+        large = max(factor, 1.0 / factor)
+        words.append(f"{large:.6g} times too {'small' if factor > 1.0 else 'large'}")
+        remedies.append(f"`--units {FACTORS[factor]}`")
+    if mirrored:
+        words.append("mirrored")
+        remedies.append("measure them with the upper face up, as the file is drawn, or turn y round")
+    turn = math.degrees(placing.turn)
+    if abs(turn) > 0.05:
+        words.append(f"turned by {turn:.3g} degrees")
+    x, y = placing.shift
+    if math.hypot(x, y) > 1e-3 * size:
+        words.append(f"shifted by ({x:.3g}, {y:.3g}) mm")
+        remedies.append("`--align best-fit`")
+    elif abs(turn) > 0.05 and not aligned:
+        remedies.append("`--align rotation`")
+    return f"they look {', '.join(words)}: {', then '.join(remedies)}"
+
+
+def _altered(one: SurfacePoints, factor: float, *, mirrored: bool) -> SurfacePoints:
+    by = np.array([factor, -factor if mirrored else factor])
+    directions = None if one.directions is None else one.directions * np.sign(by)
+    return replace(one, places=one.places * by, directions=directions, placing=Placing())
+
+
+def _off(surfaces: Sequence[SurfacePoints], placing: Placing) -> float:
+    """Root mean square of the deviations, mm."""
+    e = np.concatenate([one.e for one in _stacked(surfaces, placing)])
+    return float(np.sqrt(np.mean(e * e)))
+
+
+def _size(surfaces: Sequence[SurfacePoints]) -> float:
+    """Mean radius of the exact contours, mm."""
+    points = [one.follower.envelope.points(np.linspace(0.0, TURN, 64)) for one in surfaces]
+    return float(np.mean([np.hypot(each[:, 0], each[:, 1]).mean() for each in points]))
+
+
+def _stacked(surfaces: Sequence[SurfacePoints], placing: Placing) -> tuple[Deviations, ...]:
+    return tuple(one.placed(placing).deviations for one in surfaces)
+
+
+def _columns(deviations: Sequence[Deviations], free: str) -> Array:
+    return np.concatenate([one.columns(free) for one in deviations])
+
+
+def _most(deviations: Sequence[Deviations]) -> float:
+    return max(float(np.abs(one.e).max()) for one in deviations)
+
+
+def _still(step: Array, free: str, surfaces: Sequence[SurfacePoints]) -> bool:
+    size = float(np.abs(surfaces[0].places).max())
+    return all(
+        abs(value) <= STILL * (1.0 if name == "g" else size) for name, value in zip(free, step.tolist(), strict=True)
+    )

@@ -1,0 +1,305 @@
+"""Smooth periodic curves through noisy points: quintic splines by least squares, their spans, noise and covariance.
+
+On N equal spans of a turn the curve is sum c_j B(u - j), B the quintic B-spline, u = N t/(2 pi): twice differentiable
+four times over, local, and linear in its coefficients c. These solve banded normal equations. The number of spans is
+that of the least generalised cross-validation n RSS/(n - N)^2 (Craven and Wahba 1979): the trace of the projection on a
+spline space is its dimension N. The covariance is that of the points as they lie, sigma^2 (B^T B)^-1.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.errors import CamgeoError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array, Indices
+
+DEGREE = 5
+WIDTH = DEGREE + 1
+LEAST_SPANS = 12
+MOST_SPANS = 1440  # a quarter of a degree: what a probe's ball lets through; keeps the normal equations small
+POINTS_A_SPAN = 5  # at least, on average
+WIDEST_GAP = 2.0  # spans without a point, above which the curve between is invented
+BLOCK = 40  # coefficients that are eliminated at once, more than the band is wide
+GROSS = 3.0  # times what makes an outlier of the curve
+LADDER = 1.35  # ratio of the numbers of spans that are tried
+FINER = 1.09  # ratio of those beside the best
+OUTLIER = 4.5 * 1.4826  # median absolute deviations: 4.5 standard deviations of normal noise
+FELLOWS = 2  # points beside one another: more that stand out together are a fault of the part, not of the measurement
+ROUNDS = 12  # of leaving out outliers
+TRIFLE = 1e-5  # mm: less than this no instrument tells, so that no point is an outlier by it
+CORRELATED = 2.0  # standard deviations 1/sqrt(n) of the lag-1 correlation of white noise
+
+
+class GapError(CamgeoError, ValueError):
+    """Points leave a gap that no curve may bridge."""
+
+
+def _basis() -> Array:
+    """Coefficients (6, 6) by powers of the place in a span, [0, 1): row m of the m-th spline that is not 0 there."""
+    rows = [np.array([1.0])]
+    for d in range(1, WIDTH):
+        before, rows = rows, []
+        for m in range(d + 1):
+            row = np.zeros(d + 1)
+            if m > 0:
+                row += np.append(0.0, before[m - 1]) / d - (m - d) / d * np.append(before[m - 1], 0.0)
+            if m < d:
+                row += (m + 1) / d * np.append(before[m], 0.0) - np.append(0.0, before[m]) / d
+            rows.append(row)
+    return np.stack(rows)
+
+
+BASIS = _basis()
+
+
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """A fitted curve over a turn, mm over radians.
+
+    coefficients (N,)  of the splines
+    sigma              standard deviation of the points' noise, mm; 0 for points without any
+    widened            factor by which correlated residuals widen every standard deviation, 1 for white ones
+    factor (N, N)      inverse of the normal matrix: the covariance over sigma^2
+    """
+
+    coefficients: Array
+    sigma: float
+    widened: float
+    factor: Array
+
+    @property
+    def spans(self) -> int:
+        """Number of spans N of the turn."""
+        return len(self.coefficients)
+
+    def rows(self, t: Array, order: int = 0) -> Array:
+        """Value, mm, and its derivatives by the parameter at parameters t (n,), up to `order`: (order + 1, n)."""
+        place, span = _place(t, self.spans)
+        index = (span + np.arange(WIDTH)[:, None]) % self.spans
+        c = self.coefficients[index]
+        rows: Array = np.stack([(c * _values(place, q, self.spans)).sum(axis=0) for q in range(order + 1)])
+        return rows
+
+    def deviations(self, t: Array, order: int = 0) -> Array:
+        """Standard deviation of the derivative of that order at parameters t (n,), mm by rad to the order."""
+        place, span = _place(t, self.spans)
+        index = (span + np.arange(WIDTH)[:, None]) % self.spans
+        values = _values(place, order, self.spans)
+        square = np.zeros(len(place))
+        for a in range(WIDTH):
+            for b in range(a, WIDTH):
+                square += (1 + (b > a)) * values[a] * values[b] * self.factor[index[a], index[b]]
+        deviations: Array = self.widened * self.sigma * np.sqrt(np.maximum(square, 0.0))
+        return deviations
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A smooth curve, and how the points lie about it.
+
+    curve             the curve
+    residuals (n,)    of all points, mm
+    outliers (n,)     whether a point is left out
+    correlation       of residuals beside one another
+    """
+
+    curve: Smooth
+    residuals: Array
+    outliers: NDArray[np.bool_]
+    correlation: float
+
+
+def fit(t: Array, e: Array, spans: int | None = None) -> Fit:
+    """Fit a smooth curve to values e (n,), mm, at parameters t (n,), rad; outliers are left out.
+
+    `spans` is the number of spans, chosen by cross-validation between 12 and n/5 where None. Raises GapError where a
+    gap is above two of the widest spans, or of those that are given, and ValueError for more than MOST_SPANS spans, for
+    fewer than 12, or for more than a fifth of the points.
+    """
+    order = np.argsort(np.mod(t, TURN), kind="stable")
+    angle, value = np.mod(t, TURN)[order], e[order]
+    kept = ~_gross(value)
+    for _ in range(ROUNDS):
+        system = _Points(angle[kept], value[kept], len(angle))
+        coefficients = system.solved(system.chosen(spans))
+        residuals = value - _evaluated(coefficients, angle)
+        left_in = ~_standing_out(residuals, kept)
+        if (left_in == kept).all():
+            break
+        kept = left_in
+    count = int(kept.sum())
+    left = residuals[kept]
+    white = float(left @ left)
+    sigma = math.sqrt(white / (count - len(coefficients)))
+    correlation = float(left @ np.roll(left, -1)) / white if white > 0.0 else 0.0
+    above = correlation if correlation > CORRELATED / math.sqrt(count) and sigma > TRIFLE else 0.0
+    widened = math.sqrt((1.0 + above) / (1.0 - above))
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    curve = Smooth(coefficients, sigma, widened, system.inverse(len(coefficients)))
+    return Fit(curve, residuals[back], ~kept[back], correlation)
+
+
+def _gross(value: Array) -> NDArray[np.bool_]:
+    """Points that stand out from the median of those beside them, before there is a curve, which they would bend."""
+    beside = np.stack([np.roll(value, k) for k in range(-FELLOWS - 1, FELLOWS + 2)])
+    off = np.abs(value - np.median(beside, axis=0))
+    gross: NDArray[np.bool_] = off > max(GROSS * OUTLIER * float(np.median(off)), TRIFLE)
+    return gross
+
+
+def _standing_out(residuals: Array, kept: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Points that stand out alone, those kept until now if each is the worst of its neighbours: there the curve swings.
+
+    A point that was left out and does not stand out any more comes back.
+    """
+    middle = np.median(residuals[kept])
+    size = np.abs(residuals - middle)
+    far = size > max(OUTLIER * float(np.median(size[kept])), TRIFLE)
+    if not far.any() or far.all():
+        return far
+    turn = -int(np.flatnonzero(~far)[0])  # a run of them may pass the turn's zero
+    state = np.roll(far * np.sign(residuals - middle), turn)
+    run = np.cumsum(np.diff(state, prepend=state[:1]) != 0.0)
+    alone: NDArray[np.bool_] = far & (np.roll(np.bincount(run)[run], -turn) <= FELLOWS)
+    worst = alone.copy()
+    inside = np.where(kept, size, 0.0)
+    for k in (*range(-WIDTH, 0), *range(1, WIDTH + 1)):
+        worst &= size >= np.roll(inside, k)
+    return alone & (worst | ~kept)
+
+
+class _Points:
+    """Points in order of their parameters (n,), and what the normal equations need of them."""
+
+    def __init__(self, angle: Array, value: Array, count: int) -> None:
+        """Take the points that are kept of `count`."""
+        self.angle, self.value, self.count = angle, value, count
+        gaps = np.diff(angle, append=angle[:1] + TURN)
+        self.widest = int(np.argmax(gaps))
+        self.gap = float(gaps[self.widest])
+
+    def chosen(self, spans: int | None) -> int:
+        """Number of spans: that given, or that of the least cross-validation."""
+        most = min(self.count // POINTS_A_SPAN, MOST_SPANS)
+        if spans is not None:
+            if not LEAST_SPANS <= spans <= most:
+                raise ValueError(f"from {LEAST_SPANS} to {most} spans are fitted to {self.count} points, not {spans}")
+            self._demand_filled(spans)
+            return spans
+        self._demand_filled(LEAST_SPANS)
+        most = max(min(most, int(WIDEST_GAP * TURN / self.gap)), LEAST_SPANS)
+        count = max(1, math.ceil(math.log(most / LEAST_SPANS) / math.log(LADDER)))
+        coarse = np.unique(np.round(np.geomspace(LEAST_SPANS, most, count + 1)).astype(int)).tolist()
+        best = min(coarse, key=self._validated)
+        beside = {round(best * FINER**k) for k in range(-2, 3)}
+        fine: int = min(sorted(n for n in beside | {best} if LEAST_SPANS <= n <= most), key=self._validated)
+        return fine
+
+    def _demand_filled(self, spans: int) -> None:
+        if self.gap > WIDEST_GAP * TURN / spans:
+            begin = degrees(self.angle[self.widest])
+            gap = (
+                f"no point lies within {degrees(self.gap) or 360.0:.4g} degrees of the contour from {begin:.4g} degrees"
+            )
+            raise GapError(f"{gap} on, more than two of {spans} spans")
+
+    def _validated(self, spans: int) -> float:
+        """Generalised cross-validation."""
+        coefficients = self.solved(spans)
+        off = self.value - _evaluated(coefficients, self.angle)
+        return float(off @ off) / (len(off) - spans) ** 2
+
+    def _normal(self, spans: int) -> tuple[Array, Array]:
+        """Normal matrix (N, N), banded but for its corners, and right side (N,)."""
+        place, span = _place(self.angle, spans)
+        values = _values(place, 0, spans)
+        every = np.arange(spans)
+        matrix, right = np.zeros((spans, spans)), np.zeros(spans)
+        for a in range(WIDTH):
+            row = (every + a) % spans
+            right += np.bincount(row[span], values[a] * self.value, spans)
+            for b in range(a, WIDTH):
+                column = (every + b) % spans
+                sums = np.bincount(span, values[a] * values[b], spans)
+                matrix[row, column] += sums
+                if b > a:
+                    matrix[column, row] += sums
+        return matrix, right
+
+    def solved(self, spans: int) -> Array:
+        """Coefficients (N,)."""
+        matrix, right = self._normal(spans)
+        if spans <= 3 * BLOCK:
+            return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
+        return _banded(matrix, right)
+
+    def inverse(self, spans: int) -> Array:
+        """Inverse of the normal matrix (N, N)."""
+        return np.asarray(np.linalg.inv(self._normal(spans)[0]), dtype=np.float64)
+
+
+def _banded(matrix: Array, right: Array) -> Array:
+    """Solve a cyclic system (N, N) whose band is narrower than BLOCK, by blocks; the last one is eliminated last."""
+    ends = np.linspace(0, len(right), len(right) // BLOCK + 1).astype(int).tolist()
+    parts = [slice(a, b) for a, b in pairwise(ends)]
+    last = parts.pop()
+    sides: Array = np.column_stack([right, matrix[:, last]])
+    carried: Array = np.empty((0, 0))
+    gains: list[Array] = []
+    following: Array
+    for i, part in enumerate(parts):
+        block = matrix[part, part]
+        if i:
+            coupling = matrix[part, parts[i - 1]]
+            block = block - coupling @ carried
+            sides[part] -= coupling @ sides[parts[i - 1]]
+        following = matrix[part, parts[i + 1]] if i + 1 < len(parts) else np.empty((part.stop - part.start, 0))
+        both = np.asarray(np.linalg.solve(block, np.column_stack([sides[part], following])), dtype=np.float64)
+        sides[part], carried = both[:, : sides.shape[1]], both[:, sides.shape[1] :]
+        gains.append(carried)
+    for i in range(len(parts) - 2, -1, -1):
+        sides[parts[i]] -= gains[i] @ sides[parts[i + 1]]
+    kept = slice(0, last.start)
+    schur = matrix[last, last] - matrix[last, kept] @ sides[kept, 1:]
+    end = np.linalg.solve(schur, right[last] - matrix[last, kept] @ sides[kept, 0])
+    return np.append(sides[kept, 0] - sides[kept, 1:] @ end, end)
+
+
+def _place(t: Array, spans: int) -> tuple[Array, Indices]:
+    """Place within its span, [0, 1), and the span, of each parameter (n,)."""
+    u = np.mod(t, TURN) * (spans / TURN)
+    span = np.minimum(u.astype(np.intp), spans - 1)
+    return u - span, span
+
+
+def _values(place: Array, order: int, spans: int) -> Array:
+    """Derivative of that order by the parameter of the six splines at places in a span (6, n)."""
+    rows = BASIS
+    for _ in range(order):
+        rows = rows[:, 1:] * np.arange(1, rows.shape[1])
+    values = np.zeros((WIDTH, len(place)))
+    for column in rows.T[::-1]:
+        values *= place
+        values += column[:, None]
+    values *= (spans / TURN) ** order
+    return values
+
+
+def _evaluated(coefficients: Array, t: Array) -> Array:
+    place, span = _place(t, len(coefficients))
+    values = _values(place, 0, len(coefficients))
+    total = np.zeros(len(place))
+    for m in range(WIDTH):
+        total += values[m] * coefficients[(span + m) % len(coefficients)]
+    return total

@@ -1,0 +1,346 @@
+"""Points measured on a part, as measuring machines, roundness testers, indicators and scanners write them.
+
+A table has rows of x, y and, if there are, z and a normal nx, ny, nz; of a radius and a polar angle; or of a shaft
+angle and a lift. Its heading says which and in which units (`x_mm`, `X [mm]`, `lift_in`); without one, rows of two or
+three numbers are x, y and z, of five or six with a normal. Columns are parted by semicolons, tabs, blanks or commas; a
+comma is the decimal mark where it does not part. Lines that begin with #, ;, %, ! or // are comments. DMIS gives points
+as `FA(label) = FEAT/POINT,CART,x,y,z,i,j,k` (ISO 22093); a `$` at the end continues a line.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from kin.numeric.arrays import Array, Indices
+
+Measured: TypeAlias = Literal["places", "lift"]
+SUFFIXES = (".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms")
+MOST_BYTES = 200_000_000
+LEAST_POINTS, MOST_POINTS = 36, 1_000_000
+LARGEST = 1e6  # of a coordinate, in the file's unit
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "inches": 25.4, "thou": 0.0254}
+ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "rad": 180.0 / np.pi}
+NAMES = {  # what columns are called by the programs that write them
+    "x": "x", "xm": "x", "xact": "x", "xactual": "x", "xmeas": "x",
+    "y": "y", "ym": "y", "yact": "y", "yactual": "y", "ymeas": "y",
+    "z": "z", "zm": "z", "zact": "z", "zactual": "z", "zmeas": "z",
+    "nx": "nx", "i": "nx", "u": "nx", "ny": "ny", "j": "ny", "v": "ny", "nz": "nz", "k": "nz", "w": "nz",
+    "r": "radius", "radius": "radius", "rho": "radius",
+    "polar": "angle", "angle": "angle", "theta": "angle", "phi": "angle", "a": "angle", "cam": "angle",
+    "shaft": "angle", "lift": "lift", "s": "lift", "reading": "lift", "displacement": "lift", "swing": "lift",
+    "surface": "surface", "flank": "surface", "lobe": "lobe",
+}  # fmt: skip
+HEADING = re.compile(r"^(?P<name>.*?)[ _]*(?:[\[(]\s*(?P<inside>[^\])]*)[\])]|_(?P<after>[a-z°]+))?$")
+COMMENT = ("#", ";", "%", "!", "//", "$$")
+NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?$")
+DMIS = re.compile(r"^FA\s*\(\s*(?P<label>[^)]*)\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*CART\s*,(?P<rest>.*)$", re.IGNORECASE)
+LOOKED = 20  # lines from which the mark between columns is told
+SHOWN = 40  # characters of a line in a message
+
+
+@dataclass(frozen=True, eq=False)
+class PointTable:
+    """Measured points (n), as their file has them.
+
+    measured    places: x and y; lift: `angle` and `lift`
+    columns     by name: x, y, z, nx, ny (n,), or angle (degrees) and lift; lengths in the file's unit
+    lines       line of each point in the file (n,)
+    unit        mm of the file's unit of length where a heading states it, else None
+    degrees     whether lifts are stated to be degrees
+    labels      surface, or lobe, of each point where the file has such a column; else empty
+    """
+
+    measured: Measured
+    columns: Mapping[str, Array]
+    lines: Indices
+    unit: float | None = None
+    degrees: bool = False
+    labels: Sequence[str] = ()
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+def heading_of(path: Path) -> tuple[str, ...]:
+    """Names of the columns that a file's first line that is no comment gives, as written; empty where it has numbers.
+
+    Raises OSError as the file system does.
+    """
+    with path.open("rb") as stream:
+        start = _decoded(stream.read(65536))
+    for line in start.splitlines():
+        kept = line.strip()
+        if kept and not kept.startswith(COMMENT):
+            return tuple(_cells(kept, _separator([kept]))) if not _is_row(kept, _separator([kept])) else ()
+    return ()
+
+
+def read_points(path: Path) -> PointTable:
+    """Read the points of a file; raises ReadError, and OSError as the file system does."""
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise ReadError("range", f"{size / 1e6:.4g} MB, and of points up to {MOST_BYTES / 1e6:.4g} MB are read", path)
+    data = path.read_bytes()
+    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ReadError("syntax", "not a text; save the points as CSV", path)
+    text = _decoded(data)
+    if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
+        return _checked(_dmis(text, path), path)
+    return _checked(_table(text, path), path)
+
+
+def _decoded(data: bytes) -> str:
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:  # a degree sign of an older encoding
+        return data.decode("latin-1")
+
+
+def _dmis(text: str, path: Path) -> PointTable:
+    rows, lines, whole, begin = [], [], "", 0
+    for number, line in enumerate(text.splitlines(), 1):
+        begin = begin if whole else number
+        whole += line.strip()
+        if whole.endswith("$") and not whole.startswith("$$"):
+            whole = whole[:-1]
+            continue
+        if found := DMIS.match(whole):
+            try:
+                rows.append([float(cell) for cell in found["rest"].split(",")])
+            except ValueError:
+                raise ReadError("syntax", f"line {begin}: not numbers: {_short(whole)}", path) from None
+            if len(rows[-1]) not in {3, 6}:
+                raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {_short(whole)}", path)
+            lines.append(begin)
+        whole = ""
+    if not rows:
+        raise ReadError("empty", "no FA(label) = FEAT/POINT,CART,... is among its lines", path)
+    if len({len(row) for row in rows}) > 1:
+        raise ReadError("syntax", "some of its points have normals, and others do not", path)
+    values = np.array(rows)
+    columns = dict(zip(("x", "y", "z", "nx", "ny", "nz")[: values.shape[1]], values.T, strict=True))
+    return PointTable("places", columns, np.array(lines, dtype=np.intp), _stated_in_dmis(text))
+
+
+def _stated_in_dmis(text: str) -> float | None:
+    found = re.search(r"^\s*UNITS\s*/\s*(MM|CM|M|INCH)\b", text, re.MULTILINE | re.IGNORECASE)
+    return UNITS[found[1].lower()] if found else None
+
+
+def _table(text: str, path: Path) -> PointTable:
+    kept = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
+    kept = [(i, line) for i, line in kept if line and not line.startswith(COMMENT)]
+    if not kept:
+        raise ReadError("empty", "no row of numbers is among its lines", path)
+    separator = _separator([line for _, line in kept[1 : LOOKED + 1] or kept])
+    heading: list[str] | None = None
+    if not _is_row(kept[0][1], separator):
+        heading = _cells(kept[0][1], _separator([kept[0][1]]) if separator == " " else separator)
+        if separator == " " and len(heading) == 1:
+            heading = kept[0][1].split()
+        kept = kept[1:]
+    if not kept:
+        raise ReadError("empty", "below its heading there is no row", path)
+    if len(kept) > MOST_POINTS:
+        raise ReadError("range", f"{len(kept)} rows; up to {MOST_POINTS} are read: leave some out", path)
+    numbers = np.array([i for i, _ in kept], dtype=np.intp)
+    lines = [line for _, line in kept]
+    if heading is None:
+        return _bare(_Rows(path, separator, lines, numbers))
+    return _headed(heading, _Rows(path, separator, lines, numbers, len(heading)))
+
+
+def _bare(rows: _Rows) -> PointTable:
+    width = len(_cells(rows.lines[0], rows.separator))
+    names = {2: "x y", 3: "x y z", 6: "x y z nx ny nz"}.get(width)
+    if names is None:
+        message = f"line {rows.numbers[0]}: {width} numbers without a heading; x y, x y z or x y z nx ny nz are read so"
+        raise ReadError("unsupported", f"{message}: give the file a heading such as x_mm,y_mm", rows.path)
+    values = rows.values([*range(width)])
+    columns = dict(zip(names.split(), values.T, strict=True))
+    return PointTable("places", columns, rows.numbers)
+
+
+def _headed(heading: list[str], rows: _Rows) -> PointTable:
+    known = [_column(cell) for cell in heading]
+    names = [name for name, _, _ in known]
+    surfaces = list(dict.fromkeys(prefix for name, prefix, _ in known if name == "x" and prefix))
+    first = surfaces[0] if surfaces and ("x", "") not in {(name, prefix) for name, prefix, _ in known} else ""
+
+    def at(name: str, prefix: str = first) -> int | None:
+        return next((i for i, (own, before, _) in enumerate(known) if own == name and before == prefix), None)
+
+    wanted = ["x", "y"] if at("x") is not None else ["radius", "angle"] if at("radius", "") is not None else []
+    measured: Measured = "places"
+    if not wanted and at("lift", "") is not None:
+        wanted, measured = ["angle", "lift"], "lift"
+    missing = [name for name in wanted if at(name, first if name in {"x", "y"} else "") is None]
+    if not wanted or missing:
+        lacking = f"a column {' and '.join(missing)} is missing" if wanted else "no columns of measured points"
+        told = ", ".join(heading)
+        message = f"{lacking} in its heading {_short(told)}; x,y or radius,angle or angle_deg,lift are read"
+        raise ReadError("unsupported", message, rows.path)
+    prefixes = surfaces if first else [""]
+    groups = [_group(known, prefix, wanted) for prefix in prefixes]
+    used = sorted({i for group in groups for i in group.values()})
+    values = rows.values(used)
+    place = {column: k for k, column in enumerate(used)}
+    columns: dict[str, Array] = {}
+    for name in [name for name in groups[0] if all(name in group for group in groups)]:
+        parts = [values[:, place[group[name]]] for group in groups]
+        columns[name] = np.concatenate(parts)
+    units = {unit for name, prefix, unit in known if unit in UNITS and name in {*wanted, "z"} and unit}
+    stated = {UNITS[unit] for unit in units}
+    if len(stated) > 1:
+        raise ReadError(
+            "unsupported", f"its columns are in {' and '.join(sorted(units))}; give all in one unit", rows.path
+        )
+    turned = next((unit for name, _, unit in known if name == "angle" and unit in ANGLES), "deg")
+    if "angle" in columns:
+        columns["angle"] = columns["angle"] * ANGLES[turned]
+    if "radius" in columns:
+        radius, angle = columns.pop("radius"), np.radians(columns.pop("angle"))
+        columns |= {"x": radius * np.cos(angle), "y": radius * np.sin(angle)}
+    labels: list[str] = [prefix for prefix in prefixes for _ in rows.lines] if first else []
+    column = names.index("surface") if "surface" in names else names.index("lobe") if "lobe" in names else None
+    if column is not None and not first:
+        labels = [_cells(line, rows.separator)[column].strip().strip('"') for line in rows.lines]
+    swings = any(name == "lift" and unit in ANGLES for name, _, unit in known)
+    lines = np.tile(rows.numbers, len(prefixes))
+    if first:  # places that are not touched are left empty
+        there = np.isfinite(np.stack(list(columns.values()))).all(axis=0)
+        columns, lines = {name: row[there] for name, row in columns.items()}, lines[there]
+        labels = [labels[i] for i in np.flatnonzero(there).tolist()]
+    return PointTable(measured, columns, lines, next(iter(stated), None), swings, labels)
+
+
+def _group(known: list[tuple[str, str, str]], prefix: str, wanted: Sequence[str]) -> dict[str, int]:
+    """Columns of one surface by their names."""
+    found: dict[str, int] = {}
+    for i, (name, before, _) in enumerate(known):
+        own = name in {*wanted, "z", "nx", "ny", "nz"} and (before == prefix or (name == "angle" and not before))
+        if own and name not in found and not (name == "angle" and "angle" not in wanted):
+            found[name] = i
+    if not {"nx", "ny"} <= set(found):
+        found = {name: i for name, i in found.items() if name not in {"nx", "ny", "nz"}}
+    return found
+
+
+def _column(cell: str) -> tuple[str, str, str]:
+    """Name, surface and unit of a heading's cell: `inner_x_mm` is x of `inner` in mm; the name is empty if unknown."""
+    text = cell.strip().strip('"').strip().lower()
+    found = HEADING.match(text)
+    name, unit = text, ""
+    if found is not None:
+        told = (found["inside"] or found["after"] or "").strip()
+        if told in UNITS or told in ANGLES or found["inside"] is not None:
+            name, unit = found["name"].strip(), told
+    words = [word for word in re.split(r"[ _]+", name) if word]
+    if not words or "cutter" in words:  # where a cutter stands is no metal
+        return "", "", unit
+    known = NAMES.get("".join(words)) or NAMES.get(words[-1]) or NAMES.get(words[0], "")
+    prefix = "_".join(words[:-1]) if known in {"x", "y", "nx", "ny", "nz", "z"} and len(words) > 1 else ""
+    return known, prefix, unit
+
+
+def _separator(lines: Sequence[str]) -> str:
+    """The mark between columns, by these lines."""
+    for mark in (";", "\t"):
+        if sum(mark in line for line in lines) * 2 > len(lines):
+            return mark
+    if all(re.search(r",\s", line) for line in lines):
+        return ","
+    blanks = sum(bool(re.search(r"\S\s+\S", line)) for line in lines)
+    return " " if blanks * 2 > len(lines) else ","
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    cells = line.split() if separator == " " else line.split(separator)
+    while len(cells) > 1 and not cells[-1].strip():
+        cells.pop()
+    return cells
+
+
+def _is_row(line: str, separator: str) -> bool:
+    """Whether a line has numbers, at least two, or its first cells are."""
+    cells = [cell.strip().strip('"') for cell in _cells(line, separator)]
+    return sum(bool(NUMBER.match(cell)) or cell.lower() in {"nan", "inf", "-inf"} for cell in cells) >= 2
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Lines of a table that have numbers, and where they stand; `width` is the number of columns of its heading."""
+
+    path: Path
+    separator: str
+    lines: list[str]
+    numbers: Indices
+    width: int | None = None
+
+    def values(self, used: list[int]) -> Array:
+        """Numbers (n, k) of the columns that are used; ReadError names the first line that has others."""
+        for number, line in zip(self.numbers.tolist()[:LOOKED], self.lines, strict=False):
+            self._row(line, used, number)
+        body = "\n".join(self.lines)
+        if self.separator != ",":
+            body = body.replace(",", ".")
+        mark = None if self.separator == " " else self.separator
+        try:
+            return np.loadtxt(io.StringIO(body), delimiter=mark, usecols=used, comments=None, ndmin=2, quotechar='"')
+        except (ValueError, IndexError):
+            each = zip(self.lines, self.numbers.tolist(), strict=True)
+            return np.stack([self._row(line, used, number) for line, number in each])
+
+    def _row(self, line: str, used: list[int], number: int) -> Array:
+        parts = line.split(None if self.separator == " " else self.separator)
+        cells = [cell.strip().strip('"') for cell in parts]
+        wide = self.width is not None and len(cells) > self.width and not line.endswith(self.separator)
+        hint = ": with decimal commas, part the columns by semicolons" if self.separator == "," and wide else ""
+        if max(used) >= len(cells) or wide:
+            expected = max(used) + 1 if self.width is None else self.width
+            told = f"line {number}: {len(cells)} columns, and {expected} are expected{hint}"
+            raise ReadError("syntax", told, self.path)
+        row = []
+        for k in used:
+            cell = cells[k] if self.separator == "," else cells[k].replace(",", ".")
+            try:
+                row.append(float(cell) if cell else float("nan"))
+            except ValueError:
+                raise ReadError("syntax", f"line {number}: {_short(cell)!r} is not a number", self.path) from None
+        return np.array(row)
+
+
+def _checked(table: PointTable, path: Path) -> PointTable:
+    """Refuse numbers that are none, too large ones, too few points."""
+    for name, column in table.columns.items():
+        wrong = ~(np.abs(column) <= LARGEST)
+        if wrong.any():
+            at = int(np.argmax(wrong))
+            raise ReadError("range", f"line {table.lines[at]}: {name} is {column[at]:.6g}, which no part has", path)
+    if len(table) < LEAST_POINTS:
+        raise ReadError("range", f"{len(table)} points; {LEAST_POINTS} are needed at least, all round the cam", path)
+    if {"nx", "ny"} <= set(table.columns):
+        size = np.hypot(table.columns["nx"], table.columns["ny"])
+        if (size < 0.5).any():
+            at = int(np.argmin(size))
+            raise ReadError(
+                "range", f"line {table.lines[at]}: its normal is {size[at]:.3g} long across the shaft", path
+            )
+    return table
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."

@@ -1,0 +1,45 @@
+"""Points of a ball, whose centre an instrument gives: on waves of the metal, a worked case."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.disc_followers import FOLLOWERS
+
+from kin.contour.arcs import left
+from kin.made.points import SurfacePoints
+
+BALL = 2.0
+AT = np.radians([20.0, 50.0, 123.0, 200.0])
+ALONG = [0.0324287008, -0.0492274898, -0.0432324470, 0.0323319216]
+BY_NORMAL = [0.0327106484, -0.0492144097, -0.0431644932, 0.0325201545]
+BY_NORMAL_AT = [20.0430, 50.0085, 123.0156, 200.0286]
+
+
+def resting(at):
+    """Centre of a ball that comes along the nominal normal until it touches the waves, and where it touches."""
+    envelope = FOLLOWERS["roller, offset"].envelope
+    frame = envelope.frames(np.array([at]))
+    point, normal = frame.points[0], frame.normals[0]
+    low, high = at - 0.2, at + 0.2
+    for _ in range(6):
+        t = np.linspace(low, high, 4001)
+        metal = envelope.frames(t)
+        places = metal.points + (0.05 * np.sin(20.0 * t))[:, None] * metal.normals
+        away = places - point
+        across = away @ left(normal[None])[0]
+        height = away @ normal + np.sqrt(np.maximum(BALL**2 - across**2, 0.0))
+        best = int(np.argmax(height))
+        low, high = t[max(best - 2, 0)], t[min(best + 2, 4000)]
+    return point + height[best] * normal, places[best]
+
+
+def test_balls_read_the_waves_as_they_touch_them():
+    follower = FOLLOWERS["roller, offset"]
+    centres, touched = (np.array(each) for each in zip(*(resting(at) for at in AT), strict=True))
+    assert SurfacePoints(follower, 1, centres, BALL).deviations.e == pytest.approx(ALONG, abs=1e-9)
+    normals = (centres - touched) / BALL
+    found = SurfacePoints(follower, 1, centres, BALL, normals).deviations
+    assert found.e == pytest.approx(0.05 * np.sin(20.0 * found.parameter), abs=1e-9)
+    assert found.e == pytest.approx(BY_NORMAL, abs=5e-6)  # whose normals are of the path of centres, in small steps
+    assert np.mod(np.degrees(found.parameter), 360.0) == pytest.approx(BY_NORMAL_AT, abs=5e-4)
