@@ -78,17 +78,18 @@ def verify(
     units: Units | None = None,
     gap: float | None = None,
     page: bool = False,
-    **options: bool,
+    **options: object,
 ) -> Report:
-    """Judge drawings, solids and milling programs of any origin by a recipe's motion.
+    """Judge drawings, solids, milling programs and measured points of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
     its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
     and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. With `page` the
-    report has the page that shows the files, `Report.page`. `options` as in `export`. Raises RecipeErrors where there
-    is no such cam, CallError for what is no file of a known kind and a gap that is too wide, UnitsError where a file
-    states another unit than `units`, SurroundingsError where a library is missing. A file that cannot be read raises
-    nothing: that is a check that fails.
+    report has the page that shows the files, `Report.page`. `options` as in `export`, and those of files that a
+    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for what is no file of a
+    known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states another
+    unit than `units`, SurroundingsError where a library is missing. Any other file that cannot be read raises nothing:
+    that is a check that fails.
     """
     from kin.read.formats import suffixes
 
@@ -99,8 +100,14 @@ def verify(
     if units is not None:
         is_a("units", units, str, "a str")
     is_a("page", page, bool, "a bool")
-    used = _using("verify", recipe, options)
+    known_options = {name for judge in registry.judges().values() for name in judge.options}
+    own = {name: value for name, value in options.items() if name in known_options}
+    used = _using("verify", recipe, {name: value for name, value in options.items() if name not in own})
     told = {path: _no_file(path) for path in paths}
+    claimed = [path for path in paths if not told[path] and registry.judge_of(path, own)]
+    if claimed:
+        return _told(_judged_by(recipe, paths, claimed, units, own, held=within is not None or wide is not None or page))
+    told |= {path: _too_large(path) for path in paths if not told[path]}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
     again = [path for path in dict.fromkeys(found) if found.count(path) > 1]
@@ -131,7 +138,38 @@ def verify(
     return _told(Report(recipe, report, None, tuple(paths), page=text))
 
 
-def _using(function: str, recipe: Order, options: Mapping[str, bool]) -> Order:
+def _judged_by(
+    recipe: Order,
+    paths: Sequence[Path],
+    claimed: Sequence[Path],
+    units: Units | None,
+    options: Mapping[str, object],
+    *,
+    held: bool,
+) -> Report:
+    """Report on files that a capability judges; raises CallError where others are among them."""
+    from camgeo.output.pipeline import judged_by
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import FileCall
+
+    faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]
+    again = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
+    faults += [f"{escaped(str(path))}: it is given {paths.count(path)} times; give each file once" for path in again]
+    if units is not None and units not in UNIT_MM:
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
+    name = escaped(str(claimed[0]))
+    if held:
+        faults.append(f"{name}: measured points have no tolerance, gap and page of files: give made.profile, and out")
+    if not isinstance(recipe, Recipe):
+        faults.append(f"{name}: measured points are held against the recipe of one cam: give that of the lobe")
+    if faults or not isinstance(recipe, Recipe):
+        raise CallError(*faults)
+    unit = None if units is None else UNIT_MM[units]
+    report = judged_by(recipe, registry.judge_of(claimed[0], options), FileCall(paths, unit, options))
+    return Report(recipe, report, None, tuple(paths))
+
+
+def _using(function: str, recipe: Order, options: Mapping[str, object]) -> Order:
     """Give the recipe as one that uses the capabilities of these options of a call, where they are True."""
     known = registry.options()
     for name, value in options.items():
@@ -167,16 +205,21 @@ def _is_drawing(path: Path) -> bool:
 
 
 def _no_file(path: Path) -> str:
-    """Say why a path leads to no file, or to one larger than is read; empty where it does."""
-    from kin.read.formats import suffixes
-    from kin.read.size import oversize
-
+    """Say why a path leads to no file; empty where it does."""
     try:
         if path.is_file():
-            kind = suffixes().get(path.suffix.lower())
-            return "" if kind is None else oversize(path, kind)
+            return ""
         if path.is_dir():
             return "a folder; name the files in it"
         return "not a regular file" if path.exists() else "the file does not exist"
     except OSError as error:  # a name too long, a folder without permission
         return f"cannot be read: {error.strerror or error}"
+
+
+def _too_large(path: Path) -> str:
+    """Say that a file is larger than is read of its kind; empty where it is not."""
+    from kin.read.formats import suffixes
+    from kin.read.size import oversize
+
+    kind = suffixes().get(path.suffix.lower())
+    return "" if kind is None else oversize(path, kind)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.batch import Task, result, results
@@ -108,6 +108,12 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("--page", type=name_of, metavar="HTML", help=text)
     for name, text in registry.options().items():
         verify.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
+    if "verify" in words:
+        for judge in registry.judges().values():
+            for name, option in judge.options.items():
+                choices, value = option.choices or None, option.metavar or None
+                flag = f"--{name.replace('_', '-')}"
+                verify.add_argument(flag, dest=name, choices=choices, metavar=value, help=option.about)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
@@ -317,7 +323,9 @@ def _verify(arguments: argparse.Namespace) -> int:
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
-        options = {name: getattr(arguments, name) for name in registry.options()}
+        options: dict[str, Any] = {name: getattr(arguments, name) for name in registry.options()}
+        own = [name for judge in registry.judges().values() for name in judge.options]
+        options |= {name: getattr(arguments, name) for name in own if getattr(arguments, name) is not None}
         demand_new(arguments.page)
         shown = arguments.page is not None
         progress = Progress(recipe.name)
@@ -346,6 +354,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         return SURROUNDINGS
     if arguments.json:
         say_json(encoded(report))
+    elif name := registry.judge_of(paths[0], options):
+        say(registry.judges()[name].shown(report, arguments.verbose))
     else:
         _show(report, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED

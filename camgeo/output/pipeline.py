@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import Results
+    from camgeo.registry.capability import FileCall, Results
     from camgeo.report.page.content import Content
     from kin.judge.check import Check
     from kin.judge.intent import ShaftIntent
@@ -177,6 +177,27 @@ def _judged(
     for result in _looked(recipe, design, files, checks, clock):
         checks, skipped = [*checks, *result.checks], [*skipped, *result.skipped]
     return design, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped))
+
+
+def judged_by(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
+    """Report on files that a capability claims, see `FileJudge`; raises as it does, and RecipeErrors as `export`."""
+    from camgeo.measures.units import of_displacements
+
+    judge = registry.judges()[name].judge
+    clock = Clock()
+    design = designed(recipe, clock)
+    with clock.stage(name):
+        results = judge(recipe, design, call, clock)
+    findings = Findings(
+        (*design.checks, *results.checks),
+        (),
+        tuple(clock.stages),
+        tuple(results.skipped),
+        design.follower.name,
+        displacements=of_displacements(recipe),
+        sections=results.sections,
+    )
+    return document(recipe, findings)
 
 
 def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:

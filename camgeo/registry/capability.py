@@ -14,6 +14,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
 
     from camgeo.cams.family import ExactCam
     from camgeo.cams.surface import Surface
@@ -83,6 +84,37 @@ class Estimate(NamedTuple):
     of: Callable[[SampledCams], Array]
     error: float | None = None
     in_degrees: bool = False
+
+
+class CallOption(NamedTuple):
+    """An option of `camgeo verify`, a keyword of the library: its help, what stands for its value, its choices."""
+
+    about: str
+    metavar: str = ""
+    choices: tuple[str, ...] = ()
+
+
+class FileCall(NamedTuple):
+    """What `verify` is given for a capability's own files: paths, mm in a unit of files that state none, options."""
+
+    paths: Sequence[Path]
+    units: float | None = None
+    options: Mapping[str, object] = EMPTY
+
+
+class FileJudge(NamedTuple):
+    """How `verify` has a capability judge files of its own, such as points measured on a part.
+
+    claims   whether a file is of that kind, by its heading or the options of the call; raises OSError
+    options  of a call on such files, by their names; the command line gives their values as text
+    judge    checks and sections; raises CallError for what cannot be judged, SurroundingsError as the disk does
+    shown    lines for the terminal, from the report and whether all is asked for
+    """
+
+    claims: Callable[[Path, Mapping[str, object]], bool]
+    options: Mapping[str, CallOption]
+    judge: Callable[[Recipe, Design, FileCall, Clock], Results]
+    shown: Callable[[dict[str, Any], bool], str]
 
 
 # --- what a record holds where it leaves a function out ---------------------------------------------------------------
@@ -216,6 +248,7 @@ class Capability:
     tables    forms of CSV by their words
     variant   what an option of files makes of them
     left_out  what of it a run leaves out that uses it, with the reason: (recipe, requests of files, design)
+    judges    files that `verify` is given and the record claims, of the suffixes that the label names; None: none
     """
 
     fields: Callable[[], Sequence[Field]] = no_fields
@@ -240,3 +273,4 @@ class Capability:
     tables: Callable[[], Mapping[str, Form]] = no_tables
     variant: Variant | None = None
     left_out: Callable[[Recipe, Sequence[FileRequest], Design], Sequence[tuple[str, str]]] = nothing_left_out
+    judges: FileJudge | None = None

@@ -23,6 +23,7 @@ class Label(NamedTuple):
     record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
     option    help of the option of the folder's name, by which a call uses it on files of one cam; empty: none
     roots     keys of the top level that make a text a recipe of another kind, which the record reads, see `Root`
+    suffixes  of files that `verify` may be given for it, where its record claims them, see `FileJudge`
     names     names that it adds to the library, each with the module of the folder that has it
     """
 
@@ -35,4 +36,5 @@ class Label(NamedTuple):
     record: bool = True
     option: str = ""
     roots: tuple[str, ...] = ()
+    suffixes: tuple[str, ...] = ()
     names: Mapping[str, str] = NONE

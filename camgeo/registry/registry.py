@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import camgeo.capabilities
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Mapping
 
-    from camgeo.registry.capability import Capability
+    from camgeo.registry.capability import Capability, FileJudge
     from camgeo.registry.label import Label
 
 PACKAGE = camgeo.capabilities.__name__
@@ -59,6 +59,19 @@ def in_order(names: Iterable[str]) -> list[Capability]:
 def options() -> dict[str, str]:
     """Help of each option by which a call uses a capability, by the capability's name."""
     return {name: label.option for name, label in labels().items() if label.option}
+
+
+def judges() -> dict[str, FileJudge]:
+    """What judges files of their own for each capability that has such, by its name."""
+    found = {name: capability(name).judges for name, label in labels().items() if label.suffixes}
+    return {name: judge for name, judge in found.items() if judge is not None}
+
+
+def judge_of(path: Path, options: Mapping[str, object]) -> str:
+    """Name of the capability that claims a file by its suffix and heading; empty for none. Raises OSError."""
+    suffix = path.suffix.lower()
+    named = [name for name, label in labels().items() if suffix in label.suffixes]
+    return next((name for name in named if judges()[name].claims(path, options)), "")
 
 
 def names() -> dict[str, str]:

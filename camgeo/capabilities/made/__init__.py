@@ -1,0 +1,9 @@
+"""A part in hand: points measured on it, its profile, the motion that it will make, each with its uncertainty."""
+
+from camgeo.registry.label import Label
+
+LABEL = Label(
+    rank=80,
+    words=("made",),
+    suffixes=(".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms"),
+)

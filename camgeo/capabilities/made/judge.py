@@ -1,0 +1,372 @@
+"""Points against a recipe: profile, motion and verdicts, as checks and as a section of the report.
+
+Everything is in mm and radians until the section is written, which is in the recipe's units and degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.api.errors import CallError
+from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
+from camgeo.capabilities.made.keys import Made, datum_of
+from camgeo.capabilities.made.reading import Call, OnSurface, averaged, disc_of, sorted_out, tables_of
+from camgeo.common.terminal import escaped
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.registry.capability import Results
+from camgeo.synthesis.intent import closures_between, intents, permitted
+from kin.follower.frame_contact import FrameError
+from kin.follower.motion_error import ContactError
+from kin.judge.check import Check
+from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
+from kin.made.points import Placing, UnlikePointsError, demand_alike, profile, settled, turned_at
+from kin.made.smooth import Fit, GapError, fit
+from kin.numeric.angles import degrees
+from kin.numeric.errors import UnsettledError
+from kin.numeric.feet import equal_steps
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.common.clock import Clock
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import FileCall
+    from camgeo.synthesis.design import Design
+    from kin.judge.intent import PartIntent
+    from kin.made.points import Profile
+    from kin.numeric.arrays import Array
+    from kin.read.points import PointTable
+
+BORE = 0.05  # of its diameter: points so near to it are on the bore
+LIFT_KINDS = "a lift is of a cam with one surface and one contact; give points x,y of this one"
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMade:
+    """What the points of one surface tell: itself, its smoothed deviation, errors of its follower and their play."""
+
+    on: OnSurface
+    fit: Fit
+    errors: Errors
+    play: Play | None
+
+
+@dataclass(frozen=True, eq=False)
+class DiscMade:
+    """What the points of one disc tell.
+
+    surfaces     each of its surfaces
+    profile      of all their points, by the datum
+    placing      that was taken out before (`align`)
+    uncertain    expanded uncertainty of every point's deviation (n,), mm
+    smoothed     greatest |e| of the smoothed deviation as the datum places it, mm
+    """
+
+    part: PartIntent
+    surfaces: tuple[SurfaceMade, ...]
+    profile: Profile
+    placing: Placing
+    uncertain: Array
+    smoothed: float
+
+
+@dataclass(frozen=True, eq=False)
+class PartMade:
+    """What all points of a call tell of a part, mm and radians.
+
+    motion, play   of the follower: midway where two contacts or surfaces hold it
+    output         of a linkage
+    lifts          zero of the readings and turn of their angles, of lifts alone
+    remarks        sentences
+    """
+
+    discs: tuple[DiscMade, ...]
+    motion: Errors
+    play: Play | None
+    output: OutputErrors | None
+    lifts: tuple[float, float] | None
+    remarks: tuple[str, ...]
+    unit: float
+
+    @property
+    def surfaces(self) -> tuple[SurfaceMade, ...]:
+        """The surfaces of all discs."""
+        return tuple(surface for disc in self.discs for surface in disc.surfaces)
+
+
+def judge(recipe: Recipe, design: Design, given: FileCall, clock: Clock) -> Results:
+    """Judge points; see `FileJudge`."""
+    from camgeo.capabilities.made.section import section
+
+    paths, units, options = given
+    call = Call.of(options, recipe)
+    name = escaped(str(paths[0]))
+    if not design.contours:
+        raise CallError(f"{name}: there is no exact contour to hold it against: a check of the recipe fails")
+    if design.trimmed:
+        raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
+    try:
+        made = made_part(recipe, design, paths, units, call)
+    except (UnlikePointsError, GapError, UnsettledError) as error:
+        raise CallError(f"{', '.join(escaped(str(path)) for path in paths)}: {error}") from error
+    except (ContactError, FrameError) as error:
+        raise CallError(f"{name}: on the metal that these points tell, {error}") from error
+    except ValueError as error:
+        if isinstance(error, CallError):
+            raise
+        raise CallError(f"{name}: {error}") from error
+    checks, verdicts = _checks(recipe, made, call)
+    found = section(recipe, paths, made, call, verdicts)
+    if call.out is not None:
+        from camgeo.capabilities.made.output import write
+
+        with clock.stage("write"):
+            found["written"] = write(recipe, made, found, call)
+    return Results({"made": found}, checks)
+
+
+def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], units: float | None, call: Call) -> PartMade:
+    """All that points tell of a part; raises CallError, and as kin does."""
+    tables, parts = tables_of(paths), intents(recipe, design)
+    scale, remarks = _scale(recipe, tables, units)
+    lifts: tuple[float, float] | None = None
+    if any(table.measured == "lift" for table in tables):
+        lifts, placed = _of_lifts(parts, tables, scale, call)
+        discs = [_disc(recipe, parts[0], placed, replace(call, align=""))]
+    else:
+        pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
+        for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
+            pieces[disc_of(path, place, len(parts)) if len(parts) > 1 else 0].append((place, table, scale))
+        lacking = [part.name for part, piece in zip(parts, pieces, strict=True) if not piece]
+        if lacking:
+            raise CallError(f"points of the disc {' and '.join(lacking)} are missing: give a file for each disc")
+        discs = [
+            _disc(recipe, part, sorted_out(part, piece, call), call) for part, piece in zip(parts, pieces, strict=True)
+        ]
+    motion, play = _motion(design, discs)
+    output = _output(parts, discs)
+    remarks += _remarks(recipe, discs, call, lifts)
+    return PartMade(tuple(discs), motion, play, output, lifts, tuple(remarks), scale)
+
+
+def _scale(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
+    """Mm in a unit of the points: what their headings state, else what is given, else the recipe's with a remark."""
+    stated = {table.unit for table in tables if table.unit is not None}
+    if len(stated) > 1:
+        raise CallError("the files are in different units: give each in a call of its own")
+    if stated and units is not None and abs(next(iter(stated)) / units - 1.0) > 1e-9:
+        raise CallError(f"a heading states a unit of {next(iter(stated)):.6g} mm; leave --units out")
+    if stated or units is not None:
+        return next(iter(stated), units or 1.0), []
+    return recipe.mm, [f"no heading states a unit: the points are taken in that of the recipe, {recipe.units}; --units"]
+
+
+def _of_lifts(
+    parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, call: Call
+) -> tuple[tuple[float, float], list[OnSurface]]:
+    """Points of the metal by the lifts of an indicator."""
+    from kin.made.lifts import points_of_lifts
+
+    surface = parts[0].surfaces[0]
+    single = len(parts) == 1 and len(parts[0].surfaces) == 1 and len(surface.gauge.contacts) == 1
+    if not single or parts[0].linkage is not None:
+        raise CallError(LIFT_KINDS)
+    if any(table.measured != "lift" for table in tables):
+        raise CallError("some files have lifts and others places: give them in calls of their own")
+    if call.align == "gxy":
+        raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
+    shaft = np.radians(np.concatenate([table.columns["angle"] for table in tables]))
+    lift = np.concatenate([table.columns["lift"] for table in tables])
+    swings = surface.gauge.unit == "deg"
+    if not swings and any(table.degrees for table in tables):
+        raise CallError("its lifts are in degrees, and the follower of this cam does not swing")
+    lift = np.radians(lift) if swings else lift * scale
+    found = points_of_lifts(surface.gauge, surface.side, shaft, lift, call.ball, aligned=bool(call.align))
+    files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
+    lines = np.concatenate([table.lines for table in tables])
+    return (found.zero, found.turn), [OnSurface(surface, found.points, files, lines, len(lines))]
+
+
+def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:
+    """Raise CallError for points of the bore."""
+    bore = recipe.part.bore
+    radius = np.concatenate([np.hypot(one.points.places[:, 0], one.points.places[:, 1]) for one in points])
+    if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
+        told = f"{bore / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} across"
+        raise CallError(f"the points lie on the bore, {told}: measure the contour")
+
+
+def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], call: Call) -> DiscMade:
+    """Place, average and smooth the points of a disc, and let the followers run on each surface."""
+    _demand_outside(recipe, surfaces)
+    points = [one.points for one in surfaces]
+    placing = Placing()
+    if call.align:
+        placing = turned_at(points, "g")
+        if call.align != "g":
+            placing = settled([one.placed(placing) for one in points], call.align)
+        points = [one.placed(placing) for one in points]
+    demand_alike(points, aligned=bool(call.align))
+    surfaces = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
+    held = profile([one.points for one in surfaces], datum_of(recipe.of(Made), recipe.part))
+    shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
+    made = []
+    for one in surfaces:
+        deviations = one.points.deviations
+        smooth = fit(deviations.parameter, deviations.e, call.spans)
+        errors = contact_errors(one.surface.gauge, one.surface.side, smooth.curve, shaft)
+        made.append(SurfaceMade(one, smooth, *paired(one.surface.gauge, errors)))
+    smoothed = [
+        float(np.abs(fit(one.parameter, one.e, own.fit.curve.spans).curve.rows(one.parameter)[0]).max())
+        for one, own in zip(held.deviations, made, strict=True)
+    ]
+    return DiscMade(part, tuple(made), held, placing, _uncertain(made, call), max(smoothed))
+
+
+def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
+    """Expanded uncertainty of every point, mm: as given, or the scatter alone; and that of the axes."""
+    rows = []
+    for one in surfaces:
+        deviations = one.on.points.deviations
+        point = COVERAGE * one.fit.curve.sigma if call.error is None else call.error
+        square = np.full(len(deviations.e), point**2)
+        if call.axes is not None:
+            square += call.axes[0] ** 2 + (call.axes[1] * deviations.moment) ** 2
+        rows.append(np.sqrt(square))
+    return np.concatenate(rows)
+
+
+def _motion(design: Design, discs: Sequence[DiscMade]) -> tuple[Errors, Play | None]:
+    """Motion of the follower: of its one surface, or midway between the two that hold it."""
+    surfaces = {one.on.surface.name: one for disc in discs for one in disc.surfaces}
+    for closure in closures_between(design):
+        return between(surfaces[closure.pushes].errors, surfaces[closure.stops].errors)
+    (one,) = surfaces.values()
+    return one.errors, one.play
+
+
+def _output(parts: Sequence[PartIntent], discs: Sequence[DiscMade]) -> OutputErrors | None:
+    """Errors of a linkage's output."""
+    linkage = parts[0].linkage
+    if linkage is None:
+        return None
+    (one,) = discs[0].surfaces
+    relative = one.errors.shaft
+    return output_errors(linkage.mechanism, one.on.surface.gauge, one.fit.curve, relative, linkage.overlap)
+
+
+def systematic(call: Call) -> float:
+    """Expanded uncertainty of the metal that does not average out, mm: of the probe and of the axes' shift."""
+    return math.hypot(call.error or 0.0, 0.0 if call.axes is None else call.axes[0])
+
+
+def motion_uncertainty(made: PartMade, call: Call) -> Array:
+    """Expanded uncertainty of the motion over its shaft angles (n,), mm or rad."""
+    turning = 0.0 if call.axes is None else call.axes[1]
+    expanded: Array = np.hypot(made.motion.uncertainty(systematic(call)), turning * np.abs(made.motion.meant[1]))
+    return expanded
+
+
+def _checks(recipe: Recipe, made: PartMade, call: Call) -> tuple[list[Check], dict[str, str]]:
+    """Checks on the profile of each disc, the motion and the output, where there is a limit; and their verdicts."""
+    checks, verdicts = [], {}
+    zone = recipe.of(Made)
+    if zone is not None and zone.profile is not None:
+        for disc in made.discs:
+            e = np.abs(disc.profile.e)
+            worst = int(np.argmax(e + disc.uncertain))
+            judged = _held(PROFILE.name, 2.0 * e, 2.0 * disc.uncertain, zone.profile, "mm")
+            parameter = np.concatenate([one.parameter for one in disc.profile.deviations])
+            at = disc.surfaces[0].on.surface.gauge.shaft_angle(parameter[worst : worst + 1])[0]
+            name = disc.part.name if len(made.discs) > 1 else ""
+            checks.append(replace(judged[0], at_deg=degrees(float(at)), surface=name))
+            verdicts[f"{PROFILE.name} {name}".strip()] = judged[1]
+    limits = permitted(recipe, recipe.export.tolerance)
+    if limits.motion is not None:
+        off, uncertain = np.abs(made.motion.remaining), motion_uncertainty(made, call)
+        unit = made.surfaces[0].on.surface.gauge.unit
+        turn = math.degrees(1.0) if unit == "deg" else 1.0
+        judged = _held(MOTION.name, turn * off, turn * uncertain, limits.motion, unit)
+        worst = int(np.argmax(off + uncertain))
+        checks.append(replace(judged[0], at_deg=degrees(float(made.motion.shaft[worst]))))
+        verdicts[MOTION.name] = judged[1]
+    if limits.output is not None and made.output is not None:
+        linkage = made.discs[0].part.linkage
+        assert linkage is not None
+        swings = linkage.mechanism.unit == "deg"
+        turn = math.degrees(1.0) if swings else 1.0
+        off = np.abs(made.output.worst)
+        gain = COVERAGE * made.output.sds
+        judged = _held(OUTPUT.name, turn * off, turn * gain, limits.output, "deg" if swings else "mm")
+        worst = int(np.argmax(off + gain))
+        checks.append(replace(judged[0], at_deg=degrees(float(made.output.shaft[worst]))))
+        verdicts[OUTPUT.name] = judged[1]
+    return checks, verdicts
+
+
+def _held(name: str, value: Array, uncertain: Array, limit: float, unit: str) -> tuple[Check, str]:
+    """A check by the rule of ISO 14253-1, and its verdict: ok, failed, or not proved where neither is certain."""
+    sure, above = bool((value + uncertain <= limit).all()), bool((value - uncertain > limit).any())
+    verdict = "ok" if sure else "failed" if above else "not proved"
+    worst = int(np.argmax(value))
+    told = f"{value[worst]:.4g} +- {uncertain[worst]:.2g} {unit}"
+    detail = "" if sure else f"{told}: {'more than is permitted' if above else 'not proved either way'}"
+    return Check(name, sure, float(value[worst]), limit, unit, detail=detail), verdict
+
+
+def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple[float, float] | None) -> list[str]:
+    """What is taken as it is, cannot be seen, or was left out."""
+    remarks = []
+    limits = permitted(recipe, recipe.export.tolerance)
+    zone = recipe.of(Made)
+    if (zone is None or zone.profile is None) and limits.motion is None:
+        remarks.append("no limit is given, so nothing fails: made.profile, verify.motion_error")
+    if call.error is None:
+        remarks.append("without --probe-error the scatter of the points alone is known, and no common error")
+    if call.axes is None:
+        remarks.append("without --axes-error the part's axes are taken as exact")
+    every = [one for disc in discs for one in disc.surfaces]
+    if lifts is not None:
+        remarks.append("of lifts the size and a constant offset are unseen")
+    if call.align == "gxy":
+        remarks.append("placed by --align best-fit, the motion shows neither eccentricity nor phase")
+    elif call.align or (lifts is not None and lifts[1]):
+        turn = math.degrees(discs[0].placing.turn if lifts is None else lifts[1])
+        remarks.append(f"turned back by {turn:.6g} degrees by --align rotation, the motion shows no phase")
+    for disc in discs:
+        held = disc.profile
+        if held.datum == "none":
+            remarks.append("by datum none the profile shows neither eccentricity nor phase; the motion does")
+        wanted = {"part": "", "bore": "g", "none": "gxy"}[held.datum]
+        if held.free != wanted:
+            remarks.append("its contour is so nearly round that a turn cannot be told from a shift")
+        if held.datum == "part" and not call.align:
+            turned = settled([one.on.points for one in disc.surfaces], "g")
+            rest = disc.surfaces[0].on.points.placed(turned).deviations.e
+            gain = float(np.abs(disc.surfaces[0].on.points.deviations.e).max() - np.abs(rest).max())
+            if gain > 0.25 * disc.profile.greatest and abs(turned.turn) > 0.0:
+                remarks.append(f"the points look turned by {math.degrees(turned.turn):.3g} degrees: `--align rotation`")
+    for one in every:
+        if one.fit.outliers.any():
+            count = int(one.fit.outliers.sum())
+            lines = ", ".join(str(line) for line in one.on.lines[one.fit.outliers][:5].tolist())
+            remarks.append(
+                f"{count} outlier{'s' * (count > 1)} (line {lines}{', ...' if count > 5 else ''}) "
+                "counted in the profile, left out of smoothing and motion"
+            )
+        if one.fit.curve.widened > 1.0:
+            remarks.append(
+                f"residuals beside one another agree (correlation {one.fit.correlation:.2f}): "
+                f"uncertainties are widened {one.fit.curve.widened:.2f} times"
+            )
+        if one.on.spread is not None:
+            spread = one.on.spread / recipe.mm
+            remarks.append(
+                f"{one.on.repeats} points are {len(one.on.points)} places, measured again within {spread:.2g}"
+            )
+    return remarks

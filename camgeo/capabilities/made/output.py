@@ -1,0 +1,260 @@
+"""What points told, in a folder: a page, the deviation round the contour as a drawing, every point as a table."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.capabilities.made.judge import motion_uncertainty
+from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.section import scale_of
+from camgeo.capabilities.made.text import table_rows
+from camgeo.common.errors import SurroundingsError
+from camgeo.files.markup import one_line
+from camgeo.files.table import write_table
+from camgeo.measures.units import UNIT_NAMES
+from kin.made.motion import COVERAGE
+from kin.numeric.feet import equal_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.made.judge import PartMade, SurfaceMade
+    from camgeo.capabilities.made.reading import Call
+    from camgeo.recipe.recipe import Recipe
+    from kin.numeric.arrays import Array
+
+LOOKS = 1440  # places of a curve round the contour or over the shaft angle
+SHARE = 0.12  # of the cam's greatest radius: how long the greatest deviation is drawn
+WIDE, HIGH, LEFT, FOOT = 860.0, 240.0, 70.0, 40.0  # px of a plot, and of its margins
+MOST_DOTS = 4000  # of points in a plot: more hide one another
+INK, METAL, BAND, ZONE, DOT = "#1a1a1a", "#b3261e", "#f3c4bf", "#3b6ea5", "#8a8a8a"
+STYLE = (
+    "body{font:15px/1.5 system-ui,sans-serif;max-width:900px;margin:2em auto;padding:0 1em;color:#1a1a1a}"
+    "table{border-collapse:collapse}td,th{padding:.15em .8em .15em 0;text-align:left;vertical-align:top}"
+    "svg{max-width:100%;height:auto}h2{font-size:1.1em;margin:1.6em 0 .4em}"
+)
+
+
+def write(recipe: Recipe, made: PartMade, found: dict[str, Any], call: Call) -> list[str]:
+    """Write the three files; returns their paths. Raises SurroundingsError as the disk does not do what it should."""
+    folder = Path(call.out or "")
+    drawing = _drawing(recipe, made)
+    page = _page(recipe, made, found, call, drawing)
+    files = {".html": page.encode(), ".svg": drawing.encode()}
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        table = folder / f"{recipe.name}-made.csv"
+        part = table.with_name(f".{table.name}.partial")
+        _write_points(recipe, made, part)
+        part.replace(table)
+        for suffix, data in files.items():
+            path = folder / f"{recipe.name}-made{suffix}"
+            part = path.with_name(f".{path.name}.partial")
+            part.write_bytes(data)
+            part.replace(path)
+            written.append(str(path))
+    except OSError as error:
+        raise SurroundingsError(error.strerror or str(error), folder) from error
+    return [*written, str(table)]
+
+
+# --- the table --------------------------------------------------------------------------------------------------------
+
+
+def _write_points(recipe: Recipe, made: PartMade, path: Path) -> None:
+    """Every place with its foot, deviation and residual, as the file is drawn, in the recipe's unit."""
+    unit, sign = UNIT_NAMES[recipe.units], -1.0 if recipe.rotation == "ccw" else 1.0
+    names = ["surface", "file", "line", f"x_{unit}", f"y_{unit}", "shaft_deg", f"foot_x_{unit}", f"foot_y_{unit}"]
+    names += [f"deviation_{unit}", f"residual_{unit}", "outlier"]
+    blocks = []
+    for rank, one in enumerate(made.surfaces):
+        points, deviations = one.on.points, one.on.points.deviations
+        feet = points.follower.envelope.points(deviations.parameter)
+        shaft = np.mod(np.degrees(points.follower.shaft_angle(deviations.parameter)), 360.0)
+        columns = [np.full(len(points), rank + 1.0), one.on.files + 1.0, one.on.lines.astype(float)]
+        columns += [points.places[:, 0] / recipe.mm, sign * points.places[:, 1] / recipe.mm, shaft]
+        columns += [feet[:, 0] / recipe.mm, sign * feet[:, 1] / recipe.mm]
+        columns += [deviations.e / recipe.mm, one.fit.residuals / recipe.mm, one.fit.outliers.astype(float)]
+        blocks.append(np.column_stack(columns))
+    write_table(path, names, np.concatenate(blocks))
+
+
+# --- the drawing round the contour ------------------------------------------------------------------------------------
+
+
+def _drawing(recipe: Recipe, made: PartMade) -> str:
+    """The exact contours, and the smoothed deviation magnified along their normals, with where metal is too much."""
+    sign = np.array([1.0, 1.0 if recipe.rotation == "ccw" else -1.0])  # of a drawing whose y axis points down
+    t = equal_steps(LOOKS)
+    size, most = 0.0, 0.0
+    curves = []
+    for one in made.surfaces:
+        frame = one.on.points.follower.envelope.frames(t)
+        e = one.fit.curve.rows(t)[0]
+        size, most = max(size, float(np.abs(frame.points).max())), max(most, float(np.abs(e).max()))
+        curves.append((frame.points * sign, one.on.points.side * frame.normals * sign, e))
+    magnified = float(f"{SHARE * size / max(most, 1e-9):.1g}")
+    reach = size * (1.0 + 1.3 * SHARE)
+    thin = reach / 400.0
+    parts = []
+    for points, normals, e in curves:
+        moved = points + magnified * e[:, None] * normals
+        for over, colour in ((True, METAL), (False, ZONE)):
+            ticks = [
+                f"M{_pair(points[i])}L{_pair(moved[i])}"
+                for i in range(0, LOOKS, 4)
+                if bool(e[i] > 0.0) is over and e[i]
+            ]
+            parts.append(f'<path d="{"".join(ticks)}" stroke="{colour}" stroke-width="{thin:.5g}" fill="none"/>')
+        parts.append(f'<path d="{_path(points)}Z" stroke="{INK}" stroke-width="{2 * thin:.5g}" fill="none"/>')
+        parts.append(f'<path d="{_path(moved)}Z" stroke="{METAL}" stroke-width="{1.5 * thin:.5g}" fill="none"/>')
+    arm = 0.03 * reach
+    cross = f"M{-arm:.5g},0h{2.0 * arm:.5g}M0,{-arm:.5g}v{2.0 * arm:.5g}"
+    parts.append(f'<path d="{cross}" stroke="{INK}" stroke-width="{thin:.5g}"/>')
+    told = f"{one_line(recipe.name)}: deviation magnified {magnified:.6g} times; outwards of the metal is too much"
+    box = f"{-reach:.6g} {-reach:.6g} {2 * reach:.6g} {2 * reach:.6g}"
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" width="640" height="640">'
+        f"<title>{told}</title>{''.join(parts)}</svg>\n"
+    )
+
+
+def _pair(point: Array) -> str:
+    return f"{point[0]:.5g},{point[1]:.5g}"
+
+
+def _path(points: Array) -> str:
+    return "M" + "L".join(_pair(point) for point in points)
+
+
+# --- the page ---------------------------------------------------------------------------------------------------------
+
+
+def _page(recipe: Recipe, made: PartMade, found: dict[str, Any], call: Call, drawing: str) -> str:
+    unit, mm = UNIT_NAMES[recipe.units], recipe.mm
+    scale, moved = scale_of(recipe, made)
+    parts = [f"<h1>{one_line(recipe.name)}</h1><p>{one_line(', '.join(found['files']))}</p>"]
+    rows = "".join(
+        f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>"
+        for label, value in table_rows(found, everything=True)
+    )
+    verdicts = "".join(f"<p><b>{one_line(name)}: {one_line(word)}</b></p>" for name, word in found["verdicts"].items())
+    remarks = "".join(f"<li>{one_line(text)}</li>" for text in found["remarks"])
+    parts.append(f"{verdicts}<table>{rows}</table><ul>{remarks}</ul>")
+    parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
+    for one in made.surfaces:
+        name = f" of {one_line(one.on.surface.name)}" if one.on.surface.name else ""
+        parts.append(f"<h2>Deviation{name} over the shaft angle, {unit}</h2>{_over_shaft(recipe, one)}")
+    errors, uncertain = made.motion, motion_uncertainty(made, call)
+    shaft = np.degrees(errors.shaft)
+    limit = _limit(recipe, moved)
+    parts.append(f"<h2>Error of the motion less its constant offset, {moved}</h2>")
+    parts.append(_plot(shaft, scale * errors.remaining, scale * uncertain, zone=limit))
+    parts.append("<h2>What to take off</h2>" + _take_off(made, mm, unit))
+    body = "\n".join(parts)
+    return (
+        '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"
+        f"<title>{one_line(recipe.name)}: as made</title><style>{STYLE}</style>\n<body>{body}</body></html>\n"
+    )
+
+
+def _limit(recipe: Recipe, unit: str) -> float | None:
+    limit = recipe.verify.motion_error
+    if limit is None:
+        return None
+    return math.degrees(limit) if unit == "deg" else limit / recipe.mm
+
+
+def _over_shaft(recipe: Recipe, one: SurfaceMade) -> str:
+    t = equal_steps(LOOKS)
+    follower, mm, deviations = one.on.points.follower, recipe.mm, one.on.points.deviations
+    shaft = np.mod(np.degrees(follower.shaft_angle(t)), 360.0)
+    order = np.argsort(shaft, kind="stable")
+    chosen = np.linspace(0, len(deviations.e) - 1, min(MOST_DOTS, len(deviations.e))).astype(np.intp)
+    dots = np.mod(np.degrees(follower.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
+    zone = recipe.of(Made)
+    half = None if zone is None or zone.profile is None else 0.5 * zone.profile / mm
+    e, band = one.fit.curve.rows(t)[0] / mm, COVERAGE * one.fit.curve.deviations(t) / mm
+    return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
+
+
+def _plot(
+    x: Array, y: Array, band: Array, *, dots: tuple[Array, Array] | None = None, zone: float | None = None
+) -> str:
+    """A curve over 360 degrees with its uncertainty as a band, points behind it, and the limits of a zone."""
+    reach = max(
+        float(np.abs(y).max() + band.max()),
+        0.0 if dots is None else float(np.abs(dots[1]).max()),
+        1.1 * (zone or 0.0),
+        1e-9,
+    )
+
+    def across(degrees: Array) -> Array:
+        return LEFT + degrees * ((WIDE - LEFT - 10.0) / 360.0)
+
+    def up(value: Array) -> Array:
+        middle: Array = 0.5 * (HIGH - FOOT) - value * (0.46 * (HIGH - FOOT) / reach)
+        return middle
+
+    def line(value: Array) -> str:
+        return "M" + "L".join(f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(value), strict=True))
+
+    upper = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y + band), strict=True)]
+    lower = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y - band), strict=True)][::-1]
+    parts = [f'<path d="M{"L".join(upper + lower)}Z" fill="{BAND}"/>']
+    if dots is not None:
+        places = zip(across(dots[0]), up(dots[1]), strict=True)
+        ticks = "".join(f"M{a:.1f},{b:.1f}h.01" for a, b in places)
+        parts.append(f'<path d="{ticks}" stroke="{DOT}" stroke-width="2" stroke-linecap="round"/>')
+    for value, colour in ((zone, ZONE), (None if zone is None else -zone, ZONE), (0.0, INK)):
+        if value is not None:
+            height = float(up(np.array(value)))
+            dashes = ' stroke-dasharray="6 4"' if value else ""
+            parts.append(f'<path d="M{LEFT},{height:.2f}H{WIDE - 10.0}" stroke="{colour}" stroke-width="1"{dashes}/>')
+            parts.append(
+                f'<text x="{LEFT - 6}" y="{height + 4:.2f}" text-anchor="end" font-size="12">{value:.3g}</text>'
+            )
+    parts.append(f'<path d="{line(y)}" stroke="{METAL}" stroke-width="1.6" fill="none"/>')
+    for degrees in range(0, 361, 60):
+        at = float(across(np.array(float(degrees))))
+        parts.append(f'<text x="{at:.1f}" y="{HIGH - 20.0}" text-anchor="middle" font-size="12">{degrees}</text>')
+    if zone is None:
+        top = float(up(np.array(reach)))
+        parts.append(f'<text x="{LEFT - 6}" y="{top + 10:.2f}" text-anchor="end" font-size="12">{reach:.3g}</text>')
+    return f'<svg viewBox="0 0 {WIDE} {HIGH}" role="img" font-family="system-ui,sans-serif">{"".join(parts)}</svg>'
+
+
+def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
+    """Where metal is certainly too much: from and to as shaft degrees, the most of it, mm, and the angle of that."""
+    t = equal_steps(LOOKS)
+    e, band = one.fit.curve.rows(t)[0], COVERAGE * one.fit.curve.deviations(t)
+    over = e > np.maximum(band, 1e-6)
+    if not over.any():
+        return []
+    turn = 0 if over.all() else int(np.flatnonzero(~over)[0])
+    over, e, t = np.roll(over, -turn), np.roll(e, -turn), np.roll(t, -turn)
+    edges = np.flatnonzero(np.diff(over.astype(np.intp), prepend=0, append=0))
+    shaft = np.mod(np.degrees(one.on.points.follower.shaft_angle(t)), 360.0)
+    found = []
+    for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        worst = a + int(np.argmax(e[a:b]))
+        found.append((float(shaft[a]), float(shaft[b - 1]), float(e[worst]), float(shaft[worst])))
+    return found
+
+
+def _take_off(made: PartMade, mm: float, unit: str) -> str:
+    rows: list[Sequence[str]] = []
+    for one in made.surfaces:
+        for begin, end, most, at in stretches(one):
+            rows.append((one.on.surface.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
+    if not rows:
+        return "<p>Nowhere is metal too much beyond its uncertainty.</p>"
+    head = "".join(f"<th>{text}</th>" for text in ("surface", "from, deg", "to, deg", f"most, {unit}", "at, deg"))
+    body = "".join("<tr>" + "".join(f"<td>{one_line(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><tr>{head}</tr>{body}</table>"

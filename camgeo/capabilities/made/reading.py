@@ -1,0 +1,235 @@
+"""Files of points: which they are, the options of the call, and the surface that each point is on."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.api.errors import CallError
+from camgeo.common.arguments import spelled
+from camgeo.common.terminal import escaped
+from camgeo.schema.quantity import read_quantity
+from camgeo.schema.scalars import Complaint
+from kin.made.points import SurfacePoints
+from kin.numeric.records import dataclass
+from kin.read.errors import ReadError
+from kin.read.points import PointTable, heading_of, read_points
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+    from kin.judge.intent import PartIntent, SurfaceIntent
+    from kin.numeric.arrays import Array, Indices
+
+GRINDER = "c_deg"  # heading of the column of the work's angle in a grinder's table
+ALIGN = {"none": "", "rotation": "g", "best-fit": "gxy"}
+REPEATED = 0.02  # of the mean step: points nearer than this are one place, measured again
+FEWER = 0.8  # of the points: as many places or less, and they are repeats
+MOST_LENGTH = 1e3  # mm, of a probe and its errors
+
+
+def claims(path: Path, options: Mapping[str, object]) -> bool:
+    """Whether a file holds measured points, and not rows for a machine."""
+    if "as" in options:
+        return options["as"] == "measured"
+    if path.suffix.lower() != ".csv":
+        return True
+    heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
+    return GRINDER not in heading
+
+
+@dataclass(frozen=True)
+class Call:
+    """What a call says of the points, mm and radians; None where it says nothing.
+
+    align        unknowns that are placed by least squares before all else: of g, x, y
+    ball         radius of the probe
+    error        expanded uncertainty of a point, k = 2
+    axes         of the part's axes: shift, and turn
+    spans        of the smoothed deviation
+    out          folder for a page, a drawing and a table
+    """
+
+    align: str = ""
+    ball: float | None = None
+    error: float | None = None
+    axes: tuple[float, float] | None = None
+    spans: int | None = None
+    out: str | None = None
+
+    @staticmethod
+    def of(options: Mapping[str, object], recipe: Recipe) -> Call:
+        """Read the options of a call; raises CallError with a line for each that makes no sense."""
+        faults: list[str] = []
+
+        def length(name: str, value: object, *, least: float = 0.0) -> float | None:
+            try:
+                found = read_quantity(str(value), recipe.units) * recipe.mm
+            except Complaint:
+                found = math.nan
+            if not least <= found <= MOST_LENGTH:
+                faults.append(
+                    f"--{name.replace('_', '-')}: a length such as 0.002 or 0.0001in is expected, not {spelled(value)}"
+                )
+                return None
+            return found
+
+        align = str(options.get("align", "none"))
+        if align not in ALIGN:
+            faults.append(f"--align: one of {', '.join(ALIGN)}, not {spelled(align)}")
+        ball = length("probe_radius", options["probe_radius"]) if "probe_radius" in options else None
+        error = length("probe_error", options["probe_error"]) if "probe_error" in options else None
+        axes = None
+        if "axes_error" in options:
+            value = options["axes_error"]
+            cells = [str(cell) for cell in value] if isinstance(value, (tuple, list)) else str(value).split(",")
+            try:
+                shift = read_quantity(cells[0], recipe.units) * recipe.mm
+                (turn,) = [float(cell) for cell in cells[1:]]
+            except (Complaint, ValueError):
+                shift = turn = math.nan
+            if 0.0 <= shift <= MOST_LENGTH and 0.0 <= turn <= 180.0:
+                axes = shift, math.radians(turn)
+            else:
+                faults.append(
+                    f"--axes-error: a length and an angle in degrees, such as 0.005,0.02, not {spelled(value)}"
+                )
+        spans = None
+        if "spans" in options:
+            text = str(options["spans"])
+            if re.fullmatch(r"[0-9]{1,6}", text):
+                spans = int(text)
+            else:
+                faults.append(f"--spans: a whole number from 12 is expected, not {spelled(text)}")
+        out = options.get("out")
+        if out is not None and not str(out):
+            faults.append("--out: an empty name")
+        if faults:
+            raise CallError(*faults)
+        return Call(ALIGN[align], ball, error, axes, spans, None if out is None else str(out))
+
+
+@dataclass(frozen=True, eq=False)
+class OnSurface:
+    """Points on one surface (n), and where they come from.
+
+    points         held against the surface's exact contour
+    files, lines   of each point: place of its file among those of the call, and its line (n,)
+    repeats        points that were averaged into these; as many as these where none was
+    spread         standard deviation of repeats about their mean, mm; None without any
+    """
+
+    surface: SurfaceIntent
+    points: SurfacePoints
+    files: Indices
+    lines: Indices
+    repeats: int
+    spread: float | None = None
+
+
+def tables_of(paths: Sequence[Path]) -> list[PointTable]:
+    """Read all files; raises CallError for what is none of points."""
+    tables, faults = [], []
+    for path in paths:
+        try:
+            tables.append(read_points(path))
+        except ReadError as error:
+            faults.append(f"{escaped(str(path))}: {error.message}")
+    if faults:
+        raise CallError(*faults)
+    return tables
+
+
+def disc_of(path: Path, place: int, discs: int) -> int:
+    """Which disc a file is of: the end of its name, `-1` or `-2`, or its place among the files."""
+    found = re.fullmatch(r".+-([1-9])", path.stem)
+    number = int(found[1]) - 1 if found else place
+    if not 0 <= number < discs:
+        raise CallError(f"{escaped(str(path))}: the cam has {discs} discs; name the files NAME-1.csv and NAME-2.csv")
+    return number
+
+
+def places_of(table: PointTable, part: PartIntent, scale: float) -> tuple[Array, Array | None]:
+    """Points (n, 2), mm, and normals of a table, in the drawing's axes as if not mirrored."""
+    sign = np.array([1.0, -1.0 if part.mirrored else 1.0])
+    columns = table.columns
+    places = np.column_stack([columns["x"], columns["y"]]) * (scale * sign)
+    if "nx" not in columns:
+        return places, None
+    directions = np.column_stack([columns["nx"], columns["ny"]]) * sign
+    return places, directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
+
+
+def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]], call: Call) -> list[OnSurface]:
+    """Give each surface of a disc its points, by a column that names it or by the nearest; repeats are averaged."""
+    found = []
+    gathered: dict[str, list[tuple[Array, Array | None, Indices, Indices]]] = {s.name: [] for s in part.surfaces}
+    for file, table, scale in pieces:
+        places, directions = places_of(table, part, scale)
+        owner = _owners(part, table, places)
+        for rank, surface in enumerate(part.surfaces):
+            own = owner == rank
+            if own.any():
+                chosen = None if directions is None else directions[own]
+                gathered[surface.name].append((places[own], chosen, np.full(own.sum(), file), table.lines[own]))
+    for surface in part.surfaces:
+        rows = gathered[surface.name]
+        if not rows:
+            raise CallError(f"no point is on the {surface.name or 'contour'}: measure it too")
+        normals = [row[1] for row in rows]
+        directions = (
+            None if any(one is None for one in normals) else np.concatenate([one for one in normals if one is not None])
+        )
+        places, files, lines = (np.concatenate([row[k] for row in rows]) for k in (0, 2, 3))
+        points = SurfacePoints(surface.gauge, surface.side, places, call.ball or 0.0, directions)
+        found.append(OnSurface(surface, points, files, lines, len(points)))
+    return found
+
+
+def _owners(part: PartIntent, table: PointTable, places: Array) -> Indices:
+    """Which surface each point is on (n,)."""
+    names = [surface.name for surface in part.surfaces]
+    labels = [label.strip().lower() for label in table.labels]
+    if len(names) == 1:
+        return np.zeros(len(places), dtype=np.intp)
+    if labels and set(labels) <= set(names):
+        return np.array([names.index(label) for label in labels], dtype=np.intp)
+    if labels:
+        raise CallError(
+            f"its column names {', '.join(sorted(set(labels) - set(names)))}; surfaces are {', '.join(names)}"
+        )
+    off = [np.abs(surface.gauge.envelope.feet(places).excess) for surface in part.surfaces]
+    owner: Indices = np.argmin(off, axis=0)
+    return owner
+
+
+def averaged(one: OnSurface) -> OnSurface:
+    """Points with those that were measured again at one place taken together."""
+    deviations = one.points.deviations
+    turn = np.mod(deviations.parameter, 2.0 * np.pi)
+    order = np.argsort(turn, kind="stable")
+    new = np.diff(turn[order], prepend=-1.0) > REPEATED * 2.0 * np.pi / len(order)
+    group = np.empty(len(order), dtype=np.intp)
+    group[order] = np.cumsum(new) - 1
+    if turn[order[0]] + 2.0 * np.pi - turn[order[-1]] <= REPEATED * 2.0 * np.pi / len(order):  # across the zero
+        group[group == group.max()] = 0
+    count = np.bincount(group)
+    if len(count) > FEWER * len(order):
+        return one
+    means = np.column_stack([np.bincount(group, column) / count for column in one.points.places.T])
+    directions = None
+    if one.points.directions is not None:
+        sums = np.column_stack([np.bincount(group, column) for column in one.points.directions.T])
+        directions = sums / np.hypot(sums[:, 0], sums[:, 1])[:, None]
+    mean = np.bincount(group, deviations.e) / count
+    free = len(order) - len(count)
+    spread = math.sqrt(float(((deviations.e - mean[group]) ** 2).sum()) / free)
+    first = np.full(len(count), len(order), dtype=np.intp)
+    np.minimum.at(first, group, np.arange(len(order)))
+    points = SurfacePoints(one.points.follower, one.points.side, means, one.points.ball, directions, one.points.placing)
+    return OnSurface(one.surface, points, one.files[first], one.lines[first], len(order), spread)

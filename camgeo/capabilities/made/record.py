@@ -1,0 +1,58 @@
+"""What the part in hand adds: a key, and the judging of points in `camgeo verify`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.made.keys import build, fields
+from camgeo.registry.capability import CallOption, Capability, FileJudge
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.checks.declared import Declared
+    from camgeo.common.clock import Clock
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import FileCall, Results
+    from camgeo.synthesis.design import Design
+
+OPTIONS = {
+    "as": CallOption("what a table of numbers is: by its heading if not given", choices=("measured", "grinding")),
+    "align": CallOption(
+        "place the points by least squares before the motion is judged too (default: none)",
+        choices=("none", "rotation", "best-fit"),
+    ),
+    "probe_radius": CallOption("points are centres of a ball of this radius; of a lift, that of its roller", "R"),
+    "probe_error": CallOption("expanded uncertainty (k = 2) of a point along its normal", "U"),
+    "axes_error": CallOption("that of the part's axes: a length and an angle in degrees, 0.005,0.02", "L,DEG"),
+    "spans": CallOption("spans of the smoothed deviation (default: by cross-validation)", "N"),
+    "out": CallOption("write a page, a drawing and a table of measured points into this folder", "DIR"),
+}
+
+
+def _checks() -> Sequence[Declared]:
+    from camgeo.capabilities.made.checks import CHECKS
+
+    return CHECKS
+
+
+def _claims(path: Path, options: Mapping[str, object]) -> bool:
+    from camgeo.capabilities.made.reading import claims
+
+    return claims(path, options)
+
+
+def _judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Results:
+    from camgeo.capabilities.made.judge import judge
+
+    return judge(recipe, design, call, clock)
+
+
+def _shown(report: dict[str, Any], everything: bool) -> str:
+    from camgeo.capabilities.made.text import shown
+
+    return shown(report, everything=everything)
+
+
+CAPABILITY = Capability(fields=fields, build=build, checks=_checks, judges=FileJudge(_claims, OPTIONS, _judge, _shown))

@@ -1,0 +1,171 @@
+"""What points told, as a section of the report: in the recipe's units and degrees."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.capabilities.made.judge import motion_uncertainty, systematic
+from camgeo.measures.units import UNIT_NAMES
+from kin.made.motion import COVERAGE, least_fault
+from kin.numeric.angles import degrees
+from kin.numeric.feet import equal_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.made.judge import DiscMade, PartMade, SurfaceMade
+    from camgeo.capabilities.made.reading import Call
+    from camgeo.recipe.recipe import Recipe
+    from kin.made.points import Placing
+    from kin.numeric.arrays import Array
+
+MOST_OUTLIERS = 50  # listed one by one
+DERIVATIVES = ("error", "velocity", "acceleration")
+
+
+def section(
+    recipe: Recipe, paths: Sequence[Path], made: PartMade, call: Call, verdicts: Mapping[str, str]
+) -> dict[str, Any]:
+    """Give the section `made`."""
+    found: dict[str, Any] = {
+        "files": [path.name for path in paths],
+        "unit": UNIT_NAMES[recipe.units],
+        "verdicts": dict(verdicts),
+        "discs": [_disc(recipe, disc) for disc in made.discs],
+        "surfaces": [_surface(recipe, paths, one) for one in made.surfaces],
+        "motion": motion_section(recipe, made, call),
+    }
+    if made.play is not None:
+        worst = {key: int(pick(made.play.gap)) for key, pick in (("least", np.argmin), ("most", np.argmax))}
+        scale, unit = scale_of(recipe, made)
+        found["play"] = {"unit": unit}
+        for key, at in worst.items():
+            found["play"][key] = scale * float(made.play.gap[at])
+            found["play"][f"{key}_at_deg"] = degrees(float(made.play.shaft[at]))
+        found["play"]["uncertainty"] = scale * COVERAGE * float(made.play.sds.max())
+    if made.output is not None:
+        linkage = made.discs[0].part.linkage
+        swings = linkage is not None and linkage.mechanism.unit == "deg"
+        factor = math.degrees(1.0) if swings else 1.0 / recipe.mm
+        worst_at = int(np.argmax(np.abs(made.output.worst)))
+        found["output"] = {
+            "unit": "deg" if swings else UNIT_NAMES[recipe.units],
+            "max": factor * abs(float(made.output.worst[worst_at])),
+            "at_deg": degrees(float(made.output.shaft[worst_at])),
+            "centred": factor * float(np.abs(made.output.centred).max()),
+            "uncertainty": factor * COVERAGE * float(made.output.sds[worst_at]),
+        }
+    if made.lifts is not None:
+        scale, _ = scale_of(recipe, made)
+        found["lifts"] = {"zero": scale * made.lifts[0], "turned_deg": math.degrees(made.lifts[1])}
+    found["remarks"] = list(made.remarks)
+    return found
+
+
+def scale_of(recipe: Recipe, made: PartMade) -> tuple[float, str]:
+    """Factor and unit of the follower's motion in a report."""
+    swings = made.surfaces[0].on.surface.gauge.unit == "deg"
+    return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
+
+
+def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
+    mm, held = recipe.mm, disc.profile
+    worst = int(np.argmax(np.abs(held.e)))
+    surface, index = _of_all(disc, worst)
+    parameter = held.deviations[surface].parameter[index : index + 1]
+    gauge = disc.surfaces[surface].on.surface.gauge
+    found: dict[str, Any] = {
+        "name": disc.part.name,
+        "datum": held.datum,
+        "profile": 2.0 * held.greatest / mm,
+        "greatest": float(held.e[worst]) / mm,
+        "at_deg": degrees(float(gauge.shaft_angle(parameter)[0])),
+        "line": int(disc.surfaces[surface].on.lines[index]),
+        "uncertainty": 2.0 * float(disc.uncertain[worst]) / mm,
+        "smoothed": 2.0 * disc.smoothed / mm,
+        "least_squares": {"profile": 2.0 * held.least[1] / mm, **_placing(recipe, held.least[0])},
+        **_placing(recipe, held.placing),
+    }
+    if held.turns is not None and held.turns[1] - held.turns[0] > 1e-9:
+        found["turned_from_deg"], found["turned_to_deg"] = (math.degrees(turn) for turn in held.turns)
+    if held.certified is not None:
+        found["certificate"] = 2.0 * held.certified.certificate / mm
+        found["multipliers"] = held.certified.multipliers.tolist()
+    if disc.placing.turn or any(disc.placing.shift):
+        found["aligned"] = _placing(recipe, disc.placing)
+    return found
+
+
+def _of_all(disc: DiscMade, index: int) -> tuple[int, int]:
+    """Surface, and index among its points, of a point among all of a disc."""
+    for rank, one in enumerate(disc.surfaces):
+        if index < len(one.on.points):
+            return rank, index
+        index -= len(one.on.points)
+    raise IndexError(index)
+
+
+def _placing(recipe: Recipe, placing: Placing) -> dict[str, Any]:
+    """Turn and shift, as the file is drawn."""
+    sign = -1.0 if recipe.rotation == "ccw" else 1.0
+    x, y = placing.shift
+    return {"turned_deg": sign * math.degrees(placing.turn), "shifted": [x / recipe.mm, sign * y / recipe.mm]}
+
+
+def _surface(recipe: Recipe, paths: Sequence[Path], one: SurfaceMade) -> dict[str, Any]:
+    mm, curve, count = recipe.mm, one.fit.curve, len(one.on.points)
+    wide = count / curve.spans * math.sqrt(math.pi)
+    outliers = [
+        {
+            "file": paths[int(one.on.files[i])].name,
+            "line": int(one.on.lines[i]),
+            "residual": float(one.fit.residuals[i]) / mm,
+        }
+        for i in np.flatnonzero(one.fit.outliers)[:MOST_OUTLIERS].tolist()
+    ]
+    return {
+        "name": one.on.surface.name,
+        "points": one.on.repeats,
+        "places": count,
+        "spans": curve.spans,
+        "noise": curve.sigma / mm,
+        "smoothing": COVERAGE * float(curve.deviations(equal_steps(720)).max()) / mm,
+        "correlation": one.fit.correlation,
+        "widened": curve.widened,
+        "least_fault_point": least_fault(curve.sigma, 1.0, count) / mm,
+        "least_fault_span": least_fault(curve.sigma, wide, curve.spans) / mm,
+        "span_deg": 360.0 / curve.spans,
+        "outliers": outliers,
+        "outlier_count": int(one.fit.outliers.sum()),
+    }
+
+
+def motion_section(recipe: Recipe, made: PartMade, call: Call) -> dict[str, Any]:
+    """Errors of the motion with their uncertainties."""
+    scale, unit = scale_of(recipe, made)
+    errors = made.motion
+    uncertain = motion_uncertainty(made, call)
+    phase, remaining = errors.phase
+    rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
+    common: Array = np.abs(errors.gain) * systematic(call)
+    found: dict[str, Any] = {"unit": unit, "offset": scale * errors.offset}
+    found["offset_uncertainty"] = scale * float(common.mean())
+    for k, name in enumerate(DERIVATIVES):
+        at = int(np.nanargmax(np.abs(rows[k])))
+        own = uncertain[at] if k == 0 else COVERAGE * errors.sds[k, at]
+        found[name] = {
+            "max": scale * float(rows[k, at]),
+            "at_deg": degrees(float(errors.shaft[at])),
+            "uncertainty": scale * float(own),
+            "unit": unit + ("", "/rad", "/rad^2")[k],
+        }
+    sign = -1.0 if recipe.rotation == "ccw" else 1.0
+    found["phase_deg"] = sign * math.degrees(phase)
+    found["without_phase"] = scale * float(np.abs(remaining).max())
+    made_peak, meant_peak = errors.peak_acceleration
+    found["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * meant_peak, "unit": f"{unit}/rad^2"}
+    return found

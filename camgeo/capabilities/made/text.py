@@ -1,0 +1,93 @@
+"""What points told, as lines for the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from camgeo.common.terminal import escaped
+
+PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  acceleration"}
+
+
+def shown(report: dict[str, Any], *, everything: bool) -> str:
+    """Give the table; with everything also spans, multipliers and each outlier."""
+    found, verdict = report["made"], "ok" if report["ok"] else "FAILED"
+    if not report["ok"] and "failed" not in found["verdicts"].values():
+        if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):
+            verdict = "FAILED"
+        else:
+            verdict = "NOT PROVED"
+    lines = [f"{report['recipe']}: {verdict}  {escaped(', '.join(found['files']))}"]
+    lines += [f"  {label:<30}{value}" for label, value in table_rows(found, everything=everything)]
+    lines += [f"  remark: {text}" for text in found["remarks"]]
+    lines += [f"  {check['name']}: {escaped(check['detail'])}" for check in report["checks"] if not check["ok"]]
+    lines += [f"  wrote {escaped(path)}" for path in found.get("written", ())]
+    return "\n".join(lines)
+
+
+def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
+    """Give what was found, row by row: what it is, and its figures."""
+    unit, rows = found["unit"], []
+    for one in found["surfaces"]:
+        on = f" on {one['name']}" if one["name"] else ""
+        told = f"{one['points']}{on}"
+        told += f", noise {one['noise']:.3g} {unit}" if one["noise"] else ""
+        rows.append(("points", told))
+        if everything:
+            rows.append(
+                (
+                    "  smoothed over",
+                    f"{one['spans']} spans of {one['span_deg']:.3g} degrees, +- {one['smoothing']:.2g} {unit}",
+                )
+            )
+            rows += [(f"  outlier, line {each['line']}", f"{each['residual']:+.4g} {unit}") for each in one["outliers"]]
+        point, wave, over = one["least_fault_point"], one["least_fault_span"], 2.0 * one["span_deg"]
+        faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
+        rows.append(("  least fault that is found", f"{faults} {unit}"))
+    for disc in found["discs"]:
+        of = f" of {disc['name']}" if len(found["discs"]) > 1 else ""
+        value = f"{disc['profile']:.4g} +- {disc['uncertainty']:.2g} {unit}"
+        where = f"{disc['greatest']:+.4g} at {disc['at_deg']:.2f} degrees, line {disc['line']}"
+        rows.append((f"profile{of}, datum {disc['datum']}", f"{value}; {where}"))
+        rows.append(("  smoothed", f"{disc['smoothed']:.4g} {unit}"))
+        if disc["datum"] != "part":
+            rows.append(("  placed by minimax", _placed(disc, unit)))
+            least = disc["least_squares"]
+            rows.append(("  placed by least squares", f"{_placed(least, unit)}: {least['profile']:.4g} {unit}"))
+        if everything and "multipliers" in disc:
+            weights = ", ".join(f"{weight:.4f}" for weight in disc["multipliers"])
+            rows.append(("  certified by", f"{disc['certificate']:.6g} {unit}, multipliers {weights}"))
+    motion = found["motion"]
+    for name, label in PER.items():
+        own = motion[name]
+        rows.append(
+            (label, f"{own['max']:+.4g} +- {own['uncertainty']:.2g} {own['unit']} at {own['at_deg']:.2f} degrees")
+        )
+    rows.append(("  constant offset", f"{motion['offset']:+.4g} {motion['unit']}, set on assembly"))
+    rows.append(
+        (
+            "  phase",
+            f"{motion['phase_deg']:+.4g} degrees; {motion['without_phase']:.4g} {motion['unit']} remain without it",
+        )
+    )
+    peak = motion["peak_acceleration"]
+    rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
+    if "play" in found:
+        play = found["play"]
+        least, most = (f"{play[key]:+.4g} at {play[f'{key}_at_deg']:.2f}" for key in ("least", "most"))
+        rows.append(("play", f"{least} to {most} degrees, +- {play['uncertainty']:.2g} {play['unit']}"))
+    if "output" in found:
+        output = found["output"]
+        told = f"{output['max']:.4g} +- {output['uncertainty']:.2g} {output['unit']} at {output['at_deg']:.2f} degrees"
+        rows.append(("output, error", f"{told}; {output['centred']:.4g} centred"))
+    if "lifts" in found:
+        rows.append(("zero of the readings", f"{found['lifts']['zero']:+.6g} {motion['unit']}"))
+    return rows
+
+
+def _placed(placing: dict[str, Any], unit: str) -> str:
+    x, y = placing["shifted"]
+    told = f"turned by {placing['turned_deg']:+.4g} degrees"
+    if "turned_from_deg" in placing:
+        told += f" ({placing['turned_from_deg']:.4g} to {placing['turned_to_deg']:.4g})"
+    return told + (f", shifted by ({x:+.4g}, {y:+.4g}) {unit}" if x or y else "")
