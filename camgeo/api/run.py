@@ -86,8 +86,8 @@ def verify(
     its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
     and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. With `page` the
     report has the page that shows the files, `Report.page`. `options` as in `export`, and those of files that a
-    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for what is no file of a
-    known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states another
+    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for what is no file of
+    a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states another
     unit than `units`, SurroundingsError where a library is missing. Any other file that cannot be read raises nothing:
     that is a check that fails.
     """
@@ -106,7 +106,9 @@ def verify(
     told = {path: _no_file(path) for path in paths}
     claimed = [path for path in paths if not told[path] and registry.judge_of(path, own)]
     if claimed:
-        return _told(_judged_by(recipe, paths, claimed, units, own, held=within is not None or wide is not None or page))
+        return _told(
+            _judged_by(recipe, paths, claimed, units, own, held=within is not None or wide is not None or page)
+        )
     told |= {path: _too_large(path) for path in paths if not told[path]}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]

@@ -1,4 +1,4 @@
-"""Points against a recipe: profile, motion and verdicts, as checks and as a section of the report.
+"""Points against a recipe: profile, motion and verdicts.
 
 Everything is in mm and radians until the section is written, which is in the recipe's units and degrees.
 """
@@ -10,22 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.api.errors import CallError
 from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
 from camgeo.capabilities.made.keys import Made, datum_of
 from camgeo.capabilities.made.reading import Call, OnSurface, averaged, disc_of, sorted_out, tables_of
-from camgeo.common.terminal import escaped
+from camgeo.common.errors import CallError
 from camgeo.measures.units import UNIT_NAMES
-from camgeo.registry.capability import Results
 from camgeo.synthesis.intent import closures_between, intents, permitted
-from kin.follower.frame_contact import FrameError
-from kin.follower.motion_error import ContactError
 from kin.judge.check import Check
 from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
-from kin.made.points import Placing, UnlikePointsError, demand_alike, profile, settled, turned_at
-from kin.made.smooth import Fit, GapError, fit
+from kin.made.points import Placing, demand_alike, profile, settled, turned_at
+from kin.made.smooth import Fit, fit
 from kin.numeric.angles import degrees
-from kin.numeric.errors import UnsettledError
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 
@@ -33,9 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.common.clock import Clock
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import FileCall
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
     from kin.made.points import Profile
@@ -97,37 +90,6 @@ class PartMade:
     def surfaces(self) -> tuple[SurfaceMade, ...]:
         """The surfaces of all discs."""
         return tuple(surface for disc in self.discs for surface in disc.surfaces)
-
-
-def judge(recipe: Recipe, design: Design, given: FileCall, clock: Clock) -> Results:
-    """Judge points; see `FileJudge`."""
-    from camgeo.capabilities.made.section import section
-
-    paths, units, options = given
-    call = Call.of(options, recipe)
-    name = escaped(str(paths[0]))
-    if not design.contours:
-        raise CallError(f"{name}: there is no exact contour to hold it against: a check of the recipe fails")
-    if design.trimmed:
-        raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
-    try:
-        made = made_part(recipe, design, paths, units, call)
-    except (UnlikePointsError, GapError, UnsettledError) as error:
-        raise CallError(f"{', '.join(escaped(str(path)) for path in paths)}: {error}") from error
-    except (ContactError, FrameError) as error:
-        raise CallError(f"{name}: on the metal that these points tell, {error}") from error
-    except ValueError as error:
-        if isinstance(error, CallError):
-            raise
-        raise CallError(f"{name}: {error}") from error
-    checks, verdicts = _checks(recipe, made, call)
-    found = section(recipe, paths, made, call, verdicts)
-    if call.out is not None:
-        from camgeo.capabilities.made.output import write
-
-        with clock.stage("write"):
-            found["written"] = write(recipe, made, found, call)
-    return Results({"made": found}, checks)
 
 
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], units: float | None, call: Call) -> PartMade:
@@ -272,7 +234,7 @@ def motion_uncertainty(made: PartMade, call: Call) -> Array:
     return expanded
 
 
-def _checks(recipe: Recipe, made: PartMade, call: Call) -> tuple[list[Check], dict[str, str]]:
+def checks_of(recipe: Recipe, made: PartMade, call: Call) -> tuple[list[Check], dict[str, str]]:
     """Checks on the profile of each disc, the motion and the output, where there is a limit; and their verdicts."""
     checks, verdicts = [], {}
     zone = recipe.of(Made)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.api.errors import CallError
 from camgeo.common.arguments import spelled
+from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint

@@ -44,7 +44,7 @@ def _claims(path: Path, options: Mapping[str, object]) -> bool:
 
 
 def _judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Results:
-    from camgeo.capabilities.made.judge import judge
+    from camgeo.capabilities.made.run import judge
 
     return judge(recipe, design, call, clock)
 
