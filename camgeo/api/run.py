@@ -87,9 +87,9 @@ def verify(
     and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. With `page` the
     report has the page that shows the files, `Report.page`. `options` as in `export`, and those of files that a
     capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for what is no file of
-    a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states another
-    unit than `units`, SurroundingsError where a library is missing. Any other file that cannot be read raises nothing:
-    that is a check that fails.
+    a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states
+    another unit than `units`, SurroundingsError where a library is missing. Any other file that cannot be read raises
+    nothing: that is a check that fails.
     """
     from kin.read.formats import suffixes
 
