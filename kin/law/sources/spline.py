@@ -1,4 +1,4 @@
-"""Quintic splines: through points, or nearest to many; C4, with rest at an end where the motion dwells beside it.
+"""Quintic splines through points: C4, with rest at an end where the motion dwells beside it.
 
 B-splines by the recurrence of C. de Boor, A Practical Guide to Splines, chapters 9 to 11 and 14. A clamped spline
 whose three first coefficients are one number has that value and S' = S'' = 0 at its start, exactly.
@@ -55,12 +55,6 @@ class Basis:
     def columns(self, span: Indices) -> Indices:
         """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
         return (span + np.arange(DEGREE + 1)[:, None]) % self.size
-
-    @cached_property
-    def places(self) -> Array:
-        """The sites, each once."""
-        places: Array = self.sites[np.append(np.diff(self.sites) > 0.0, True)]
-        return places
 
     def spans(self, coefficients: Array) -> tuple[Affine, ...]:
         """The spline as polynomials, one between two places, about its start; the last clamped one about its end."""
@@ -122,86 +116,6 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     known = np.where(free, 0.0, fixed)
     fixed[free] = np.linalg.solve(matrix[:, free], s[inner] - matrix @ known)
     return basis.spans(fixed)
-
-
-@dataclass(frozen=True, eq=False)
-class Fitting:
-    """A basis at angles x (n,), with the coefficients that the ends settle."""
-
-    basis: Basis
-    x: Array
-    ends: Ends | None
-
-    @cached_property
-    def _rows(self) -> tuple[Indices, Array]:
-        return self.basis.rows(self.x)
-
-    @cached_property
-    def _taken(self) -> Indices:
-        return self.basis.columns(self._rows[0])
-
-    @cached_property
-    def fixed(self) -> Array:
-        """Coefficients that the ends settle, nan where they are free."""
-        return _fixed(self.basis, self.ends)
-
-    @cached_property
-    def free(self) -> Indices:
-        """Places of the free coefficients."""
-        return np.flatnonzero(np.isnan(self.fixed))
-
-    @cached_property
-    def matrix(self) -> Array:
-        """The free B-splines at x, (n, free)."""
-        matrix = np.zeros((len(self.x), self.basis.size))
-        np.add.at(matrix, (np.arange(len(self.x)), self._taken), self._rows[1])
-        return matrix[:, self.free]
-
-    def values(self, coefficients: Array) -> Array:
-        """The spline at x."""
-        values: Array = (self._rows[1] * coefficients[self._taken]).sum(axis=0)
-        return values
-
-    def products(self, *columns: Array) -> list[Array]:
-        """The free B-splines at x times columns (n,), summed over x: (free,) each."""
-        span, rows = self._rows
-        spans = len(self.basis.sites) - 1
-        taken, sums = self.basis.columns(np.arange(spans)), []
-        for column in columns:
-            total = np.zeros(self.basis.size)
-            for i in range(DEGREE + 1):
-                np.add.at(total, taken[i], np.bincount(span, rows[i] * column, spans))
-            sums.append(total[self.free])
-        return sums
-
-    def normal(self, weights: Array | float = 1.0) -> Array:
-        """Products of the free B-splines with each other, (free, free), each x counted by its weight."""
-        span, rows = self._rows
-        spans = len(self.basis.sites) - 1
-        taken, matrix = self.basis.columns(np.arange(spans)), np.zeros((self.basis.size, self.basis.size))
-        i, j = np.triu_indices(DEGREE + 1)
-        products = np.array([np.bincount(span, rows[a] * rows[b] * weights, spans) for a, b in zip(i, j, strict=True)])
-        np.add.at(matrix, (taken[i], taken[j]), products)
-        other = i != j
-        np.add.at(matrix, (taken[j[other]], taken[i[other]]), products[other])
-        return matrix[np.ix_(self.free, self.free)]
-
-    def nearest(self, s: Array) -> Array:
-        """Coefficients of the least-squares spline for displacements s (n,)."""
-        fixed = self.fixed.copy()
-        if len(self.free):
-            rest = s - self.values(np.where(np.isnan(fixed), 0.0, fixed))
-            fixed[self.free] = np.linalg.solve(self.normal(), self.products(rest)[0])
-        return fixed
-
-
-def nearest(
-    x: Array, s: Array, count: int, ends: Ends | None, between: tuple[float, float]
-) -> tuple[Basis, Array, Array]:
-    """Least-squares spline of `count` equal spans `between` two angles: basis, coefficients, residuals (n,)."""
-    fitting = Fitting(Basis(np.linspace(*between, count + 1), ends is None), x, ends)
-    coefficients = fitting.nearest(s)
-    return fitting.basis, coefficients, s - fitting.values(coefficients)
 
 
 def _fixed(basis: Basis, ends: Ends | None) -> Array:
