@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.capabilities.budget.words import BORE, PROFILE
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,11 +36,13 @@ class Contribution:
     """What one size does: `rows` (m, k, n) at m contacts, in mm or rad of the motion per mm or rad of the size.
 
     `tolerance` is plus and minus, or with k = 2 the radius about the two components; None where it is to be found.
+    `constant` is that of the profile where the machine is set, which is the same at all angles.
     """
 
     name: str
     tolerance: float | None
     rows: Array
+    constant: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,11 +112,28 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
                 contributions.append(Contribution(name, tolerance, rows))
             elif name == PROFILE:
                 contributions.append(Contribution(name, tolerance, rows[:, :, :-1]))
-                contributions.append(Contribution(name, tolerance, np.broadcast_to(at_zero, rows[:, :, :-1].shape)))
+                at_all = np.broadcast_to(at_zero, rows[:, :, :-1].shape)
+                contributions.append(Contribution(name, tolerance, at_all, constant=True))
             else:
                 contributions.append(Contribution(name, tolerance, rows[:, :, :-1] - at_zero))
     nominal = None if play is None else play[: len(shaft)]
     return Influence(shaft, tuple(contributions), contacts, upper, nominal)
+
+
+def velocities(influence: Influence, waves: int) -> Influence:
+    """The same of the velocity by the shaft angle, from even angles over a whole turn.
+
+    A size that is off by t changes the velocity by t dw/dphi. The profile's error t sin(n phi + any) of n `waves`
+    changes it by at most t hypot(dw/dphi, n w): its two components.
+    """
+    step = float(influence.shaft[1] - influence.shaft[0])
+    contributions = []
+    for one in influence.contributions:
+        slope = (np.roll(one.rows, -1, axis=2) - np.roll(one.rows, 1, axis=2)) / (2.0 * step)
+        wavy = one.name == PROFILE and not one.constant
+        rows = np.concatenate([slope, waves * one.rows], axis=1) if wavy else slope
+        contributions.append(replace(one, rows=rows))
+    return replace(influence, contributions=tuple(contributions), play=None)
 
 
 def even(count: int) -> Array:

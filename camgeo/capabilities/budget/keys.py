@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 FREE, NO_ZERO = "free", "none"
 RUNS, MOST_RUNS = 10_000, 1_000_000
 MOST_SEED = 2**63 - 1
+MOST_WAVES = 1000
 MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
 SHAPES = (
     "base_radius",
@@ -50,7 +51,8 @@ class Budget:
     `zero` is the shaft angle, rad, at which the machine is set, None without one. `play` is the greatest permitted of a
     follower that is held from both sides. `guide` is the distance of the middle of a stem's guide from the shaft's
     foot on its line. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must
-    stay within what is permitted.
+    stay within what is permitted. `waves` is how many waves the profile's error has over a turn, None where that is
+    not said.
     """
 
     permitted: float
@@ -61,6 +63,7 @@ class Budget:
     guide: float | None = None
     fit: Fit | None = None
     sums: Literal["worst", "rss"] = "worst"
+    waves: int | None = None
     runs: int = RUNS
     seed: int = 1
 
@@ -207,6 +210,14 @@ BUDGET = Table(
         Field("fit", Kind.CHOICE, "tolerance class of the shaft in the bore", choices=tuple(SHAFTS)),
         Field("key", Kind.TABLE, "tolerance classes of the keyways", default="the key has no play", table=_KEY),
         Field("runs", Kind.INTEGER, "parts that are simulated", default=str(RUNS), at_least=0, at_most=MOST_RUNS),
+        Field(
+            "waves",
+            Kind.INTEGER,
+            "waves of the profile's error over a turn, for errors of velocity",
+            default="these are left out",
+            at_least=1,
+            at_most=MOST_WAVES,
+        ),
         Field("seed", Kind.INTEGER, "seed of the simulation", default="1", at_least=0, at_most=MOST_SEED),
     )
 )
@@ -322,7 +333,7 @@ def build_budget(values: Values) -> Budget | None:
         tolerances |= {} if fit.angle is None else {ANGLE: fit.angle}
     stated = {name: tolerances[name] for name in WORDS if name in tolerances}
     zero = budget.get("zero", NO_ZERO)
-    optional = {name: budget[name] for name in ("play", GUIDE, "runs", "seed") if name in budget}
+    optional = {name: budget[name] for name in ("play", GUIDE, "waves", "runs", "seed") if name in budget}
     return Budget(
         permitted=budget["permitted"],
         tolerances=tuple(stated.items()),

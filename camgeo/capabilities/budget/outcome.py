@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.budget.influence import even, influence
+from camgeo.capabilities.budget.influence import even, influence, velocities
 from camgeo.capabilities.budget.inverse import Split, TakenError, left_for, widest
 from camgeo.capabilities.budget.sums import Sum, Worst, by_name, powers, total, worst
 from camgeo.capabilities.budget.words import WORDS
@@ -145,6 +145,12 @@ def section(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
         "dimensions": _dimensions(recipe, outcome),
         "over_turn": _over_turn(recipe, outcome),
     }
+    if budget.waves is not None:
+        rates = velocities(outcome.influence, budget.waves)
+        entry["velocity"] = {
+            "waves": budget.waves,
+            **{kind: _rate(recipe, worst(rates, kind)) for kind in SUMS},
+        }
     if budget.fit is not None:
         angle = budget.fit.angle
         play = {"bore": budget.fit.bore / recipe.mm, "unit": UNIT_NAMES[recipe.units]}
@@ -172,6 +178,11 @@ def _sum(recipe: Recipe, found: Worst) -> dict[str, Any]:
         "contact": found.contact,
         "shares": dict(found.shares),
     }
+
+
+def _rate(recipe: Recipe, found: Worst) -> dict[str, Any]:
+    value, unit = told(recipe, found.value)
+    return {"value": value, "unit": f"{unit}/rad", "at_deg": degrees(found.at), "shares": dict(found.shares)}
 
 
 def _greatest(recipe: Recipe, outcome: Outcome, output: Output) -> dict[str, float]:
@@ -263,6 +274,10 @@ def table(recipe: Recipe, entry: dict[str, Any]) -> str:
         play = entry["play"]
         limit = "" if play["limit"] is None else f", {play['limit']:.6g} permitted"
         lines.append(f"  play from {play['min']:.4g} to {play['max']:.4g} {unit}{limit}")
+    if "velocity" in entry:
+        rates = entry["velocity"]
+        found = " and ".join(f"by {title[kind]} {_place(rates[kind])}" for kind in SUMS)
+        lines.append(f"  velocity, with {rates['waves']} waves of the profile: {found}")
     if "parts" in entry:
         lines += _simulated(entry["parts"])
     return "\n".join(lines)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from support.made_cases import CASES
 
-from camgeo.capabilities.budget.influence import Influence, influence
+from camgeo.capabilities.budget.influence import Influence, even, influence, velocities
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.sums import by_name, powers, spread, total
 from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
+from kin.numeric.records import replace
 
 COMPONENTS = {"x": 0, "y": 1}
 EXACT = 2e-9  # relative to 1 or the value: digits of the cases
@@ -132,3 +133,18 @@ def test_play_of_a_groove_is_its_clearance_over_the_pressure_angle() -> None:
     # a larger roller takes play on both flanks
     (radius,) = (i for i, one in enumerate(rows.contributions) if one.name == "follower.radius")
     assert np.abs(between.weights[radius] - 2.0 * np.array([1.0317718195, 1.1366018754])).max() < 1e-9
+
+
+def test_velocities_are_slopes_and_waves_of_the_profile() -> None:
+    """Of a yoke the profile is the position's error: a wave t sin(n phi) has the velocity n t, an angle S'' t."""
+    recipe = load_text(CASES["yoke"].cam, "a.yaml")
+    stated = Budget(1.0, (("profile", 0.01), ("angle", 0.001)))
+    shaft = even(3600)
+    rates = velocities(influence(recipe, designed(recipe), stated, shaft), 12)
+    weights = by_name(rates, rates.outputs()[0].weights)
+    assert np.abs(weights["profile"] - 12.0).max() < 1e-9
+    curved = designed(recipe).motion.travel(shaft, 2)[2]
+    assert np.abs(weights["angle"] - np.abs(curved)).max() < 1e-2 * np.abs(curved).max()  # a step wide where S'' bends
+    # the error where the machine is set stays the same, and has no velocity
+    zeroed = velocities(influence(recipe, designed(recipe), replace(stated, zero=1.0), shaft), 12)
+    assert np.abs(by_name(zeroed, zeroed.outputs()[0].weights)["profile"] - 12.0).max() < 1e-9
