@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
-from camgeo.capabilities.budget.words import ANGLE, BORE, GUIDE, WORDS, traits, words_of
+from camgeo.capabilities.budget.words import ANGLE, BORE, GUIDE, PROFILE, WORDS, traits, words_of
 from camgeo.recipe.din6885 import key_for
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -242,6 +242,7 @@ def check_budget(values: Values, reader: Reader) -> None:
     _check_guide(budget, tolerances, reader)
     _check_play(values, reader)
     _check_fit(values, reader)
+    _check_made(values, reader)
     if not tolerances and "budget.tolerances" in reader.marks and not reader.errors:
         reader.fault_at("budget.tolerances", "no tolerance is given", None, "give profile: 0.01 or another one")
 
@@ -285,6 +286,17 @@ def _check_play(values: Values, reader: Reader) -> None:
         if "linkage" in reader.marks:
             what = "play in a square frame is not found for a linkage"
         reader.fault_at("budget.play", what, None, remedy)
+
+
+def _check_made(values: Values, reader: Reader) -> None:
+    """Note a profile that is not half the zone that the measured points are held to."""
+    profile, zone = values["budget"].get("tolerances", {}).get(PROFILE), values.get("made", {}).get("profile")
+    if profile is None or zone is None or math.isclose(2.0 * profile, zone, rel_tol=1e-9):
+        return
+    own, line = join("budget.tolerances", PROFILE), reader.marks["made.profile"][0]
+    what = f"not half of made.profile, {zone / reader.mm:.9g} in line {line}, which is a zone"
+    remedy = f"give {0.5 * zone / reader.mm:.9g}, or made.profile {2.0 * profile / reader.mm:.9g}"
+    reader.fault_at(own, what, f"{profile / reader.mm:.9g}", remedy)
 
 
 def _check_fit(values: Values, reader: Reader) -> None:

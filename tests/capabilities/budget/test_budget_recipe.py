@@ -89,6 +89,20 @@ def test_the_remedies_do() -> None:
         assert budget(body, cam).permitted == 0.05
 
 
+# needs: made
+def test_the_profile_is_half_the_zone_of_measured_points() -> None:
+    made = CAM + "made: {profile: 0.03}\n"
+    with pytest.raises(RecipeErrors) as caught:
+        budget("tolerances: {profile: 0.01}", made)
+    (error,) = (one for one in caught.value.errors if one.path.startswith("budget"))
+    assert str(error) == (
+        "c.yaml:10:49: budget.tolerances.profile: not half of made.profile, 0.03 in line 9, which is a zone, "
+        "given 0.01; give 0.015, or made.profile 0.02"
+    )
+    for remedied in (budget("tolerances: {profile: 0.015}", made), budget("tolerances: {profile: free}", made)):
+        assert remedied.permitted == 0.05
+
+
 def test_values_are_in_mm_and_radians() -> None:
     inches = CAM.replace("cam:", "units: inch\ncam:", 1).replace("part:", "#", 1)
     value = budget("tolerances: {profile: 0.001, angle: 0.05}, zero: -60", inches)
