@@ -16,7 +16,7 @@ from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.registry import registry
-from camgeo.registry.formats import FORMATS
+from camgeo.registry.formats import FORMATS, MODULES
 from camgeo.schema.fields import Kind, Table
 
 ROOT = Path(__file__).parents[2]
@@ -116,7 +116,7 @@ def tables():
         for kind, one in kinds.items():
             found[f"{noun} {kind}"] = one
             found.update(below(one, f"{noun} {kind}"))
-    found.update({f"file {kind}": record.options for kind, record in FORMATS.items()})
+    found.update({f"file {kind}": FORMATS[kind].options for kind in MODULES})
     of_cams = motions(found)
     found = {name: one for name, one in found.items() if not name.startswith(tuple(of_cams))}
     motion = of_cams["cam disc.motion"]  # the others have the same keys or fewer, which a test holds
@@ -139,6 +139,9 @@ def of_capability(name):
     if any(field.table is None for field in own.fields):
         found["keys"] = own
     found.update({path: Table(tuple(fields)) for path, fields in record.below.items()})
+    found.update({f"file {kind}": FORMATS[kind].options for kind in registry.labels()[name].formats})
+    if record.variant is not None:
+        found["file"] = Table((record.variant.option,))
     more = ROOT / "tests" / "capabilities" / name / "page.py"
     if more.is_file():
         found.update(run_path(str(more))["TABLES"])
