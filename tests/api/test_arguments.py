@@ -98,6 +98,7 @@ def surface(folder: Path) -> Functions:
         "Recipe.error": (recipe.error, {"path": "cam.kind"}),
         "Recipe.text_with": (recipe.text_with, {"values": {"verify.angles": 30}}),
         "Design.motion": (design.motion, {"theta": 0.5, "derivative": 1}),
+        # needs: camshaft
         "CamshaftDesign.motion": (camgeo.design(SHAFT).motion, {"theta": 0.5, "derivative": 1}),
         "Design.contour": (design.contour, {"n": 7}),
         "Design.edges": (design.edges, {"tolerance": 0.1, "form": "arcs"}),

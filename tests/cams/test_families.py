@@ -12,7 +12,7 @@ import pytest
 from support.places import ROOT
 
 from camgeo.cams.families import FAMILIES
-from camgeo.capabilities.mechanism.build import BODIES
+from camgeo.capabilities.mechanism.build import BODIES  # needs: mechanism
 from camgeo.checks.declared import CHECKS
 from camgeo.recipe.cam import MADE as SAID
 from camgeo.recipe.loading import load
@@ -34,6 +34,7 @@ def test_a_follower_is_drawn_and_its_checks_are_made(path: Path) -> None:
     assert set(follower.checks) <= {*CHECKED, *exact.proofs} <= set(CHECKS)
     assert follower.closure in {"", *CHECKS}
     # sets of printed bodies round two discs are refused by name
+    # needs: mechanism
     assert (follower.arrangement in BODIES) == (follower.arrangement.discs == 1)
 
 

@@ -156,7 +156,7 @@ def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> No
     assert "support" in capsys.readouterr().err
     assert main(["new"]) == 0
     rows = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
-    assert [name for name, _ in rows] == [*OF_CAMS, "camshaft"]
+    assert {*OF_CAMS} <= {name for name, _ in rows}
     assert all(len(words) > 20 and words.endswith(".") for _, words in rows)
     assert main(["new", "disc"]) == 0
     discs = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
@@ -179,6 +179,7 @@ def test_a_dash_is_the_terminal(
     assert not list(tmp_path.iterdir())
 
 
+# needs: camshaft
 def test_a_camshaft_to_start_from_and_its_lobe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The title of the starter says how to make the recipe of its lobes."""
     monkeypatch.chdir(tmp_path)
@@ -197,6 +198,10 @@ def test_laws_and_schema(capsys: pytest.CaptureFixture[str]) -> None:
     assert peaks["parabolic"]["jerk"] is None
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out)["required"] == ["cam"]
+
+
+# needs: camshaft
+def test_schema_of_a_camshaft(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "camshaft"]) == 0
     shaft = json.loads(capsys.readouterr().out)
     assert shaft["required"] == ["camshaft"]

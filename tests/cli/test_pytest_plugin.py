@@ -9,7 +9,7 @@ import pytest
 from support.places import RECIPES
 
 from camgeo import testing
-from camgeo.capabilities.second_opinion import opinion as second_opinion
+from camgeo.capabilities.second_opinion import opinion as second_opinion  # needs: second_opinion
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
@@ -37,7 +37,7 @@ def _all_is_imported(tmp_path_factory: pytest.TempPathFactory) -> None:
     with pytest.raises(AssertionError):
         testing.assert_recipe(path)
     pipeline.export(load(path), path.parent / "out")
-    second_opinion.demand_libraries(load(path))
+    second_opinion.demand_libraries(load(path))  # needs: second_opinion
     path.write_text(UNDERCUT)
     with pytest.raises(AssertionError):
         testing.assert_recipe(path)
@@ -110,6 +110,7 @@ LOBE = "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8}, 
 SHAFT = "camshaft: {shaft: {diameter: 22, to: 30}, lobes: [{recipe: ../lobe.yaml, at: 0, z: 10, length: 10}]}\n"
 
 
+# needs: camshaft
 def test_each_check_of_a_camshaft_is_an_item(project: Pytester) -> None:
     """One for all lobes; what fails is told by the lobe, and placed at it in the recipe of the shaft."""
     add(project, "lobe", LOBE, ".")
@@ -128,6 +129,7 @@ def test_each_check_of_a_camshaft_is_an_item(project: Pytester) -> None:
     assert "camgeo/" not in result.stdout.str().replace(str(project.path), "")
 
 
+# needs: second_opinion
 @pytest.mark.slow
 def test_a_second_opinion_adds_its_rows(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [f"{name}[small.stl]" for name in ("shapely:valid", "shapely:area", "shapely:distance")]

@@ -93,6 +93,7 @@ def test_a_part_of_a_recipe_is_read_beside_a_cam():
             read((rest + block.text).encode(), f"{block.page}:{block.line}")
 
 
+# needs: camshaft
 def test_a_camshaft_is_read_beside_its_lobes(tmp_path):
     shown = [block for block in blocks() if block.language == "yaml" and block.text.startswith("camshaft:")]
     assert shown
@@ -270,6 +271,7 @@ def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
         assert main(words) == 0, (words, capsys.readouterr().err)
 
 
+# needs: camshaft
 def test_the_camshaft_of_its_page_is_made_of_the_lobe_beside_it(workshop, tmp_path):
     report = camgeo.export(workshop / "single.yaml", tmp_path)
     assert report.ok

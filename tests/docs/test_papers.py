@@ -21,7 +21,7 @@ DOCS = ROOT / "docs"
 FIGURES = DOCS / "figures"
 # what draws, and the page that shows it
 SCRIPTS = {
-    "make_camshafts": "camshafts.md",
+    "make_camshafts": "camshafts.md",  # needs: camshaft
     "make_constant_breadth": "constant-breadth.md",
     "make_double_roller": "double-roller.md",
     "make_laws": "double-roller.md",

@@ -662,6 +662,7 @@ def test_cams(body: str, messages: list[str]) -> None:
     assert told(body) == [f"c.yaml:{message}" for message in messages]
 
 
+# needs: camshaft
 def test_a_camshaft_is_no_cam() -> None:
     """Where one cam is wanted, such as by `study`; what reads camshafts is named."""
     (message,) = told("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n")
@@ -671,6 +672,7 @@ def test_a_camshaft_is_no_cam() -> None:
     )
 
 
+# needs: camshaft
 def test_a_camshaft_without_lobes_ends_with_status_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "shaft.yaml"
     path.write_text("camshaft: {lobes: []}\n")

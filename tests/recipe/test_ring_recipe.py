@@ -49,12 +49,14 @@ def test_what_belongs_to_a_disc_is_refused(feature):
     assert faults(text) == [(f"part.{name}", "belongs to a disc on a shaft, not to a ring")]
 
 
+# needs: mechanism
 def test_files_that_are_not_made_of_a_ring():
     assert faults(INTERNAL + OUTER + "export: {files: [{stl: {parts: all}}]}\n") == [
         ("export.files[0]", "the bodies round a ring are not made")
     ]
 
 
+# needs: milling
 def test_a_program_for_a_ring_needs_what_any_program_needs():
     milling = "manufacture: {cutter: 6, layer: true, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 1e-9}\n"
     assert faults(INTERNAL + OUTER + "export: {files: [gcode]}\n" + milling) == [

@@ -784,6 +784,7 @@ def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) ->
         process.communicate()
 
 
+# needs: camshaft
 @pytest.mark.slow
 def test_a_camshaft_is_watched_with_its_lobes(tmp_path: Path) -> None:
     lobe, path = tmp_path / "lobe.yaml", tmp_path / "shaft.yaml"

@@ -14,9 +14,9 @@ import shutil
 import subprocess
 from typing import TYPE_CHECKING
 
-import yaml
-
+from camgeo.recipe.words import words_of
 from camgeo.registry import registry
+from camgeo.schema.yaml_source import read_source
 from support.places import ROOT
 
 if TYPE_CHECKING:
@@ -66,9 +66,10 @@ def _behind_page(lines: list[str], start: int) -> int:
 
 
 def uses(path: Path, name: str) -> bool:
-    """Whether a shipped recipe has a key of a capability."""
+    """Whether a shipped recipe has a key, a format or an option of files of a capability."""
     label = registry.labels()[name]
-    return not {*yaml.safe_load(path.read_text(encoding="utf-8"))}.isdisjoint({*label.words, *label.roots})
+    words = words_of(read_source(path.read_bytes(), str(path)).root)
+    return not words.isdisjoint({*label.words, *label.roots})
 
 
 def copy_without(name: str, folder: Path) -> Path:

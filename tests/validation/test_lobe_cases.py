@@ -97,6 +97,7 @@ def test_f19_a_roller_on_the_metal_of_a_flat_tappet(tmp_path: Path) -> None:
 ORDER = (1, 3, 4, 2)
 
 
+# needs: camshaft
 def camshaft(folder: Path, engine: str, lobes: str) -> camgeo.Report:
     """A shaft of two recipes, intake and exhaust, by its tables."""
     (folder / "intake.yaml").write_text(INTAKE, encoding="utf-8")
@@ -106,6 +107,7 @@ def camshaft(folder: Path, engine: str, lobes: str) -> camgeo.Report:
     return camgeo.export(folder / "shaft.yaml", folder)
 
 
+# needs: camshaft
 def four(folder: Path, engine: str) -> camgeo.Report:
     rows = [
         f"    - {{recipe: {valve}.yaml, cylinder: {cylinder}, valve: {valve}, z: {40 * k + 20 * j}}}\n"
@@ -123,6 +125,7 @@ F20 = {  # crank degrees after the firing dead centre of cylinder 1: IVO, IVC, E
 }
 
 
+# needs: camshaft
 def test_f20_events_of_each_cylinder(tmp_path: Path) -> None:
     lobes = dict(four(tmp_path, "intake: 110, exhaust: 114, lift: 1"))["camshaft"]["lobes"]
     for k, cylinder in enumerate(ORDER):
@@ -133,6 +136,7 @@ def test_f20_events_of_each_cylinder(tmp_path: Path) -> None:
         assert 2.0 * exhaust["duration_deg"] == pytest.approx(190.420040535, abs=6e-9)
 
 
+# needs: camshaft
 def test_d21_lobe_centres(tmp_path: Path) -> None:
     """Intake at 108 after, exhaust at 112 before dead centre; the noses of even lobes stand at their centres."""
     section = dict(four(tmp_path, "intake: 108, exhaust: 112"))["camshaft"]
@@ -144,6 +148,7 @@ def test_d21_lobe_centres(tmp_path: Path) -> None:
     assert [row["separation"] for row in section["cylinders"]] == pytest.approx([110.0] * 4)
 
 
+# needs: camshaft
 def test_d21_events_of_230_and_236_crank_degrees() -> None:
     """Durations of 230 and 236: open at 234 -+ 57.5 and at 124 -+ 59 cam degrees."""
     from camgeo.capabilities.camshaft.events import Event, valves_of
@@ -153,6 +158,7 @@ def test_d21_events_of_230_and_236_crank_degrees() -> None:
     assert valves_of(intake, exhaust, 0.0) == pytest.approx((7, 43, 50, 6, 13, 110), abs=1e-12)
 
 
+# needs: camshaft
 def test_f23_corrections_in_two_planes(tmp_path: Path) -> None:
     """Four lobes whose unbalance is none: masses in planes at -10 and 114 take the couple, which is over 124 mm."""
     lobes = "".join(
