@@ -22,7 +22,7 @@ from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from ezdxf.document import Drawing
@@ -104,6 +104,7 @@ def write_dxf(
     name: str = "",
     about: str = "",
     remarks: Sequence[str] = (),
+    annotate: Callable[[Modelspace], Box] | None = None,
 ) -> None:
     """Write what is cut or engraved, with reference geometry, as a DXF drawing with the shaft at the origin.
 
@@ -111,7 +112,7 @@ def write_dxf(
     control points and knots, a circle a CIRCLE. All lengths are given in mm; the drawing's
     unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top.
     `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
-    comments.
+    comments. `annotate` draws what else there is, on layers of its own, and gives its extremes in drawing units.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
@@ -132,6 +133,8 @@ def write_dxf(
     _set_layers(drawing, mm, {one.layer for one in outlines})
     space = drawing.modelspace()
     boxes = [_draw_layer(space, one, mm) for one in outlines] + _draw_reference(space, reference, mm)
+    if annotate is not None:
+        boxes.append(annotate(space))
     corners = np.array(boxes)
     low, high = corners[:, :2].min(axis=0).tolist(), corners[:, 2:].max(axis=0).tolist()
     drawing.set_modelspace_vport(

@@ -10,6 +10,11 @@ from camgeo.schema.fields import Field, Form, Kind, Table, either
 from camgeo.schema.yaml_source import Scalar, described, join
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.output.job import Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.registry.formats import Run
     from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
 
@@ -64,10 +69,24 @@ _OVERLAYS = Field(
 )
 
 
+def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
+    """Write the page on everything that a run found; it is there also where no cam is made."""
+    from camgeo.measures.file_result import FileResult
+    from camgeo.output.job import Made
+    from camgeo.output.pipeline import content_of
+    from camgeo.report.document import document
+    from camgeo.report.page.page import page
+
+    content = content_of(run.recipe, run.design, run.findings, run.clock)
+    with run.clock.stage("write html"):
+        path.write_bytes(page(run.recipe, content, document(run.recipe, run.findings)).encode("utf-8"))
+    return Made((FileResult(path, request),))
+
+
 FORMAT = Format(
     name="html",
     options=Table((_OVERLAYS,)),
     contour=False,
     part=False,
-    summary=True,
+    summarise=_summarise,
 )

@@ -15,6 +15,7 @@ from camgeo.files.errors import MissingExtraError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.registry import registry
+from camgeo.registry.formats import Run
 from camgeo.report.document import Findings, document, encoded
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
@@ -100,7 +101,7 @@ def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> t
     requests = tuple(request for request in recipe.export.files if not request.format.summary)
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         design, found = _produced(recipe, requests, Path(folder), clock)
-        return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
+        return Outcome(document(recipe, found), found.ok, None), content_of(recipe, design, found, clock)
 
 
 def judged(
@@ -135,7 +136,7 @@ def judged_and_shown(
     clock = Clock()
     design, findings = _judged(recipe, paths, (tolerance, units, gap), clock)
     report = document(recipe, findings)
-    return report, page(recipe, _content(recipe, design, findings, clock), report)
+    return report, page(recipe, content_of(recipe, design, findings, clock), report)
 
 
 def _judged(
@@ -231,20 +232,19 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     checks = list(design.checks)
     files: list[FileResult] = []
     missing: dict[FileRequest, str] = {}
-    pages = [request for request in requests if request.format.summary]  # they tell of all the others
+    job = None
     if design.contours:
         from camgeo.output.dispatch import foresee, make
         from camgeo.output.job import Job
 
         job = Job.of(recipe, design, clock)
-        others = [request for request in requests if not request.format.summary]
-        for request in others:
+        for request in requests:
             try:
                 foresee(job, request)
             except MissingExtraError as error:
                 missing[request] = str(error)
-        for request in others:
-            if request in missing:
+        for request in requests:
+            if request in missing or request.format.summary:
                 continue
             made = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
             files += made.files
@@ -255,23 +255,17 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     found = _findings(recipe, design, checks, files, clock, skipped=skipped)
     names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
     found = replace(found, missing=tuple((names[request], why) for request, why in missing.items()))
-    for request in pages:
-        path = folder / request.filename(recipe.name, recipe.export.files)
-        found = _with_page(recipe, design, found, FileResult(path, request), clock)
+    for request in requests:
+        if request.format.summarise is not None and request not in missing:
+            path = folder / request.filename(recipe.name, recipe.export.files)
+            made = request.format.summarise(Run(recipe, design, found, job, clock), request, path)
+            found = replace(found, files=(*found.files, *made.files), checks=(*found.checks, *made.checks))
+            found = replace(found, stages=tuple(clock.stages))
     return design, found
 
 
-def _with_page(recipe: Recipe, design: Design, findings: Findings, file: FileResult, clock: Clock) -> Findings:
-    """Write the page on everything that was found; it is there also where no cam is made."""
-    from camgeo.report.page.page import page
-
-    gathered = _content(recipe, design, findings, clock)
-    with clock.stage("write html"):
-        file.path.write_bytes(page(recipe, gathered, document(recipe, findings)).encode("utf-8"))
-    return replace(findings, files=(*findings.files, file), stages=tuple(clock.stages))
-
-
-def _content(recipe: Recipe, design: Design, findings: Findings, clock: Clock) -> Content:
+def content_of(recipe: Recipe, design: Design, findings: Findings, clock: Clock) -> Content:
+    """What a page shows of a run."""
     from camgeo.report.page.content import content
 
     with clock.stage("page"):

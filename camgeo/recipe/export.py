@@ -33,7 +33,7 @@ class FileRequest:
     that is made different from the nominal one has its `compensation`. `variant` names the capability whose option
     makes the file something else than the cam, empty for the cam. `units` is the file's own unit, None for the
     format's (`told_in`). `step`, rad, is that of a grinder's table, `roller` the radius, mm, of the one whose lift is
-    tabled. `overlays` are what a page shows besides.
+    tabled. `overlays` are what a page shows besides, `own` the options that its format alone has.
     """
 
     kind: str
@@ -46,6 +46,7 @@ class FileRequest:
     step: float | None = None
     roller: float | None = None
     overlays: tuple[str, ...] = ()
+    own: object = None
 
     @property
     def format(self) -> Format:
@@ -82,6 +83,7 @@ class FileRequest:
         before = requests[: requests.index(self)] if self in requests else requests
         kin = [request for request in before if request.kind == self.kind]
         parts = [name, variant(self.variant).tag(self.format)] if self.variant else [name]
+        parts += [self.format.tail] if self.format.tail else []
         alike = [request for request in kin if request.as_ == self.as_]
         if kin and self.as_:
             parts.append(self.as_)
@@ -276,6 +278,7 @@ def _request(kind: str, file: Values) -> FileRequest:
         chosen.get("step"),
         None if "roller" not in chosen else 0.5 * chosen["roller"],
         chosen.get("overlays", ()),
+        FORMATS[kind].own(file),
     )
 
 

@@ -140,6 +140,12 @@ class Recipe(Order):
         speeds = (capability.speed(self) for capability in registry.in_order(self.uses))
         return next((rpm for rpm in speeds if rpm is not None), None)
 
+    @property
+    def profile(self) -> float | None:
+        """Width, mm, of the zone in which the contour is to lie once it is made; None where no capability says it."""
+        widths = (capability.profile(self) for capability in registry.in_order(self.uses))
+        return next((width for width in widths if width is not None), None)
+
     def of(self, kind: type[T]) -> T | None:
         """Give the value of this class that a capability made of its keys, None where the recipe has none."""
         return next((value for _, value in self.capabilities if isinstance(value, kind)), None)

@@ -139,6 +139,11 @@ def no_speed(_recipe: Recipe, /) -> float | None:
     return None
 
 
+def no_profile(_recipe: Recipe, /) -> float | None:
+    """Give no tolerance."""
+    return None
+
+
 def no_starters() -> Mapping[str, Starter]:
     """Give no starters."""
     return EMPTY
@@ -225,6 +230,7 @@ class Capability:
     check     notes all faults between its keys and others: `reader.fault_at(path, problem, value, remedy)`
     build     makes of the values in which there is no fault what `recipe.of(Class)` gives; None for nothing
     speed     turns a minute of the shaft, where a recipe gives it
+    profile   width, mm, of the zone in which the contour is to lie once it is made, where a recipe gives it
     starters  recipes for `camgeo new`, by name
     roots     other kinds of recipes, by the label's keys
 
@@ -256,6 +262,7 @@ class Capability:
     check: Callable[[Values, Reader], None] = no_fault
     build: Callable[[Values], object | None] = no_value
     speed: Callable[[Recipe], float | None] = no_speed
+    profile: Callable[[Recipe], float | None] = no_profile
     starters: Callable[[], Mapping[str, Starter]] = no_starters
     roots: Mapping[str, Root[Any]] = EMPTY
     figures: Mapping[str, Figure] = EMPTY

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import ChainMap
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.common.on_demand import OnDemand
 from camgeo.registry import registry
@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.common.clock import Clock
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from camgeo.report.document import Findings
     from camgeo.schema.fields import Field
     from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
@@ -34,6 +36,11 @@ if TYPE_CHECKING:
 
 def no_fault(_file: Values, _values: Values, _reader: Reader, /) -> None:
     """Note nothing."""
+
+
+def no_options(_file: Values, /) -> object:
+    """Have no options of its own."""
+    return None
 
 
 def foresee_nothing(_job: Job, _request: FileRequest, /) -> None:
@@ -61,6 +68,16 @@ def with_holes(recipe: Recipe, /) -> bool:
 def nothing_left(_recipe: Recipe, _design: Design, /) -> Sequence[tuple[str, str]]:
     """Leave nothing out."""
     return ()
+
+
+class Run(NamedTuple):
+    """A run as a file sees it that reports on all others; `job` is None where no cam is made."""
+
+    recipe: Recipe
+    design: Design
+    findings: Findings
+    job: Job | None
+    clock: Clock
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,7 +141,9 @@ class Format:
 
     name      its word in recipes, reports and on the command line
     suffix    ending of its files' names without the dot, where that is not the name
+    tail      word behind the recipe's name in its files' names
     options   keys of one file
+    own       makes of the options of one file those that no other format has, for the request's `own`
     forms     by their words after the key `as`; by the empty word for a format without that key
     check     notes the faults between its options and others: (values of the file, values of the recipe, reader)
 
@@ -135,13 +154,13 @@ class Format:
     solid     whether it is a solid, which needs a thickness
     by_disc   whether each disc on a shaft has a file of its own; else one file has all
     units     whether a file states its unit
-    summary   whether it reports on all other files of a run, and is made last
     turning   whether it is made only of a mechanism that turns right round
     path      whether it shows the path of the cutter where `manufacture.layer` asks for that
 
     What makes them:
 
     make      fits, writes, reads back and judges one file at a path
+    summarise writes files that report on all others of a run, when they are judged: (run, request, path)
     foresee   refuses what is certain to be refused, before anything is fitted; raises MissingExtraError where a package
               is missing that makes its files, which are then left out
     intent    what kin judges its files by
@@ -154,7 +173,9 @@ class Format:
 
     name: str
     suffix: str = ""
+    tail: str = ""
     options: Table = Table(())
+    own: Callable[[Values], object] = no_options
     forms: Mapping[str, Form] = field(default_factory=lambda: WHOLE)
     check: Callable[[Values, Values, Reader], None] = no_fault
     contour: bool = True
@@ -162,10 +183,10 @@ class Format:
     solid: bool = False
     by_disc: bool = False
     units: bool = True
-    summary: bool = False
     turning: bool = False
     path: bool = False
     make: Callable[[Job, FileRequest, Path], Made] | None = None
+    summarise: Callable[[Run, FileRequest, Path], Made] | None = None
     foresee: Callable[[Job, FileRequest], None] = foresee_nothing
     intent: Callable[[Recipe, Design], PartIntent] = as_designed
     bored: Callable[[Recipe], bool] = always
@@ -178,6 +199,11 @@ class Format:
     def ending(self) -> str:
         """Ending of its files' names, without the dot."""
         return self.suffix or self.name
+
+    @property
+    def summary(self) -> bool:
+        """Whether it reports on all other files of a run, and is made last."""
+        return self.summarise is not None
 
     @property
     def program(self) -> bool:
