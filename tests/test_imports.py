@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 HEAVY = {
     *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
-    *("pyarrow", "dask", "distributed", "OCP"),
+    *("pyarrow", "dask", "distributed", "OCP", "fpdf"),
 }
 LINTED = importlib.util.find_spec("importlinter") is not None
 PLANTED = {

@@ -39,6 +39,10 @@ FORMS = [
     "{dxf: {as: spline}}",
 ]
 FORMS += ["{csv: {as: contacts}}", "{csv: {as: polar}}", "{svg: {as: polyline}}", "{dxf: {as: polyline, kerf: 0.1}}"]
+SHEETS: list[Any] = [
+    "sheet",
+    {"sheet": {"paper": "A4", "projection": "third", "step": 15, "scale": "1:2", "title": "x"}},
+]
 PLACED = re.compile(r"^cam\.yaml(:\d+:\d+)?: |^camgeo: ")
 
 
@@ -48,6 +52,7 @@ def sound(rng: Random, number: int) -> Attack:
     files = [
         "{dxf: {as: " + rng.choice(["arcs", "polyline", "spline"]) + "}}",
         *rng.sample(FORMS[1:7], rng.randrange(3)),
+        *rng.choice([[], [], ["{sheet: {profile: 0.02}}"]]),
     ]
 
     def judge(done: Done, folder: Path) -> list[str]:
@@ -83,7 +88,7 @@ def bases() -> tuple[str, ...]:
 
 def lighter(data: dict[str, Any], rng: Random) -> dict[str, Any]:
     """The recipe with a file or two of its own, so that a run is short."""
-    data.setdefault("export", {})["files"] = rng.sample(["dxf", "stl", "svg", "csv"], rng.randrange(1, 3))
+    data.setdefault("export", {})["files"] = rng.sample(["dxf", "stl", "svg", "csv", *SHEETS], rng.randrange(1, 3))
     data["verify"] = {**data.get("verify", {}), "angles": 360}
     return data
 

@@ -25,7 +25,7 @@ BORE = "give a diameter above 0, or a form such as {square: 10}, {hexagon: 10} o
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
-FORMATS = "give dxf, svg, stl, ply, 3mf, step, glb, csv, html or gcode"
+FORMATS = "give dxf, svg, stl, ply, 3mf, step, glb, csv, html, gcode or sheet"
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -68,7 +68,7 @@ dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
         "cams/a.yaml:10:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
             "cams/a.yaml:10:63: export.files[3]: unknown file format, given 'stp'; "
-            "give dxf, svg, stl, ply, 3mf, step, glb, csv, html or gcode"
+            "give dxf, svg, stl, ply, 3mf, step, glb, csv, html, gcode or sheet"
         ),
         "cams/a.yaml:11:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (

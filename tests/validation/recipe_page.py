@@ -16,6 +16,7 @@ from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.registry import registry
+from camgeo.registry.capability import Capability
 from camgeo.registry.formats import FORMATS, MODULES
 from camgeo.schema.fields import Kind, Table
 
@@ -133,7 +134,7 @@ def tables():
 
 def of_capability(name):
     """The same of the keys and figures that a capability adds, and what `page.py` beside its tests has more."""
-    record = registry.capability(name)
+    record = registry.capability(name) if registry.labels()[name].record else Capability()
     own = Table(tuple(record.fields()))
     found = dict(below(own, ""))
     if any(field.table is None for field in own.fields):
@@ -156,7 +157,7 @@ def page_of(name):
 
 def pages():
     """Every page with the tables that stand on it."""
-    of_others = {page_of(name): of_capability(name) for name in registry.recorded()}
+    of_others = {page_of(name): of_capability(name) for name in registry.labels()}
     return {PAGE: tables(), **{page: written for page, written in of_others.items() if written}}
 
 

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget, build_budget, check_budget, fields
+from camgeo.capabilities.budget.words import PROFILE
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import Figure, Need
 from camgeo.registry.capability import Capability, Results
@@ -89,10 +90,18 @@ def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     return (Plot("Budget", unit, rows, limits=((permitted, "permitted"),), axis="error", holds=(0.0,)),)
 
 
+def _profile(recipe: Recipe) -> float | None:
+    """Width of the zone of a contour that may be off by as much on either side; None where that is to be found."""
+    budget = recipe.of(Budget)
+    stated = None if budget is None else dict(budget.tolerances).get(PROFILE)
+    return None if stated is None else 2.0 * stated
+
+
 CAPABILITY = Capability(
     fields=fields,
     check=check_budget,
     build=build_budget,
+    profile=_profile,
     figures=FIGURES,
     measure=_measure,
     examine=_examine,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.made.keys import build, fields
+from camgeo.capabilities.made.keys import Made, build, fields
 from camgeo.registry.capability import CallOption, Capability, FileJudge
 
 if TYPE_CHECKING:
@@ -55,4 +55,12 @@ def _shown(report: dict[str, Any], everything: bool) -> str:
     return shown(report, everything=everything)
 
 
-CAPABILITY = Capability(fields=fields, build=build, checks=_checks, judges=FileJudge(_claims, OPTIONS, _judge, _shown))
+def _profile(recipe: Recipe) -> float | None:
+    """Width of the profile's zone."""
+    made = recipe.of(Made)
+    return None if made is None else made.profile
+
+
+CAPABILITY = Capability(
+    fields=fields, build=build, profile=_profile, checks=_checks, judges=FileJudge(_claims, OPTIONS, _judge, _shown)
+)

@@ -1,0 +1,5 @@
+"""The shop drawing: views, dimensions, tolerances, tables and verdict of a disc, as PDF and DXF."""
+
+from camgeo.registry.label import Label
+
+LABEL = Label(rank=90, formats={"sheet": "format"}, record=False)

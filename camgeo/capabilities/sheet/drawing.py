@@ -1,0 +1,186 @@
+"""From a judged run to the shop drawing of each disc: what it says, its pages, its PDF and its DXF."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import reduce
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.capabilities.sheet.dxf import annotation
+from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed, free, notes_at, title_block
+from camgeo.capabilities.sheet.lettering import unknown, wrapped
+from camgeo.capabilities.sheet.options import Sheet
+from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, table_of, table_pages
+from camgeo.capabilities.sheet.part import Drawn, loops_of, number
+from camgeo.capabilities.sheet.pdf import write_pdf
+from camgeo.capabilities.sheet.views import NoRoomError, Tolerance, draw_views, laid_out, sizes_of
+from camgeo.fit.bound import Bound
+from camgeo.formats.dxf import write_dxf
+from camgeo.measures.file_result import FileResult
+from camgeo.output.job import Made
+from camgeo.output.part_geometry import contours_of, openings_of, remarks, rim_of
+from camgeo.recipe.export import FileRequest, name_of_disc
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.sheet.marks import Page
+    from camgeo.output.job import Job
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.formats import Run
+
+ARCS = FileRequest("dxf", "arcs", "R2010", units="mm")
+
+
+def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
+    """Write the drawing of each disc as PDF at `path`, or beside it, and as DXF, which is judged as any drawing is.
+
+    Nothing is drawn where no cam is made. Raises RecipeErrors for what cannot be drawn.
+    """
+    if run.job is None or not isinstance(request.own, Sheet):
+        return Made(())
+    jobs = run.job.single
+    paths = [path.with_name(name_of_disc(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
+    pairs = enumerate(zip(jobs, paths, strict=True))
+    drawings = [_made(run, job, request, there, sheet=request.own, rank=rank) for rank, (job, there) in pairs]
+    judged = drawings[0] if len(drawings) == 1 else run.job.closed(ARCS, drawings)
+    return Made((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
+
+
+def _made(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> Made:
+    recipe, field = run.recipe, f"{run.recipe.field_of(request)}.sheet"
+    name = recipe.name if len(run.design.discs) == 1 else f"{recipe.name}, disc {rank + 1}"
+    sheet = sheet if sheet.title else replace(sheet, title=name)
+    for option, text in sheet.texts.items():
+        if missing := unknown(text):
+            raise recipe.error(f"{field}.{option}", "characters that the font lacks", repr(missing), "leave them out")
+    tolerance = _tolerance(recipe, sheet, field)
+    with job.refusals(ARCS), job.clock.stage("sheet"):
+        contours = job.outlines("arcs", job.tolerance(ARCS))
+        outlines = [*contours_of(job.design, contours), *rim_of(job.body), *openings_of(job.body)]
+        drawn = Drawn(loops_of(outlines, job.body, len(contours)), job.body, recipe.part, recipe.rotation == "ccw")
+        pages = _pages(run, job, sheet, drawn, tolerance=tolerance, field=field, rank=rank)
+        write_pdf(path, pages.all, sheet.title)
+        drawing = path.with_suffix(".dxf")
+        write_dxf(
+            drawing,
+            outlines,
+            remarks=remarks(job.body, 1.0),
+            name=recipe.name,
+            about=recipe.about,
+            annotate=annotation(pages.annotated, pages.origin, pages.scale),
+        )
+    bound = reduce(Bound.wider, (outline.bound for outline in contours))
+    return job.judged(ARCS, drawing, bound, sum(outline.count for outline in contours))
+
+
+def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
+    """Give the contour's profile tolerance, which two sections may not state differently, and its datums."""
+    stated, own = recipe.profile, sheet.profile
+    if stated is not None and own is not None and abs(stated - own) > 1e-9 * own:
+        what = f"another section states a profile tolerance of {number(stated / recipe.mm)}"
+        raise recipe.error(f"{field}.profile", what, number(own / recipe.mm), "leave it out, or make them the same")
+    part = recipe.part
+    turning = part.keyway is not None or part.flat is not None
+    datums = {"A": part.bore is not None, "B": part.bore is not None and turning}
+    return Tolerance(own if stated is None else stated, tuple(letter for letter, there in datums.items() if there))
+
+
+# --- its pages --------------------------------------------------------------------------------------------------------
+
+
+class Pages(NamedTuple):
+    """The pages of one disc, the last at 1 : 1 if there is one; where the shaft is on the first, and its scale."""
+
+    annotated: list[Page]
+    last: Page | None
+    origin: tuple[float, float]
+    scale: float
+
+    @property
+    def all(self) -> list[Page]:
+        """Every page in order."""
+        return self.annotated if self.last is None else [*self.annotated, self.last]
+
+
+def _pages(run: Run, job: Job, sheet: Sheet, drawn: Drawn, *, tolerance: Tolerance, field: str, rank: int) -> Pages:
+    recipe, contours = run.recipe, job.design.contours
+    sizes = sizes_of(drawn, _base(job), tolerance)
+    names = [(surface.name if len(contours) > 1 else "", contour) for surface, contour in contours]
+    table = table_of(names, sheet.step, ccw=drawn.ccw)
+    last = full_size(drawn)
+    notes = _notes(drawn, recipe, wide=notes_at(sheet.paper)[2], full=last is not None)
+    area = free(sheet.paper, block=True, notes=LINE * len(notes) + 6.0)
+    sense = 1.0 if sheet.projection == "first" else -1.0
+    try:
+        layout = laid_out(drawn, sizes, area, sheet.scale, sense)
+    except NoRoomError as error:
+        raise _no_room(recipe, sheet, field, error) from error
+    first = framed("Part", sheet.paper)
+    draw_views(first, drawn, sizes, layout)
+    left, low, _ = notes_at(sheet.paper)
+    for k, note in enumerate(reversed(notes)):
+        first.text((left, low + LINE * k), note)
+    sources = [(file.path.name, hashlib.sha256(file.path.read_bytes()).hexdigest()) for file in run.findings.files]
+    pages = [first, *table_pages(table, sheet.paper), motion_page(job.design, run.findings, sheet.paper, sources)]
+    count = len(pages) + (0 if last is None else 1)
+    facts = Facts(layout.word, _mass(run, rank), 1, count)
+    try:
+        title_block(first, sheet, facts)
+    except LongTextError as error:
+        remedy = f"give about {error.fits} characters"
+        raise recipe.error(f"{field}.{error.option}", "does not fit into the title block", None, remedy) from error
+    for k, page in enumerate([*pages[1:], *([] if last is None else [last])]):
+        footer(page, sheet, facts._replace(page=k + 2))
+    return Pages(pages, last, layout.face, layout.scale)
+
+
+def _no_room(recipe: Recipe, sheet: Sheet, field: str, error: NoRoomError) -> Exception:
+    if sheet.scale is not None:
+        remedy = f"give {error.largest}, or leave it out" if error.largest else "give paper: A3, or leave it out"
+        return recipe.error(f"{field}.scale", f"the views do not fit on {sheet.paper}", f"{sheet.scale}", remedy)
+    remedy = "give A3" if sheet.paper == "A4" else "ask for fewer lightening holes"
+    return recipe.error(f"{field}.paper", "the dimensions of the part do not fit", sheet.paper, remedy)
+
+
+def _base(job: Job) -> tuple[str, float] | None:
+    """Name and radius of the circle that the contour is described from: the base circle, or its least distance."""
+    from camgeo.curve.measures import nearest
+
+    surface, contour = job.design.contours[0]
+    for name, radius in job.design.exact.circles(surface.name):
+        if name == "base circle" and radius is not None:
+            return name, radius
+    least = nearest(contour).value
+    return ("least circle", least) if least > job.recipe.export.tolerance else None
+
+
+def _mass(run: Run, rank: int) -> str:
+    """Mass of a disc in words, empty where no density is given."""
+    balances = run.findings.balances
+    if len(balances) != len(run.design.discs):
+        return ""
+    mass = balances[rank].mass
+    return f"{1000.0 * mass:.4g} g" if mass < 1.0 else f"{mass:.4g} kg"
+
+
+def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str]:
+    """What stands in words on the first page."""
+    body, part = drawn.body, drawn.part
+    sense = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
+    notes = [
+        "The contour is theoretically exact by the table, or the DXF of this drawing: layer CUT, 1 : 1.",
+        f"0° marks the start of the motion. The shaft turns {sense}, as drawn. Angles are polar, from 0°.",
+    ]
+    if body.chamfer is not None:
+        notes.append(f"Edges of the contour: chamfer {number(body.chamfer)} × 45°, both sides.")
+    if body.thickness is None:
+        notes.append("The thickness is not stated.")
+    if part.keyway is not None and part.keyway.standard:
+        notes.append("Keyway: width and depth of DIN 6885-1.")
+    if body.pocket is not None:
+        notes.append("The groove is milled from the upper face; both flanks are contours of the table.")
+    if not full:
+        notes.append("No page at 1 : 1: the part is larger than A0.")
+    return [line for note in notes for line in wrapped(note, wide)]

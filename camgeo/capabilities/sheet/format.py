@@ -1,0 +1,45 @@
+"""Shop drawings as files: a PDF and a DXF of each disc, made when all other files are judged."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.sheet.options import OPTIONS, build_sheet, check_sheet
+from camgeo.registry.formats import Format
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.registry.formats import Run
+
+
+def _foresee(_job: Job, _request: FileRequest) -> None:
+    from importlib.util import find_spec
+
+    if find_spec("fpdf") is None:
+        from camgeo.files.errors import MissingExtraError, install
+
+        raise MissingExtraError(f"a shop drawing needs fpdf2: {install('sheet')}")
+
+
+def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
+    from camgeo.capabilities.sheet.drawing import make_sheets
+
+    return make_sheets(run, request, path)
+
+
+FORMAT = Format(
+    name="sheet",
+    suffix="pdf",
+    tail="sheet",
+    options=OPTIONS,
+    own=build_sheet,
+    check=check_sheet,
+    contour=False,
+    part=False,
+    by_disc=True,
+    summarise=_summarise,
+    foresee=_foresee,
+)

@@ -1,0 +1,161 @@
+"""Pages with their frame (ISO 5457) and title block (ISO 7200)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width
+from camgeo.capabilities.sheet.marks import BORDER, THICK, THIN, Circle, Page
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.sheet.marks import Point
+    from camgeo.capabilities.sheet.options import Sheet
+
+SIZES = {
+    "A4": (210.0, 297.0),
+    "A3": (420.0, 297.0),
+    "A2": (594.0, 420.0),
+    "A1": (841.0, 594.0),
+    "A0": (1189.0, 841.0),
+}
+"""Width and height of ISO 216, mm; A4 stands upright."""
+BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
+BLOCK = 180.0  # mm: width of the title block
+ROW = 9.5  # mm: height of a row of it
+ROWS = 5
+
+
+class Area(NamedTuple):
+    """A part of a page: its lower left and upper right corners, mm."""
+
+    left: float
+    low: float
+    right: float
+    high: float
+
+
+class LongTextError(ValueError):
+    """A text that does not fit into its cell: the option's name, and how many characters would."""
+
+    def __init__(self, option: str, fits: int) -> None:
+        super().__init__(option)
+        self.option, self.fits = option, fits
+
+
+class Facts(NamedTuple):
+    """What the title block says beside the options: scale, mass, number of this page and of all."""
+
+    scale: str
+    mass: str
+    page: int
+    pages: int
+
+
+def framed(name: str, paper: str) -> Page:
+    """Give an empty page with its frame and the marks of its middles."""
+    wide, high = SIZES[paper]
+    page = Page(name, wide, high)
+    page.box((BINDING, EDGE), wide - BINDING - EDGE, high - 2.0 * EDGE, BORDER, "FRAME")
+    for x, inner, outer in ((0.5 * wide, EDGE + 5.0, 5.0), (0.5 * wide, high - EDGE - 5.0, high - 5.0)):
+        page.line((x, inner), (x, outer), weight=THICK, layer="FRAME")
+    for y, inner, outer in ((0.5 * high, BINDING + 5.0, 5.0), (0.5 * high, wide - EDGE - 5.0, wide - 5.0)):
+        page.line((inner, y), (outer, y), weight=THICK, layer="FRAME")
+    return page
+
+
+def free(paper: str, *, block: bool, notes: float = 0.0) -> Area:
+    """What is free on a page above its title block and notes of a height; `notes` stand beside the block on A3."""
+    wide, high = SIZES[paper]
+    beside = wide - BINDING - EDGE - BLOCK > 100.0
+    low = EDGE + (ROWS * ROW if block else ROW)
+    low = max(low, EDGE + notes) if beside else low + notes
+    return Area(BINDING + 6.0, low + 3.0, wide - EDGE - 6.0, high - EDGE - 6.0)
+
+
+def notes_at(paper: str) -> tuple[float, float, float]:
+    """Where notes stand: left edge, the lowest line's baseline, width, mm."""
+    wide, _ = SIZES[paper]
+    beside = wide - BINDING - EDGE - BLOCK > 100.0
+    room = wide - BINDING - EDGE - (BLOCK if beside else 0.0)
+    return BINDING + 4.0, EDGE + (3.0 if beside else ROWS * ROW + 3.0), room - 8.0
+
+
+def title_block(page: Page, sheet: Sheet, facts: Facts) -> None:
+    """Draw the title block at the lower right; raises LongTextError."""
+    left, low = page.width - EDGE - BLOCK, EDGE
+    page.box((left, low), BLOCK, ROWS * ROW, THICK, "FRAME")
+    rows: list[list[tuple[float, str, str, str]]] = [
+        [
+            (90.0, "number", "Drawing number", sheet.number),
+            (25.0, "revision", "Revision", sheet.revision),
+            (40.0, "date", "Date of issue", sheet.date),
+            (25.0, "", "Sheet", f"{facts.page}/{facts.pages}"),
+        ],
+        [(115.0, "title", "Title", sheet.title), (65.0, "", "Document type", "Shop drawing")],
+        [
+            (60.0, "drawn", "Drawn", sheet.drawn),
+            (60.0, "approved", "Approved", sheet.approved),
+            (60.0, "owner", "Legal owner", sheet.owner),
+        ],
+        [
+            (60.0, "material", "Material", sheet.material),
+            (60.0, "finish", "Finish", sheet.finish),
+            (60.0, "general", "General tolerances", sheet.general),
+        ],
+        [
+            (40.0, "", "Scale", facts.scale),
+            (40.0, "", "Mass", facts.mass),
+            (40.0, "", "Units", "mm, degrees"),
+            (60.0, "", "Projection", ""),
+        ],
+    ]
+    for k, row in enumerate(rows):
+        x, y = left, low + k * ROW
+        if k:
+            page.line((left, y), (left + BLOCK, y), layer="FRAME")
+        for wide, option, label, value in row:
+            if x > left:
+                page.line((x, y), (x, y + ROW), layer="FRAME")
+            page.text((x + 1.2, y + ROW - 3.2), label, SMALL, layer="FRAME")
+            _value(page, (x + 1.2, y + 1.3), wide - 2.4, option, value)
+            x += wide
+    _projection(page, left + BLOCK - 26.0, low + 4.5 * ROW, sheet.projection)
+
+
+def _value(page: Page, at: Point, wide: float, option: str, value: str) -> None:
+    height = next((size for size in (PLAIN, SMALL) if width(value, size) <= wide), None)
+    if height is None:
+        share = wide / width(value, SMALL)
+        raise LongTextError(option, int(share * len(value)))
+    page.text(at, value, height, layer="FRAME")
+
+
+def footer(page: Page, sheet: Sheet, facts: Facts) -> None:
+    """Draw the strip that tells a further page; its texts fit as they do in the title block."""
+    left, low = page.width - EDGE - BLOCK, EDGE
+    page.box((left, low), BLOCK, ROW, THICK, "FRAME")
+    cells = [(75.0, "Drawing number", sheet.number), (60.0, "", page.name), (20.0, "Revision", sheet.revision)]
+    x = left
+    for wide, label, value in [*cells, (25.0, "Sheet", f"{facts.page}/{facts.pages}")]:
+        if x > left:
+            page.line((x, low), (x, low + ROW), layer="FRAME")
+        page.text((x + 1.2, low + ROW - 3.2), label, SMALL, layer="FRAME")
+        page.text((x + 1.2, low + 1.3), _within(value, wide - 2.4), SMALL, layer="FRAME")
+        x += wide
+
+
+def _within(text: str, wide: float) -> str:
+    while width(text, SMALL) > wide:
+        text = f"{text[:-2]}…"
+    return text
+
+
+def _projection(page: Page, x: float, y: float, projection: str) -> None:
+    """Draw the symbol of ISO 5456-2: a truncated cone from the side and from its end."""
+    side, end = (x, x + 14.0) if projection == "first" else (x + 10.0, x)
+    small, large = 1.2, 2.4
+    # the view from the left shows the small end: it stands on the right in the first angle, on the left in the third
+    page.line((side, y - small), (side + 6.0, y - large), (side + 6.0, y + large), (side, y + small), (side, y - small),
+              weight=THIN, layer="FRAME")  # fmt: skip
+    for radius in (small, large):
+        page.marks.append(Circle((end + 2.4, y), radius, THIN, "FRAME"))

@@ -1,0 +1,208 @@
+"""What a page is made of: lines, circles, texts and dimensions, in mm of paper from its lower left corner."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from camgeo.capabilities.sheet.lettering import SMALL, width
+from kin.numeric.records import dataclass, field
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.numeric.arrays import Array
+
+Point: TypeAlias = tuple[float, float]
+Anchor: TypeAlias = Literal["left", "middle", "right"]
+Layer: TypeAlias = Literal["", "FRAME", "VIEW", "HATCH", "CENTRE", "DIM", "TEXT", "TABLE"]
+Pattern: TypeAlias = Literal["", "dashed", "chain"]
+BORDER, THICK, THIN = 0.7, 0.5, 0.25  # mm: widths of lines, ISO 128-2
+ARROW, SLENDER = 2.5, 0.4  # mm: length of an arrow, half its width
+GAP, BEYOND = 1.0, 1.5  # mm: of an extension line from the part, and what it stands out beyond the dimension line
+LETTERS, BELOW = 1.0, 0.3  # of a text's height: what it reaches above and below its baseline
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line through points (n, 2); what is on the layer "" stands in a DXF already, as a contour."""
+
+    points: Array
+    weight: float = THIN
+    layer: Layer = "DIM"
+    pattern: Pattern = ""
+    closed: bool = False
+    filled: bool = False
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circle."""
+
+    centre: Point
+    radius: float
+    weight: float = THIN
+    layer: Layer = "CENTRE"
+    pattern: Pattern = ""
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text on its baseline at a point; `turned` by a quarter turn, it is read from the right."""
+
+    at: Point
+    text: str
+    height: float = SMALL
+    anchor: Anchor = "left"
+    layer: Layer = "TEXT"
+    turned: bool = False
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Least x and y, greatest x and y of what it covers."""
+        long = width(self.text, self.height)
+        start = {"left": 0.0, "middle": -0.5 * long, "right": -long}[self.anchor]
+        low, high = -BELOW * self.height, LETTERS * self.height
+        x, y = self.at
+        if self.turned:
+            return x - high, y + start, x - low, y + start + long
+        return x + start, y + low, x + start + long, y + high
+
+
+@dataclass(frozen=True, eq=False)
+class Dimension:
+    """A dimension between two points of a view, along a direction (degrees), or across a circle (None).
+
+    `base` is a point of the dimension line; `value` (mm) is what it measures of the part. `lines` and `text` draw it,
+    but for a leader that stands beside it.
+    """
+
+    first: Point
+    second: Point
+    base: Point
+    value: float
+    text: Text
+    lines: tuple[Line, ...]
+    direction: float | None = None
+
+
+Mark: TypeAlias = Line | Circle | Text | Dimension
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of a size, mm, with what stands on it."""
+
+    name: str
+    width: float
+    height: float
+    marks: list[Mark] = field(default_factory=list)
+
+    def line(self, *points: Point, weight: float = THIN, layer: Layer = "DIM", pattern: Pattern = "") -> None:
+        """Add an open line."""
+        self.marks.append(Line(np.array(points), weight, layer, pattern))
+
+    def box(self, corner: Point, wide: float, high: float, weight: float = THIN, layer: Layer = "DIM") -> None:
+        """Add a rectangle from its lower left corner."""
+        x, y = corner
+        corners = np.array([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)])
+        self.marks.append(Line(corners, weight, layer, closed=True))
+
+    def text(
+        self,
+        at: Point,
+        text: str,
+        height: float = SMALL,
+        anchor: Anchor = "left",
+        layer: Layer = "TEXT",
+        *,
+        turned: bool = False,
+    ) -> None:
+        """Add a text; an empty one is not there."""
+        if text:
+            self.marks.append(Text(at, text, height, anchor, layer, turned))
+
+    @property
+    def texts(self) -> list[Text]:
+        """All texts, those of dimensions among them."""
+        found = (mark.text if isinstance(mark, Dimension) else mark for mark in self.marks)
+        return [mark for mark in found if isinstance(mark, Text)]
+
+
+def arrow(tip: Point, angle: float) -> Line:
+    """Arrow whose tip points in a direction, rad."""
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = tip
+    back = (x - ARROW * c, y - ARROW * s)
+    sides = [(back[0] - SLENDER * s, back[1] + SLENDER * c), (back[0] + SLENDER * s, back[1] - SLENDER * c)]
+    return Line(np.array([tip, *sides]), closed=True, filled=True)
+
+
+def across(
+    first: Point, second: Point, base: float, value: float, text: str, *, upright: bool = False, before: bool = False
+) -> Dimension:
+    """Dimension between two points along x, its line at the height `base`; or `upright` along y, its line at x = base.
+
+    The text stands above the line, or where there is no room between the arrows beyond its end, or `before` its start.
+    """
+    k = 1 if upright else 0
+    low, high = sorted((first, second), key=lambda point: point[k])
+    a, b = low[k], high[k]
+    long = width(text, SMALL)
+
+    def at(along: float, off: float) -> Point:
+        return (off, along) if upright else (along, off)
+
+    lines = []
+    for point in (low, high):
+        sense = math.copysign(1.0, base - point[1 - k])
+        lines.append(_line(at(point[k], point[1 - k] + sense * GAP), at(point[k], base + sense * BEYOND)))
+    inside = has_room(b - a)
+    quarter = 0.5 * math.pi if upright else 0.0
+    lines.append(arrow(at(a, base), quarter + (math.pi if inside else 0.0)))
+    lines.append(arrow(at(b, base), quarter + (0.0 if inside else math.pi)))
+    fits = inside and long + 2.0 <= b - a
+    start, end = (a, b) if inside else (a - 2.0 * ARROW, b + 2.0 * ARROW)
+    middle = 0.5 * (a + b)
+    if not fits:
+        middle = start - 0.5 * long - 1.0 if before else end + 0.5 * long + 1.0
+        start, end = min(start, middle - 0.5 * long), max(end, middle + 0.5 * long)
+    lines.append(_line(at(start, base), at(end, base)))
+    raised = base - 0.8 if upright else base + 0.8
+    label = Text(at(middle, raised), text, SMALL, "middle", "DIM", turned=upright)
+    return Dimension(first, second, at(middle, base), value, label, tuple(lines), 90.0 if upright else 0.0)
+
+
+def has_room(long: float) -> bool:
+    """Whether both arrows stand within a dimension line, mm; else they point at it from outside."""
+    return long >= 2.0 * ARROW + 1.0
+
+
+def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimension:
+    """Diameter of a circle, written at a label to which a leader of its own leads.
+
+    Its points lie level, so that a program which draws the dimension anew writes its text level too; one that finds no
+    room for it within a small circle moves it away from the view.
+    """
+    (x, y) = centre
+    return Dimension((x + radius, y), (x - radius, y), (x - radius, y), value, label, ())
+
+
+def leader(tip: Point, label: Text) -> tuple[Line, ...]:
+    """Leader from the end of a text that is nearer to the tip of its arrow."""
+    low, _, high, _ = label.box
+    x = high + 0.8 if tip[0] > high else low - 0.8
+    y = label.at[1] + 0.5 * label.height
+    return _line((x, y), tip), arrow(tip, math.atan2(tip[1] - y, tip[0] - x))
+
+
+def _line(*points: Point) -> Line:
+    return Line(np.array(points))
+
+
+def shifted(points: Sequence[Point] | Array, scale: float, origin: Point) -> Array:
+    """Points of the part (n, 2), mm, as they lie on the paper."""
+    placed: Array = np.asarray(points) * scale + np.array(origin)
+    return placed

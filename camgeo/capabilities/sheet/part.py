@@ -1,0 +1,198 @@
+"""The disc that is drawn: its outlines as they lie in the drawing, its section, its sizes in words. mm."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.pieces import ArcSpline
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.recipe.part import Part
+    from camgeo.synthesis.part.body import Body
+    from kin.numeric.arrays import Array
+
+SAGITTA = 2e-3  # of an arc's radius and more: chords by which arcs are drawn, far below the width of a line
+MOST_CHORDS = 90  # of one arc
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A closed outline: points (n, 2), its layer, and whether it goes right through; `surface` is a contour."""
+
+    points: Array
+    layer: str
+    through: bool = True
+    surface: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A disc as it is drawn: loops, body, part of the recipe; `ccw` where it is mirrored."""
+
+    loops: tuple[Loop, ...]
+    body: Body
+    part: Part
+    ccw: bool
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance of an outline, or of the hub, from the shaft."""
+        far = max(float(np.hypot(*loop.points.T).max()) for loop in self.loops)
+        return far if self.body.hub is None else max(far, 0.5 * self.body.hub.diameter)
+
+    @property
+    def depth(self) -> float:
+        """Length along the shaft."""
+        return self.body.top - self.body.bottom
+
+    def direction(self, at: float) -> float:
+        """Direction of a feature in the drawing, rad, from that in the recipe."""
+        return -at if self.ccw else at
+
+    def degrees(self, at: float) -> str:
+        """The same in words: degrees from 0 to less than 360."""
+        angle = math.degrees(self.direction(at)) % 360.0
+        return f"{number(angle if angle < 359.99995 else 0.0)}°"
+
+
+def number(value: float) -> str:
+    """A size in mm or degrees with four decimals at most."""
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text in {"-0", ""} else text
+
+
+def chords(outline: ArcSpline) -> Array:
+    """Points (n, 2) along arcs and lines, near enough to look like them."""
+    starts, bulges = outline.points, outline.bulges
+    ends = np.roll(starts, -1, axis=0)
+    sweep = 4.0 * np.arctan(bulges)
+    counts = np.clip(np.ceil(np.abs(sweep) / math.acos(1.0 - SAGITTA)), 1, MOST_CHORDS).astype(int)
+    piece = np.repeat(np.arange(len(starts)), counts)
+    share = (np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[piece]
+    # a chord's point seen along it and beside it, from the arc's half angle
+    half = 0.5 * sweep[piece]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.where(half == 0.0, share, 0.5 + 0.5 * np.sin((2.0 * share - 1.0) * half) / np.sin(half))
+        beside = np.where(half == 0.0, 0.0, -0.5 * (np.cos((2.0 * share - 1.0) * half) - np.cos(half)) / np.sin(half))
+    chord = (ends - starts)[piece]
+    left = np.column_stack([-chord[:, 1], chord[:, 0]])
+    found: Array = starts[piece] + along[:, None] * chord + beside[:, None] * left
+    return found
+
+
+def loops_of(outlines: Sequence[LayerOutline], body: Body, contours: int) -> tuple[Loop, ...]:
+    """Loops of a disc's outlines, of which the first are its contours and those of its openings the last."""
+    depths = [opening.depth for opening in body.openings]
+    through = [True] * (len(outlines) - len(depths)) + [depth is None for depth in depths]
+    found = []
+    for k, one in enumerate(outlines):
+        if not isinstance(one.outline, ArcSpline):
+            raise TypeError("a shop drawing is made of arcs")
+        found.append(Loop(chords(one.outline), one.layer, through[k], k < contours))
+    return tuple(found)
+
+
+# --- the section through the shaft, across the axis at 0 --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Metal:
+    """Metal in the section from y `low` to `high`; whether its ends lie on a contour."""
+
+    low: float
+    high: float
+    low_contour: bool
+    high_contour: bool
+
+
+def metal(loops: Sequence[Loop]) -> list[Metal]:
+    """Where the y axis runs through metal that lies within an odd number of loops."""
+    ends = []
+    for loop in loops:
+        x, y = loop.points.T
+        after_x, after_y = np.roll(x, -1), np.roll(y, -1)
+        for k in np.flatnonzero((x <= 0.0) != (after_x <= 0.0)):
+            t = x[k] / (x[k] - after_x[k])
+            ends.append((float(y[k] + t * (after_y[k] - y[k])), loop.surface))
+    ends.sort()
+    pairs = zip(ends[::2], ends[1::2], strict=True)
+    return [Metal(low, high, at_low, at_high) for (low, at_low), (high, at_high) in pairs]
+
+
+def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
+    """Outlines of the cut metal, as closed chains of points (z, y), z from the lower face of the disc.
+
+    A groove is as deep as its pocket. A chamfer is drawn as if the section met the contour at right angles.
+    """
+    body = drawn.body
+    thick, hub = body.thickness or 0.0, body.hub
+    whole = [loop for loop in drawn.loops if loop.through]
+    floor = thick if body.pocket is None else thick - body.pocket
+    reach = 0.0 if hub is None else 0.5 * hub.diameter
+    ground = whole if body.pocket is None else [loop for loop in whole if not loop.surface]
+    found = []
+    for one in metal(ground):
+        above = [one] if body.pocket is None else [other for other in metal(whole) if one.low <= other.low < one.high]
+        hubs = max(one.low, -reach), min(one.high, reach)
+        low = _side(one, [one], (0.0, 0.0), (body.bottom, hubs), body.chamfer or 0.0)
+        high = _side(one, above, (floor, thick), (body.top, hubs), -(body.chamfer or 0.0))
+        found.append([*low, *reversed(high)])
+    return found
+
+
+def _side(
+    one: Metal,
+    raised: Sequence[Metal],
+    heights: tuple[float, float],
+    hub: tuple[float, tuple[float, float]],
+    chamfer: float,
+) -> list[tuple[float, float]]:
+    """One face of a stretch of metal, by rising y: its ground, what is raised from that, and the hub.
+
+    `heights` are those of the ground and of what is raised from it; `chamfer` is how far an edge lies behind the face.
+    """
+    ground, face = heights
+    far, (low, high) = hub
+    cut, chain = abs(chamfer), list[tuple[float, float]]()
+    if one.low < raised[0].low:
+        chain.append((ground, one.low))
+    for k, each in enumerate(raised):
+        if k or one.low < each.low:
+            chain.append((ground, each.low))
+        chain += (
+            [(face + chamfer, each.low), (face, each.low + cut)] if each.low_contour and cut else [(face, each.low)]
+        )
+        if far != face and each.low <= low < high <= each.high:
+            chain += [(face, low), (far, low), (far, high), (face, high)]
+        chain += (
+            [(face, each.high - cut), (face + chamfer, each.high)] if each.high_contour and cut else [(face, each.high)]
+        )
+        if k + 1 < len(raised) or each.high < one.high:
+            chain.append((ground, each.high))
+    if raised[-1].high < one.high:
+        chain.append((ground, one.high))
+    return [point for k, point in enumerate(chain) if not k or point != chain[k - 1]]
+
+
+def hatching(chains: Sequence[Sequence[tuple[float, float]]], pitch: float) -> list[Array]:
+    """Lines at 45 degrees within closed chains, each (2, 2), `pitch` apart."""
+    found = []
+    root = math.sqrt(0.5)
+    for chain in chains:
+        points = np.array(chain)
+        u, v = root * (points[:, 0] + points[:, 1]), root * (points[:, 1] - points[:, 0])
+        after_u, after_v = np.roll(u, -1), np.roll(v, -1)
+        for level in pitch * np.arange(math.ceil(float(v.min()) / pitch), math.floor(float(v.max()) / pitch) + 1):
+            crossed = np.flatnonzero((v <= level) != (after_v <= level))
+            places = np.sort(u[crossed] + (level - v[crossed]) / (after_v - v)[crossed] * (after_u - u)[crossed])
+            for start, end in zip(places[::2], places[1::2], strict=True):
+                ends = np.array([(start, level), (end, level)])
+                found.append(root * np.column_stack([ends[:, 0] - ends[:, 1], ends[:, 0] + ends[:, 1]]))
+    return found

@@ -1,0 +1,566 @@
+"""The first page: face, section through the shaft, bore, and every dimension of the part.
+
+Dimensions stand outside the views: diameters and features in a column on the left, lengths in lanes below and beside
+the section. What a text covers is known, so that no two lie on one another whatever the part.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width
+from camgeo.capabilities.sheet.marks import (
+    ARROW,
+    THICK,
+    THIN,
+    Circle,
+    Dimension,
+    Line,
+    Page,
+    Text,
+    across,
+    arrow,
+    has_room,
+    leader,
+    round_size,
+    shifted,
+)
+from camgeo.capabilities.sheet.options import SCALES
+from camgeo.capabilities.sheet.part import hatching, number, sections
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.sheet.frame import Area
+    from camgeo.capabilities.sheet.marks import Point
+    from camgeo.capabilities.sheet.part import Drawn
+    from kin.numeric.arrays import Array
+
+ROUND = 17.0  # mm of paper round the face: zero mark, sense of rotation, ends of the section line
+LANE = 8.0  # mm between dimension lines
+PITCH = 5.5  # mm between lines of the column
+STRIP = 14.0  # mm above the views: tolerance frame, name of the section
+UNDER = 7.0  # mm below the views: names of views
+CELL = 7.0  # mm: height of a tolerance frame
+KNEE = 7.0  # mm: of its leader before it
+UNSTATED = "contour: no profile tolerance is stated"
+NARROW = 9.0  # mm: between views
+HATCH = 2.5  # mm between lines of the hatching
+DATUM = 2.0 * ARROW + 9.5  # mm: how far a datum's box reaches beyond a short dimension's line
+
+
+class NoRoomError(ValueError):
+    """The views do not fit on the paper at a scale; `largest` is the largest of ISO 5455 that does, empty for none."""
+
+    def __init__(self, largest: str) -> None:
+        super().__init__(largest)
+        self.largest = largest
+
+
+class Callout(NamedTuple):
+    """A line of the column: what it points at, as centre, radius and angle (rad) of a circle of the part, or a point.
+
+    `value` is a diameter, mm, that is a dimension; None of a note. `boxed` sizes are theoretically exact; `datum` is
+    the letter of the datum that the feature is.
+    """
+
+    text: str
+    centre: Point
+    radius: float
+    angle: float
+    value: float | None = None
+    boxed: bool = False
+    datum: str = ""
+
+    @property
+    def tip(self) -> Point:
+        """Where its leader ends, mm of the part."""
+        return (
+            self.centre[0] + self.radius * math.cos(self.angle),
+            self.centre[1] + self.radius * math.sin(self.angle),
+        )
+
+
+class Along(NamedTuple):
+    """A length of the section along the shaft, between two heights z, mm."""
+
+    low: float
+    high: float
+    text: str
+
+
+class Across(NamedTuple):
+    """A diameter about the shaft, mm, at a height z of the section."""
+
+    z: float
+    diameter: float
+    text: str
+
+
+class Tolerance(NamedTuple):
+    """Profile tolerance of the contour, mm, None where none is stated, and its datums."""
+
+    width: float | None
+    datums: tuple[str, ...]
+
+    @property
+    def cells(self) -> tuple[tuple[str, float], ...]:
+        """Texts of its frame behind the symbol, each with the width of its cell, mm; none where none is stated."""
+        texts = () if self.width is None else (number(self.width), *self.datums)
+        return tuple((text, max(CELL, width(text, PLAIN) + 3.0)) for text in texts)
+
+    @property
+    def long(self) -> float:
+        """Width of frame and leader, or of the words in their place, mm."""
+        return KNEE + CELL + sum(wide for _, wide in self.cells) if self.cells else width(UNSTATED, SMALL)
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Every dimension of a disc by where it stands.
+
+    `column` are callouts of the face; `under` lengths along the shaft; `right` diameters beside the section, smallest
+    first; `bore` that on its left; `tolerance` the contour's.
+    """
+
+    column: tuple[Callout, ...]
+    under: tuple[Along, ...]
+    right: tuple[Across, ...]
+    bore: Across | None
+    tolerance: Tolerance
+
+
+def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance) -> Sizes:
+    """Sort every size of a disc; `base` is the name and radius of a circle that the contour is described from."""
+    part, body = drawn.part, drawn.body
+    column: list[Callout] = []
+    origin = (0.0, 0.0)
+    if base is not None:
+        name, radius = base
+        column.append(
+            Callout(f"Ø{number(2.0 * radius)}  {name}", origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
+        )
+    column += _holes(drawn)
+    if part.mark is not None:
+        column += [_mark(drawn, k) for k, one in enumerate(body.openings) if one.name == "mark"]
+    if part.set_screw is not None and part.hub is not None:
+        screw, height = part.set_screw, part.set_screw.height or 0.5 * part.hub.height
+        at = drawn.direction(screw.at)
+        text = f"Ø{number(screw.diameter)} set screw at {drawn.degrees(screw.at)}, {number(height)} up"
+        column.append(Callout(text, origin, 0.5 * part.hub.diameter, at))
+    thick = body.thickness
+    plain = part.bore is not None and not part.sides
+    if thick is None:
+        if plain and part.bore is not None:
+            text = f"Ø{number(part.bore)} {part.fit}".rstrip() + " bore"
+            column.append(Callout(text, origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
+        if part.outer is not None:
+            column.append(Callout(f"Ø{number(part.outer)}", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer))
+        return Sizes(tuple(column), (), (), None, tolerance)
+    under = [Along(0.0, thick, number(thick))]
+    if body.pocket is not None:
+        under.append(Along(thick - body.pocket, thick, f"{number(body.pocket)} groove"))
+    right = []
+    if part.hub is not None:
+        hub = part.hub
+        both = "2 × " if hub.side == "both" else ""
+        ends = (-hub.height, 0.0) if hub.side == "bottom" else (thick, body.top)
+        under.append(Along(*ends, f"{both}{number(hub.height)} hub"))
+        right.append(
+            Across(body.bottom if hub.side == "bottom" else body.top, hub.diameter, f"Ø{number(hub.diameter)}")
+        )
+    if part.outer is not None:
+        right.append(Across(thick, part.outer, f"Ø{number(part.outer)}"))
+    bore = None
+    if plain and part.bore is not None:
+        bore = Across(body.bottom, part.bore, f"Ø{number(part.bore)} {part.fit}".rstrip())
+    return Sizes(tuple(column), tuple(sorted(under, key=lambda one: one.high - one.low)), tuple(right), bore, tolerance)
+
+
+def _holes(drawn: Drawn) -> list[Callout]:
+    """Bolt holes, the dowel's, and those that lighten the disc."""
+    part, found = drawn.part, list[Callout]()
+    places = {one.name: one.circle for one in drawn.body.openings if one.circle is not None}
+    if part.bolts is not None:
+        bolts = part.bolts
+        centre, radius = min(circle for name, circle in places.items() if name.startswith("bolt hole"))
+        text = f"{bolts.count} × Ø{number(bolts.hole)}, first at {drawn.degrees(bolts.start)}"
+        found.append(Callout(text, centre, radius, 0.75 * math.pi, bolts.hole))
+        found.append(_pitch_circle(f"Ø{number(bolts.circle)} bolt circle", bolts.circle, 0.93))
+    if part.dowel is not None:
+        dowel = part.dowel
+        centre, radius = places["dowel hole"]
+        found.append(
+            Callout(f"Ø{number(dowel.hole)} dowel at {drawn.degrees(dowel.at)}", centre, radius, 2.9, dowel.hole)
+        )
+        found.append(_pitch_circle(f"Ø{number(dowel.circle)} dowel circle", dowel.circle, 1.07))
+    holes = [circle for name, circle in places.items() if name.startswith("lightening hole")]
+    if holes and part.lightening is not None and part.lightening.ring is not None:
+        centre, radius = min(holes)
+        text = f"{len(holes)} × Ø{number(2.0 * radius)}, first at {drawn.degrees(part.lightening.start)}"
+        found.append(Callout(text, centre, radius, 0.8 * math.pi, 2.0 * radius))
+        around = 2.0 * math.hypot(*centre)
+        found.append(_pitch_circle(f"Ø{number(around)} hole circle", around, 1.13))
+    elif holes:
+        for centre, radius in holes:
+            text = f"Ø{number(2.0 * radius)} at X{number(centre[0])} Y{number(centre[1])}"
+            found.append(Callout(text, centre, radius, math.pi, 2.0 * radius))
+    return found
+
+
+def _pitch_circle(text: str, diameter: float, half_turns: float) -> Callout:
+    return Callout(text, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
+
+
+def _mark(drawn: Drawn, k: int) -> Callout:
+    """The mark, as a note: it lies on the ray at 0."""
+    mark, opening = drawn.part.mark, drawn.body.openings[k]
+    if mark is None:
+        raise ValueError("there is no mark")
+    outer = opening.outline.box()[2]
+    deep = "through" if opening.depth is None else f"{number(opening.depth)} deep"
+    text = f"mark {number(mark.width)} × {number(mark.length)}, R{number(outer)}, {deep}"
+    return Callout(text, (outer - mark.length, 0.0), 0.0, 0.0)
+
+
+# --- the layout -------------------------------------------------------------------------------------------------------
+
+
+class Layout(NamedTuple):
+    """Where the views stand at a scale: centre of the face, left end of the section, centre of the bore's own view.
+
+    `column` is the right end of the column, `area` all that is free. `sense` is the direction of view along x: the
+    section stands on the right, so it is seen from the left in the first angle.
+    """
+
+    word: str
+    scale: float
+    face: Point
+    section: Point
+    bore: Point
+    column: float
+    area: Area
+    sense: float = 1.0
+
+
+def laid_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: float) -> Layout:
+    """Place the views at a scale, or at the largest that fits; raises NoRoomError."""
+    words = SCALES if scale is None else (scale,)
+    for word in words:
+        for beside in (True, False):
+            layout = _tried(drawn, sizes, area, word, beside=beside)
+            if layout is not None:
+                return layout._replace(sense=sense)
+    fits = (word for word in SCALES for beside in (True, False) if _tried(drawn, sizes, area, word, beside=beside))
+    raise NoRoomError("" if scale is None else next(fits, ""))
+
+
+def _tried(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -> Layout | None:
+    k = SCALES[word]
+    reach = k * drawn.reach
+    column = max((_long(one) for one in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
+    face = max(2.0 * (reach + ROUND), sizes.tolerance.long - column)
+    solid = drawn.body.thickness is not None
+    bore = NARROW + LANE if sizes.bore is not None else NARROW
+    section = bore + k * drawn.depth + _beyond(sizes, k) if solid else 0.0
+    own = _own(drawn, k)
+    wide = column + face + section + (own.wide if beside else 0.0)
+    lanes = LANE * len(sizes.under)
+    high = STRIP + face + max(UNDER, lanes) + (0.0 if beside else own.above + own.below)
+    lines = PITCH * len(sizes.column)
+    if wide > area.right - area.left or high > area.high - area.low:
+        return None
+    slack = 0.5 * (area.right - area.left - wide)
+    x = area.left + column + slack + 0.5 * face
+    y = area.high - STRIP - 0.5 * face - 0.5 * (area.high - area.low - high)
+    if lines > y + reach + ROUND - area.low:
+        return None
+    left = x + 0.5 * face + bore
+    if beside:
+        middle = (left + k * drawn.depth + _beyond(sizes, k) + 0.5 * own.wide, y)
+    else:
+        middle = (x, y - 0.5 * face - max(UNDER, lanes) - own.above)
+    return Layout(word, k, (x, y), (left, y), middle, area.left + column + slack - NARROW, area)
+
+
+def _long(one: Callout) -> float:
+    return width(one.text, SMALL) + (CELL + 2.0 if one.datum else 0.0) + (2.0 if one.boxed else 0.0)
+
+
+def _beyond(sizes: Sizes, k: float) -> float:
+    """What stands on the right of the section: lanes, and texts of lengths beside short dimension lines."""
+    texts = max((width(one.text, SMALL) - k * (one.high - one.low) for one in sizes.under), default=0.0)
+    return max(LANE * len(sizes.right) + 2.0, texts + 10.0)
+
+
+class Own(NamedTuple):
+    """What the bore's own view takes on the paper: its width, and how far it reaches above and below the shaft, mm."""
+
+    wide: float
+    above: float
+    below: float
+
+
+def _own(drawn: Drawn, k: float) -> Own:
+    """Room for the bore's own view at a scale; none for a round bore."""
+    part = drawn.part
+    if part.bore is None or not (part.sides or part.keyway or part.flat):
+        return Own(0.0, 0.0, 0.0)
+    reach = k * next(opening.reach for opening in drawn.body.openings if opening.name == "bore")
+    above, below = reach + 4.0, reach + LANE + 2.0
+    if part.keyway is not None:
+        above = max(above, 0.5 * k * part.keyway.width + 2.0 * ARROW + width(number(part.keyway.width), SMALL) + 4.0)
+        below = max(below, 0.5 * k * part.keyway.width + DATUM + 2.0)
+    return Own(2.0 * reach + 4.0 * LANE + 8.0, above, below + UNDER)
+
+
+# --- drawing it -------------------------------------------------------------------------------------------------------
+
+
+def draw_views(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+    """Draw all views with their dimensions on a page."""
+    _draw_face(page, drawn, sizes, layout)
+    _draw_column(page, drawn, sizes, layout)
+    _draw_tolerance(page, drawn, layout, sizes.tolerance)
+    if drawn.body.thickness is not None:
+        _draw_section(page, drawn, sizes, layout)
+    if _own(drawn, 1.0).wide:
+        _draw_bore(page, drawn, layout, sizes.tolerance)
+
+
+def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+    k, (x, y) = layout.scale, layout.face
+    reach = k * drawn.reach
+    for loop in drawn.loops:
+        page.marks.append(Line(shifted(loop.points, k, layout.face), THICK, "", closed=True))
+    hub = drawn.body.hub
+    if hub is not None:
+        pattern = "dashed" if hub.side == "bottom" else ""
+        page.marks.append(
+            Circle(layout.face, 0.5 * k * hub.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
+        )
+    page.line((x - reach - 4.0, y), (x + reach + 2.0, y), layer="CENTRE", pattern="chain")
+    solid = drawn.body.thickness is not None
+    end = reach + (5.0 if solid else 4.0)
+    page.line((x, y - end), (x, y + end), layer="CENTRE", pattern="chain")
+    for one in sizes.column:
+        if one.value is not None and one.centre == (0.0, 0.0) and not one.datum:
+            page.marks.append(Circle(layout.face, k * one.radius, THIN, "CENTRE", "chain"))
+    for opening in drawn.body.openings:
+        if opening.circle is not None and opening.name != "bore":
+            (cx, cy), r = opening.circle
+            at, half = (x + k * cx, y + k * cy), k * r + 1.5
+            page.line((at[0] - half, at[1]), (at[0] + half, at[1]), layer="CENTRE")
+            page.line((at[0], at[1] - half), (at[0], at[1] + half), layer="CENTRE")
+    page.line((x + reach + 3.0, y), (x + reach + 8.0, y), weight=THICK)
+    page.text((x + reach + 9.0, y - 0.5 * SMALL), "0°")
+    _draw_rotation(page, drawn, layout)
+    if solid:
+        _draw_plane(page, drawn, layout)
+
+
+def _draw_rotation(page: Page, drawn: Drawn, layout: Layout) -> None:
+    """Arc with an arrow: the sense in which the shaft turns."""
+    (x, y), radius = layout.face, layout.scale * drawn.reach + 5.0
+    start, end = (14.0, 40.0) if drawn.ccw else (40.0, 14.0)
+    angles = np.radians(np.linspace(start, end, 24))
+    points = np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
+    page.marks.append(Line(points))
+    sense = 0.5 * math.pi if drawn.ccw else -0.5 * math.pi
+    tip = (float(points[-1, 0]), float(points[-1, 1]))
+    page.marks.append(arrow(tip, float(angles[-1]) + sense))
+
+
+def _draw_plane(page: Page, drawn: Drawn, layout: Layout) -> None:
+    """Ends of the cutting plane, with arrows in the direction of view."""
+    (x, y), reach = layout.face, layout.scale * drawn.reach
+    sense = layout.sense
+    for side in (-1.0, 1.0):
+        inner, outer = y + side * (reach + 5.0), y + side * (reach + 10.0)
+        page.line((x, inner), (x, outer), weight=THICK)
+        page.line((x, outer), (x + sense * 6.0, outer))
+        page.marks.append(arrow((x + sense * 6.0, outer), 0.0 if sense > 0.0 else math.pi))
+        page.text((x, outer + 1.0 if side > 0.0 else outer - 1.0 - PLAIN), "A", PLAIN, "middle")
+
+
+def _draw_column(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+    """Lines of the column, each as near to the height of its feature as the others let it."""
+    k, (x, y) = layout.scale, layout.face
+    rows = sorted(sizes.column, key=lambda one: -one.tip[1])
+    heights = [y + k * one.tip[1] - 0.5 * SMALL for one in rows]
+    for i in range(len(rows)):
+        top = y + k * drawn.reach + ROUND - PITCH if i == 0 else heights[i - 1] - PITCH
+        heights[i] = min(heights[i], top)
+    for i in reversed(range(len(rows))):
+        bottom = layout.area.low + 2.0 if i == len(rows) - 1 else heights[i + 1] + PITCH
+        heights[i] = max(heights[i], bottom)
+    for one, height in zip(rows, heights, strict=True):
+        end = layout.column - (CELL + 2.0 if one.datum else 0.0) - (1.0 if one.boxed else 0.0)
+        label = Text((end, height), one.text, SMALL, "right", "DIM")
+        tip = (x + k * one.tip[0], y + k * one.tip[1])
+        centre = (x + k * one.centre[0], y + k * one.centre[1])
+        sized = label if one.value is None else round_size(centre, k * one.radius, label, one.value)
+        page.marks.extend([*leader(tip, label), sized])
+        if one.boxed:
+            size = f"Ø{number(one.value or 0.0)}"
+            left = end - width(one.text, SMALL)
+            page.box((left - 0.8, height - 0.8), width(size, SMALL) + 1.6, SMALL + 1.6)
+        if one.datum:
+            _draw_letter(page, (layout.column - 3.5, height + 0.5 * SMALL), one.datum)
+
+
+def _draw_letter(page: Page, middle: Point, letter: str) -> None:
+    x, y = middle
+    page.box((x - 2.5, y - 2.5), 5.0, 5.0)
+    page.text((x, y - 0.5 * SMALL), letter, SMALL, "middle")
+
+
+def _draw_datum(page: Page, at: Point, direction: Point, letter: str) -> None:
+    """Datum symbol of ISO 5459: a filled triangle at a point, and its letter in a box some way along a direction."""
+    (x, y), (u, v) = at, direction
+    base = [(x - 1.2 * v, y + 1.2 * u), (x + 1.2 * v, y - 1.2 * u), (x + 2.0 * u, y + 2.0 * v)]
+    page.marks.append(Line(np.array(base), closed=True, filled=True))
+    page.line((x + 2.0 * u, y + 2.0 * v), (x + 4.5 * u, y + 4.5 * v))
+    _draw_letter(page, (x + 7.0 * u, y + 7.0 * v), letter)
+
+
+def _draw_tolerance(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -> None:
+    """Profile of a surface with its tolerance, all around, by the datums; or that none is stated."""
+    k, (x, y) = layout.scale, layout.face
+    low = y + k * drawn.reach + ROUND + 2.0
+    left = min(x - k * drawn.reach, x + k * drawn.reach + ROUND - tolerance.long)
+    if not tolerance.cells:
+        page.text((left, low + 2.0), UNSTATED)
+        return
+    contour = next(loop.points for loop in drawn.loops if loop.surface)
+    angles = np.arctan2(contour[:, 1], contour[:, 0])
+    place = contour[int(np.argmin(np.abs(angles - 0.68 * math.pi)))]
+    tip = (x + k * float(place[0]), y + k * float(place[1]))
+    knee = (left + 0.3 * KNEE, low + 0.5 * CELL)
+    page.line(tip, knee, (left + KNEE, knee[1]))
+    page.marks.append(arrow(tip, math.atan2(tip[1] - knee[1], tip[0] - knee[0])))
+    page.marks.append(Circle(knee, 1.4, THIN, "DIM"))
+    x = left + KNEE
+    page.box((x, low), CELL, CELL)
+    arc = np.linspace(0.0, math.pi, 17)
+    symbol = np.column_stack([x + 0.5 * CELL + 2.0 * np.cos(arc), low + 2.4 + 2.0 * np.sin(arc)])
+    page.marks.append(Line(symbol, closed=True))
+    x += CELL
+    for text, wide in tolerance.cells:
+        page.box((x, low), wide, CELL)
+        page.text((x + 0.5 * wide, low + 0.5 * (CELL - PLAIN)), text, PLAIN, "middle")
+        x += wide
+
+
+def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+    """The section A-A, its lower face on the left in the first angle, on the right in the third."""
+    k, (left, y) = layout.scale, layout.section
+    body, sense = drawn.body, layout.sense
+
+    def placed(z: float, height: float) -> Point:
+        along = z - body.bottom if sense > 0.0 else body.top - z
+        return left + k * along, y + k * height
+
+    chains = [[placed(*point) for point in chain] for chain in sections(drawn)]
+    for chain in chains:
+        page.marks.append(Line(np.array(chain), THICK, "VIEW", closed=True))
+    for ends in hatching(chains, HATCH):
+        page.marks.append(Line(ends, THIN, "HATCH"))
+    for edges in _behind(drawn, sense):
+        page.line(*(placed(*point) for point in edges), weight=THICK, layer="VIEW")
+    right = left + k * drawn.depth
+    page.line((left - 4.0, y), (right + 4.0, y), layer="CENTRE", pattern="chain")
+    if body.screw is not None and body.screw_height is not None and body.hub is not None:
+        half, side = 0.5 * body.screw.diameter, 1.0 if math.sin(body.screw.at) >= 0.0 else -1.0
+        for z in (body.screw_height - half, body.screw_height + half):
+            page.line(
+                placed(z, side * 0.5 * (body.bore or 0.0)), placed(z, side * 0.5 * body.hub.diameter), layer="VIEW"
+            )
+    top = y + k * drawn.reach + ROUND + 2.0
+    page.text((0.5 * (left + right), top + 1.5), "A-A", PLAIN, "middle")
+    low = min(height for chain in chains for _, height in chain)
+    for i, one in enumerate(sizes.under):
+        first, second = ((placed(z, 0.0)[0], low) for z in (one.low, one.high))
+        page.marks.append(across(first, second, low - LANE * (i + 1), one.high - one.low, one.text))
+    for i, round_one in enumerate(sizes.right):
+        first, second = (placed(round_one.z, half * round_one.diameter) for half in (-0.5, 0.5))
+        base, value = right + LANE * (i + 1), round_one.diameter
+        page.marks.append(across(first, second, base, value, round_one.text, upright=True))
+    if sizes.bore is not None:
+        bore, base, half = sizes.bore, left - LANE, 0.5 * k * sizes.bore.diameter
+        page.marks.append(across((left, y - half), (left, y + half), base, bore.diameter, bore.text, upright=True))
+        _draw_datum(page, (base, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "A")
+
+
+def _behind(drawn: Drawn, sense: float) -> list[tuple[Point, ...]]:
+    """Edges behind the cutting plane: rims of the bore, and what stands out further than the cut."""
+    body = drawn.body
+    found: list[tuple[Point, ...]] = []
+    thick = body.thickness or 0.0
+    if drawn.part.bore is not None:
+        bore = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
+        beyond = bore[sense * bore[:, 0] >= 0.0]
+        low, high = float(beyond[:, 1].min()), float(beyond[:, 1].max())
+        found += [((body.bottom, low), (body.bottom, high)), ((body.top, low), (body.top, high))]
+    outer = max((loop for loop in drawn.loops if loop.through), key=lambda loop: float(np.ptp(loop.points[:, 1])))
+    beyond = outer.points[sense * outer.points[:, 0] >= 0.0]
+    cut = [height for chain in sections(drawn) for _, height in chain]
+    for end, edge in ((float(beyond[:, 1].max()), max(cut)), (float(beyond[:, 1].min()), min(cut))):
+        if abs(end) > abs(edge) + 1e-3:
+            found.append(((0.0, edge), (0.0, end), (thick, end), (thick, edge)))
+    return found
+
+
+def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -> None:
+    """A bore that is not round, turned so that its keyway or flat is on the right, and its sizes."""
+    part, k, (x, y) = drawn.part, layout.scale, layout.bore
+    bore = part.bore or 0.0
+    points = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
+    at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
+    if part.keyway is not None:
+        at, what = part.keyway.at, "keyway"
+    elif part.flat is not None:
+        at, what = part.flat.at, "flat"
+    angle = drawn.direction(at)
+    turned = _turned(points, -angle)
+    page.marks.append(Line(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
+    low, high = k * float(turned[:, 1].min()), k * float(turned[:, 1].max())
+    left, right = k * float(turned[:, 0].min()), k * float(turned[:, 0].max())
+    page.line((x + left - 3.0, y), (x + right + 3.0, y), layer="CENTRE", pattern="chain")
+    page.line((x, y + low - 3.0), (x, y + high + 3.0), layer="CENTRE", pattern="chain")
+    base = y + low - LANE
+    if part.keyway is not None:
+        key, corner = part.keyway, 0.5 * bore + part.keyway.depth
+        value = bore + key.depth
+        ends = (x + left, y), (x + k * corner, y - 0.5 * k * key.width)
+        page.marks.append(across(*ends, base, value, number(value), before=True))
+        edges = (x + k * corner, y - 0.5 * k * key.width), (x + k * corner, y + 0.5 * k * key.width)
+        lane = x + k * corner + LANE
+        page.marks.append(across(*edges, lane, key.width, number(key.width), upright=True))
+        if "B" in tolerance.datums:
+            half = 0.5 * k * key.width
+            _draw_datum(page, (lane, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "B")
+    elif part.flat is not None:
+        across_flat = part.flat.across
+        ends = (x + left, y), (x + k * (across_flat - 0.5 * bore), y)
+        page.marks.append(across(*ends, base, across_flat, number(across_flat), before=True))
+        if "B" in tolerance.datums:
+            _draw_datum(page, (x + k * (across_flat - 0.5 * bore), y), (1.0, 0.0), "B")
+    else:
+        ends = (x - 0.5 * k * bore, y), (x + 0.5 * k * bore, y)
+        page.marks.append(across(*ends, base, bore, number(bore), before=True))
+        _draw_datum(page, (x + right, y), (1.0, 0.0), "A")
+    page.text((x, y - _own(drawn, k).below + 3.0), f"bore, {what} at {drawn.degrees(at)}", SMALL, "middle")
+
+
+def _turned(points: Array, angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    turned: Array = points @ np.array([[c, s], [-s, c]])
+    return turned
+
+
+def dimensions_of(page: Page) -> list[Dimension]:
+    """All dimensions of a page."""
+    return [mark for mark in page.marks if isinstance(mark, Dimension)]
