@@ -27,8 +27,6 @@ def check_preload(values: Values, reader: Reader) -> None:
     listed = values.get("export", {}).get("files", [])
     for file in listed:
         kind, path = file["kind"], file["path"]
-        if file.get("parts") == "all":
-            reader.fault_at(path, "the bodies round a preloaded cam are not made", None, "leave `parts: all` out")
         if "clearance" in file:
             remedy = "leave it out, or cam.preload"
             reader.fault_at(f"{path}.{kind}.clearance", "a clearance undoes the interference", None, remedy)

@@ -75,6 +75,8 @@ def check(request: FileRequest, values: Values, reader: Reader, path: str) -> No
     if request.compensation is not None:
         remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
         reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
+    if values.get("cam", {}).get("preload") is not None:
+        reader.fault_at(path, "the bodies round a preloaded cam are not made", None, "leave `parts: all` out")
     beyond = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
     if beyond:
         reader.fault_at(path, f"the bodies round {beyond} are not made", None, "leave `parts: all` out")
