@@ -14,7 +14,7 @@ import numpy as np
 
 from kin.contour.arcs import cross
 from kin.made.placing import ILL, conditions, interval, least_squares, minimax
-from kin.numeric.angles import TURN
+from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import CamgeoError, UnsettledError
 from kin.numeric.records import dataclass, replace
 
@@ -36,6 +36,7 @@ COARSE_TURNS = 120  # angles at which a turn is looked for
 FEW = 120  # points that do for that
 FAR = 0.01  # of the mean radius: points that lie farther from the contour, on average, are of something else
 BETTER = 0.1  # of their distance: what another placing has to bring it down to, to be what they look like
+WIDEST = math.radians(150.0)  # without a point, seen from the shaft: more is no turn
 MANY = 2000  # points that do to tell what they look like
 LIKE = 1.5  # ratio of mean radii within which points may be of this cam
 SHIFT = 0.25  # of the mean radius: a shift above is none
@@ -233,12 +234,30 @@ def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
     return settled([one.placed(Placing(turn)) for one in surfaces], free)
 
 
+def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
+    """Raise UnlikePointsError for points that do not go round the shaft."""
+    for one in surfaces:
+        angle = np.sort(np.arctan2(one.places[:, 1], one.places[:, 0]))
+        gaps = np.diff(angle, append=angle[:1] + TURN)
+        widest = int(np.argmax(gaps))
+        if gaps[widest] > WIDEST:
+            begin, end = degrees(float(angle[widest])), degrees(float(angle[(widest + 1) % len(angle)]))
+            seen = f"seen from the shaft, no point lies from {begin:.4g} to {end:.4g} degrees"
+            raise UnlikePointsError(f"{seen}: measure all round the cam, from its axis")
+
+
 def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool) -> None:
     """Raise UnlikePointsError for points that lie far from the contours, saying what they look like."""
     far, size = _off(surfaces, surfaces[0].placing), _size(surfaces)
     if far <= FAR * size:
         return
     told = f"the points lie {far:.3g} mm off its contour on average"
+    e = np.concatenate([one.deviations.e for one in surfaces])
+    middle = float(np.median(e))
+    if FAR * size < abs(middle) < SHIFT * size and float(np.median(np.abs(e - middle))) < BETTER * abs(middle):
+        ball = f"{abs(middle):.4g} mm too {'large' if middle > 0.0 else 'small'} all round"
+        remedy = "leave `--probe-radius` out, or give its own" if surfaces[0].ball else "`--probe-radius` of the ball?"
+        raise UnlikePointsError(f"{told}: they look {ball}: {remedy}")
     few = [one.part(np.linspace(0, len(one) - 1, min(MANY, len(one))).astype(np.intp)) for one in surfaces]
     radius = float(np.mean([np.hypot(*one.places.T).mean() for one in few]))
     looks: list[tuple[float, str]] = []

@@ -191,7 +191,7 @@ class _Points:
 
     def chosen(self, spans: int | None) -> int:
         """Number of spans: that given, or that of the least cross-validation."""
-        most = min(self.count // POINTS_A_SPAN, MOST_SPANS)
+        most = min(max(self.count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
         if spans is not None:
             if not LEAST_SPANS <= spans <= most:
                 raise ValueError(f"from {LEAST_SPANS} to {most} spans are fitted to {self.count} points, not {spans}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, recipes, shafts, tables, wider
+from attacks import calls, files, measured, recipes, shafts, tables, wider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,6 +39,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     wider.budgeted,
     wider.on_a_shaft,
     shafts.flush,
+    measured.probed,  # needs: made
 )
 """Ways to attack, in turn."""
 

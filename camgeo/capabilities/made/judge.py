@@ -18,7 +18,7 @@ from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import closures_between, intents, permitted
 from kin.judge.check import Check
 from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
-from kin.made.points import Placing, demand_alike, profile, settled, turned_at
+from kin.made.points import Placing, demand_alike, demand_round, profile, settled, turned_at
 from kin.made.smooth import Fit, fit
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
@@ -167,6 +167,7 @@ def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], call:
     """Place, average and smooth the points of a disc, and let the followers run on each surface."""
     _demand_outside(recipe, surfaces)
     points = [one.points for one in surfaces]
+    demand_round(points)
     placing = Placing()
     if call.align:
         placing = turned_at(points, "g")

@@ -194,6 +194,9 @@ BAD = {
         lambda q: q * (1.0 + 0.2 * np.cos(3 * np.arctan2(q[:, 1], q[:, 0])))[:, None],
         "those of another cam",
     ),
+    "one place": (lambda q: 0.0 * q + 30.0, "measure all round the cam"),
+    "half of it": (lambda q: q[: len(q) // 2], "seen from the shaft, no point lies from"),
+    "centres of a ball": (lambda q: q * (1.0 + 3.0 / np.hypot(*q.T))[:, None], "`--probe-radius` of the ball"),
     "the bore": (lambda q: 6.0 * q / np.hypot(*q.T)[:, None], "the points lie on the bore"),
 }
 

@@ -1,0 +1,121 @@
+"""Measured points by chance: formats, placings, noise, faults of parts and of files, options."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from support.measured import RECIPES, bump, nothing, points, surfaces, turned
+
+from attacks.outcome import Attack
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from random import Random
+
+    from attacks.outcome import Done
+
+KINDS = (
+    "roller on a stem",
+    "roller on a trailing arm",
+    "ring",
+    "groove",
+    "flat",
+    "tilted flat",
+    "flat on an arm",
+    "knife edge on a stem",
+)
+HARMS = (
+    "",
+    "",
+    "",
+    "cut",
+    "word",
+    "nan",
+    "big",
+    "columns",
+    "mirror",
+    "turn",
+    "inch",
+    "shift",
+    "gap",
+    "one",
+    "swap",
+    "constant",
+)
+OPTIONS = (
+    ["--align", "rotation"],
+    ["--align", "best-fit"],
+    ["--probe-error", "0.002"],
+    ["--probe-radius", "1"],
+    ["--axes-error", "0.005,0.02"],
+    ["--axes-error", "x"],
+    ["--spans", "36"],
+    ["--spans", "9999"],
+    ["--units", "inch"],
+    ["--as", "grinding"],
+    ["--as", "measured"],
+    ["--out", "out"],
+    ["--out", "cam.yaml"],
+    ["-v"],
+    ["--json"],
+)
+
+
+@cache
+def _surfaces(kind: str) -> list[tuple[int, object, object]]:
+    return surfaces(RECIPES[kind])
+
+
+def probed(rng: Random, number: int) -> Attack:
+    """Points of a cam, right or wrong, in a file of some form; a sound part without options is never failed."""
+    kind = rng.choice(KINDS)
+    count = rng.choice([36, 48, 72, 180, 360, 720])
+    deviation = rng.choice([nothing, bump(0.01), bump(-0.02, 2.0), bump(0.3, 20.0)])
+    places = np.concatenate(
+        [points(part, one, deviation, rng.choice([0.0, 0.001]), count) for _, part, one in _surfaces(kind)]
+    )
+    harm = rng.choice(HARMS)
+    if harm == "mirror":
+        places = places * [1.0, -1.0]
+    elif harm == "turn":
+        places = turned(places, rng.uniform(-180.0, 180.0))
+    elif harm == "inch":
+        places /= 25.4
+    elif harm == "shift":
+        places = places + np.array([rng.uniform(-5.0, 5.0), 1.0])
+    elif harm == "gap":
+        places = places[: max(36, len(places) * 2 // 3)]
+    elif harm == "constant":
+        places = np.full_like(places, 40.0)
+    elif harm == "one":
+        places = places[:1]
+    if rng.random() < 0.3:
+        places = places[np.random.default_rng(number).permutation(len(places))]
+    mark = rng.choice([",", ";", "\t", " "])
+    head = rng.choice(["x_mm,y_mm", "X [mm],Y [mm]", "x,y", ""]).replace(",", mark)
+    lines = [mark.join(f"{value:.6f}" for value in row) for row in places]
+    if mark != "," and rng.random() < 0.3:
+        lines = [line.replace(".", ",") for line in lines]
+    at = rng.randrange(len(lines))
+    if harm == "cut":
+        lines[at] = lines[at][: len(lines[at]) // 3]
+    elif harm in {"word", "nan", "big"}:
+        lines[at] = mark.join(["1", {"word": "foo", "nan": "nan", "big": "1e300"}[harm]])
+    elif harm == "columns":
+        lines = [f"{line}{mark}1" for line in lines]
+    elif harm == "swap":
+        head = mark.join(["y", "x"])
+    text = "\n".join([*([head] if head else []), *lines])
+    words = ["verify", "cam.yaml", f"points{rng.choice(['.csv', '.txt', '.xyz', '.asc', '.dmo'])}"]
+    chosen = rng.sample(OPTIONS, rng.randrange(3))
+    words += [word for option in chosen for word in option]
+    recipe = RECIPES[kind] + rng.choice(["", "\nmade: {profile: 0.05}", "\nmade: {profile: 0.05, datum: none}"])
+
+    def judge(done: Done, _: Path) -> list[str]:
+        if done.status == 2 and len(done.err.splitlines()) != 1 and "error: argument" not in done.err:
+            return [f"lines: {len(done.err.splitlines())} lines of complaint"]
+        return []
+
+    return Attack(f"points {number}", tuple(words), {"cam.yaml": recipe.encode(), words[2]: text.encode()}, judge=judge)
