@@ -6,10 +6,14 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kin.follower.flat import FlatFace, Yoke
 from kin.law.contacts import Flat, Oscillating, Translating
 from kin.law.piecewise import Piecewise
+from kin.law.segment import Constant
 from kin.law.support_function import Lift
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,6 +73,14 @@ def follower_of(
 
         return SwingingFace(held, raised)
     return FlatFace(held, Lift(raised))
+
+
+def unled(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
+    """Make the follower of contacts for a contour that no motion is known of: it is meant to stand still.
+
+    Raises ValueError as `follower_of` does.
+    """
+    return follower_of(contacts, Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN), side)
 
 
 def followers_of(

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.follower.follower import follower_of
-from kin.law.piecewise import Piecewise
-from kin.law.segment import Constant
+from kin.follower.follower import unled
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -107,7 +105,7 @@ def measured(contour: Contour, contacts: Sequence[Contact[Guide, Touch]], steps:
     The metal lies inside the contour. Raises ContactError where the touch meets nothing, ValueError for contacts that
     `follower_of` does not know.
     """
-    follower = follower_of(contacts, Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN))
+    follower = unled(contacts)
     phi = TURN * np.arange(steps) / steps
     drives = follower.drives(contour)
     rows = _rows(follower, drives[0], phi)

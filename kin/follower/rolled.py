@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.follower.follower import follower_of
-from kin.law.piecewise import Piecewise
-from kin.law.segment import Constant
+from kin.follower.follower import unled
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -24,8 +22,7 @@ def rolled(contact: Contact[Guide, Touch], contour: Contour, side: Side, phi: Ar
 
     The shaft is at the origin, the contour as it stands at angle 0. ContactError where the follower finds no contact.
     """
-    still = Piecewise(np.array([0.0, 2.0 * math.pi]), (Constant(0.0),), 2.0 * math.pi)
-    gauge = follower_of((contact,), still, side)
+    gauge = unled((contact,), side)
     rest, *_ = gauge.resting(contour)
     position: Array = rest.rows(phi)[0] / gauge.si
     return position - float(position.min())
