@@ -9,16 +9,16 @@ TYPE_CHECKING = False  # as typing has it
 if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
     from camgeo.capabilities.camshaft.library import CamshaftDesign
-    from camgeo.capabilities.follow.library import Followed, Rest, follow
+    from camgeo.capabilities.follow.library import Followed, Rest, follow  # needs: follow
     from camgeo.capabilities.sweep.library import Candidate, Search, search
 
     __all__: list[str] = [
         "CamshaftDesign",
         "CamshaftRecipe",
         "Candidate",
-        "Followed",
-        "Rest",
+        "Followed",  # needs: follow
+        "Rest",  # needs: follow
         "Search",
-        "follow",
+        "follow",  # needs: follow
         "search",
     ]

@@ -86,11 +86,13 @@ def surface(folder: Path) -> Functions:
         "verify": (camgeo.verify, {"recipe": recipe, "file": "a.dxf", "tolerance": 0.1, "units": "mm"}),
         "laws": (camgeo.laws, {}),
         "search": (camgeo.search, {"recipe": camgeo.load(SEARCHED), "out": "out", "jobs": 1, "progress": None}),
+        # needs: follow
         "follow": (
             camgeo.follow,
             {"file": drawing, "roller": 3.0, "flat": False, "arm": None, "at": (0.0, 0.0), "steps": 36},
         ),
-        "Followed.recipe": (camgeo.follow(drawing, flat=True).recipe, {"table": "lift.csv"}),  # needs: follow
+        # needs: follow
+        "Followed.recipe": (camgeo.follow(drawing, flat=True).recipe, {"table": "lift.csv"}),
         "Law": (camgeo.laws()["cycloidal"].__call__, {"u": 0.5, "derivative": 1}),
         "Recipe.replace": (recipe.replace, {"path": "name", "value": "other"}),
         "Recipe.save": (recipe.save, {"path": "saved.yaml"}),
