@@ -168,6 +168,7 @@ def test_a_moved_point_and_another_word_are_found() -> None:
     assert differences(text, text.replace("65.721", "65.722")) != []
 
 
+# needs: camshaft
 def test_each_picture_stands_on_its_page() -> None:
     shown = {name for page in SCRIPTS.values() for name in pictures(page)}
     assert shown == {path.name for path in FIGURES.glob("*.svg")}

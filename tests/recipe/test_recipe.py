@@ -695,6 +695,7 @@ def test_the_model_is_frozen() -> None:
         text(BODY).name = "other"  # type: ignore[misc]  # this is what it refuses
 
 
+# needs: milling
 def test_milling_and_compensation() -> None:
     body = """\
 units: inch
@@ -727,6 +728,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
     assert (both.tags, both.told(25.4)) == ("clearance-shrinkage", "clearance 0.004, shrinkage 0.4 percent")
 
 
+# needs: milling
 @pytest.mark.parametrize(
     ("more", "messages"),
     [

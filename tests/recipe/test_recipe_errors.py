@@ -12,6 +12,7 @@ import yaml
 from camgeo.cli.main import main
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, read
+from camgeo.registry import formats
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import either
 from camgeo.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
@@ -25,7 +26,7 @@ BORE = "give a diameter above 0, or a form such as {square: 10}, {hexagon: 10} o
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
-FORMATS = "give dxf, svg, stl, ply, 3mf, step, glb, csv, html, gcode or sheet"
+FORMATS = f"give {either(formats.FORMATS)}"
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -66,10 +67,7 @@ dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
             "give arcs or polyline, or a later version"
         ),
         "cams/a.yaml:10:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
-        (
-            "cams/a.yaml:10:63: export.files[3]: unknown file format, given 'stp'; "
-            "give dxf, svg, stl, ply, 3mf, step, glb, csv, html, gcode or sheet"
-        ),
+        f"cams/a.yaml:10:63: export.files[3]: unknown file format, given 'stp'; {FORMATS}",
         "cams/a.yaml:11:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
             "cams/a.yaml:12:1: tolerance: unknown key; it belongs under export, "
