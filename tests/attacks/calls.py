@@ -72,7 +72,7 @@ OPTIONS: dict[str, list[list[str]]] = {
     ],
     "study": [["--help"]],
     "sweep": [["--help"]],
-    "budget": [["--json"], ["--out"]],
+    "budget": [["--json"], ["--out"]],  # needs: budget
 }
 GIVEN = {
     "--only": [*FORMATS, "dwg", ""],

@@ -36,7 +36,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     files.altered,
     calls.called,
     wider.searched,
-    wider.budgeted,
+    wider.budgeted,  # needs: budget
     wider.on_a_shaft,
     shafts.flush,
     measured.probed,  # needs: made

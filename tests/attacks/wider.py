@@ -153,6 +153,7 @@ def searched(rng: Random, number: int) -> Attack:
     return Attack(f"sweep {number}", ("sweep", "cam.yaml", "--jobs", "1"), {"cam.yaml": text.encode()}, seconds=LONG)
 
 
+# needs: budget
 BUDGETED = (
     "profile",
     "angle",
@@ -167,6 +168,7 @@ BUDGETED = (
 )
 
 
+# needs: budget
 def budgeted(rng: Random, number: int) -> Attack:
     """A budget of some dimensions by chance, some of them free, with fits, a zero, or words that the cam has not."""
     cam = drawn(rng)
