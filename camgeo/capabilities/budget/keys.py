@@ -72,11 +72,6 @@ class Budget:
         """Words of the dimensions whose tolerances are to be found."""
         return tuple(name for name, tolerance in self.tolerances if tolerance is None)
 
-    @property
-    def named(self) -> bool:
-        """Whether any dimension has, or is to be given, a tolerance."""
-        return bool(self.tolerances)
-
     def split(self, tolerances: Sequence[tuple[str, float]]) -> Budget:
         """The budget with tolerances in the place of the free ones."""
         chosen = dict(tolerances)

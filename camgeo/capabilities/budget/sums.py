@@ -55,11 +55,6 @@ class Worst(NamedTuple):
     contact: str
     shares: Mapping[str, float]
 
-    @property
-    def largest(self) -> str:
-        """The dimension that takes most of it."""
-        return max(self.shares, key=lambda name: self.shares[name])
-
 
 def worst(influence: Influence, sum_: Sum) -> Worst:
     """The greatest sum over the angles and contacts of a budget in which some dimension has a tolerance above 0."""
