@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 TESTS = ("tests/recipe", "tests/cli", "tests/report", "tests/docs", "tests/capabilities/sweep")
 
-DELETED = ("budget", "dynamics", "study", "sweep", "mechanism", "milling", "camshaft", "second_opinion")
+DELETED = ("budget", "dynamics", "made", "study", "sweep", "mechanism", "milling", "camshaft", "second_opinion")
 
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.capabilities.made.judge import motion_uncertainty, systematic
 from camgeo.measures.units import UNIT_NAMES
+from kin.made.causes import causes
 from kin.made.motion import COVERAGE, least_fault
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
@@ -95,9 +96,33 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
     if held.certified is not None:
         found["certificate"] = 2.0 * held.certified.certificate / mm
         found["multipliers"] = held.certified.multipliers.tolist()
+    found["causes"] = _causes(recipe, disc)
     if disc.placing.turn or any(disc.placing.shift):
         found["aligned"] = _placing(recipe, disc.placing)
     return found
+
+
+def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
+    """Causes of the deviations as the points stand, the greatest first; directions as the file is drawn."""
+    sign = -1.0 if recipe.rotation == "ccw" else 1.0
+    rows = []
+    for cause in causes([one.on.points.deviations for one in disc.surfaces], [one.fit.curve for one in disc.surfaces]):
+        turned, mirrored = cause.names == ("turned",), cause.names in {("turned",), ("shifted along y",)}
+        scale = (math.degrees(1.0) if turned else 1.0 / recipe.mm) * (sign if mirrored else 1.0)
+        row: dict[str, Any] = {
+            "cause": " and ".join(cause.names),
+            "value": scale * cause.value,
+            "uncertainty": abs(scale) * cause.uncertainty,
+            "unit": "deg" if turned else UNIT_NAMES[recipe.units],
+            "effect": cause.effect / recipe.mm,
+        }
+        if cause.at is not None:
+            gauge = disc.surfaces[0].on.surface.gauge
+            row["at_deg"] = degrees(float(gauge.shaft_angle(np.array([cause.at]))[0]))
+        if cause.waves is not None:
+            row["waves"] = cause.waves
+        rows.append(row)
+    return rows
 
 
 def _of_all(disc: DiscMade, index: int) -> tuple[int, int]:

@@ -57,6 +57,11 @@ def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, st
         if everything and "multipliers" in disc:
             weights = ", ".join(f"{weight:.4f}" for weight in disc["multipliers"])
             rows.append(("  certified by", f"{disc['certificate']:.6g} {unit}, multipliers {weights}"))
+        for cause in disc["causes"]:
+            told = f"{cause['value']:+.4g} +- {cause['uncertainty']:.2g} {cause['unit']}"
+            told += f" at {cause['at_deg']:.1f} degrees" if "at_deg" in cause else ""
+            told += f", {cause['waves']} a turn" if "waves" in cause else ""
+            rows.append((f"  cause: {cause['cause']}", f"{told}; makes {cause['effect']:.3g} {unit}"))
     motion = found["motion"]
     for name, label in PER.items():
         own = motion[name]

@@ -1,0 +1,118 @@
+"""Causes of deviations, fitted together: what is turned, shifted, round, regular or local, each with its uncertainty.
+
+Turned and shifted metal adds `Deviations.columns`, a size that is off a constant, a vibrating machine a wave. What is
+left after them is itself a form, not noise: its scatter, with as many independent values as the smooth curve has spans,
+gives the covariance, which is wide rather than narrow. A cause is named above its expanded uncertainty (k = 2) alone;
+causes whose estimates hang together are named as one sum.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.made.motion import COVERAGE
+from kin.made.placing import ILL, conditions, least_squares
+from kin.made.smooth import fit
+from kin.numeric.feet import equal_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.made.points import Deviations
+    from kin.made.smooth import Smooth
+    from kin.numeric.arrays import Array
+
+ALIKE = 0.95  # correlation of two estimates, from which on they are one sum
+LOOKS = 1440
+SHARE = 0.25  # of the variance that is left: a wave that explains less is none
+STANDS_OUT = 4.0  # standard deviations of the curve: what is local
+
+
+class Cause(NamedTuple):
+    """A cause: its words, value and expanded uncertainty, mm or rad, and the greatest deviation that it makes, mm.
+
+    `at` is the parameter of a local one, `waves` the number a turn of a regular one; else None. A sum of causes has
+    several names, and as value the greatest deviation that they make together.
+    """
+
+    names: tuple[str, ...]
+    value: float
+    uncertainty: float
+    effect: float
+    at: float | None = None
+    waves: int | None = None
+
+
+def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> list[Cause]:
+    """Causes of the deviations of one part's surfaces, whose smooth curves are given, the greatest first."""
+    columns = np.concatenate([np.column_stack([one.columns("gxy"), np.ones(len(one.e))]) for one in deviations])
+    e = np.concatenate([one.e for one in deviations])
+    spans = sum(curve.spans for curve in curves)
+    names = ["turned", "shifted along x", "shifted along y", "size"]
+    size = np.sqrt(np.mean(columns**2, axis=0))
+    told = [0, 1, 2, 3] if size[0] > 1e-6 else [1, 2, 3]
+    while conditions(columns[:, told] / size[told]).min() < ILL and 0 in told:
+        told.remove(0)  # nearly round: a turn is a shift
+    chosen = columns[:, told]
+    x = least_squares(chosen, e)
+    left = e - chosen @ x
+    variance = float(left @ left) / max(spans - len(told), 1)  # of a mean over a span, times the points in it
+    covariance = variance * np.linalg.inv(chosen.T @ chosen)
+    sds = np.sqrt(np.diag(covariance))
+    found = []
+    for group in _together(covariance / np.outer(sds, sds)):
+        part = chosen[:, group] @ x[group]
+        effect = float(np.abs(part).max())
+        if len(group) == 1:
+            (k,) = group
+            found.append(Cause((names[told[k]],), float(x[k]), COVERAGE * float(sds[k]), effect))
+        else:
+            own = chosen[:, group]
+            spread = np.sqrt(np.einsum("ij,jk,ik->i", own, covariance[np.ix_(group, group)], own))
+            joint = tuple(names[told[k]] for k in group)
+            found.append(Cause(joint, effect, COVERAGE * float(spread[int(np.argmax(np.abs(part)))]), effect))
+    for one, curve, rest in zip(deviations, curves, _split(left, deviations), strict=True):
+        found += _regular_and_local(one, curve, rest)
+    certain = [cause for cause in found if abs(cause.value) > cause.uncertainty]
+    return sorted(certain, key=lambda cause: -cause.effect)
+
+
+def _together(correlation: Array) -> list[list[int]]:
+    """Groups of estimates that hang together."""
+    groups: list[list[int]] = []
+    for k in range(len(correlation)):
+        own = next((group for group in groups if max(abs(correlation[k, j]) for j in group) > ALIKE), None)
+        if own is None:
+            groups.append([k])
+        else:
+            own.append(k)
+    return groups
+
+
+def _split(rows: Array, deviations: Sequence[Deviations]) -> list[Array]:
+    parts: list[Array] = np.split(rows, np.cumsum([len(one.e) for one in deviations])[:-1])
+    return parts
+
+
+def _regular_and_local(one: Deviations, curve: Smooth, rest: Array) -> list[Cause]:
+    """A wave in what is left on a surface, and the place where the rest stands out the most."""
+    smooth = fit(one.parameter, rest, curve.spans).curve
+    t = equal_steps(LOOKS)
+    form = smooth.rows(t)[0]
+    sd = smooth.deviations(t)
+    waves = np.fft.rfft(form - form.mean()) * (2.0 / LOOKS)
+    found = []
+    k = int(np.argmax(np.abs(waves[2:])) + 2)
+    height = float(np.abs(waves[k]))
+    error = curve.sigma * curve.widened * float(np.sqrt(2.0 / len(one.e)))
+    told = height > STANDS_OUT * error and 2 * k <= curve.spans  # the highest of many waves of noise is no wave
+    if told and 0.5 * height**2 > SHARE * float(np.var(form)):
+        found.append(Cause(("waves",), height, COVERAGE * error, height, waves=k))
+        form = form - np.real(waves[k] * np.exp(1j * k * t))
+    worst = int(np.argmax(np.abs(form) - STANDS_OUT * sd))
+    if abs(form[worst]) > STANDS_OUT * sd[worst]:
+        value = float(form[worst])
+        found.append(Cause(("local",), value, COVERAGE * float(sd[worst]), abs(value), at=float(t[worst])))
+    return found

@@ -1,0 +1,60 @@
+"""Causes of deviations: planted ones are named with their values, noise names none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.disc_followers import FOLLOWERS
+
+from kin.made.causes import causes
+from kin.made.points import SurfacePoints
+from kin.made.smooth import fit
+
+T = np.arange(720) * np.pi / 360.0
+FOLLOWER = FOLLOWERS["roller, offset"]
+FRAME = FOLLOWER.envelope.frames(T)
+MOMENT = FRAME.points[:, 0] * FRAME.normals[:, 1] - FRAME.points[:, 1] * FRAME.normals[:, 0]
+TURN = np.radians(0.05)
+
+
+def found(e, follower=FOLLOWER, noise=0.001):
+    frame = follower.envelope.frames(T)
+    places = frame.points + (e + noise * np.random.default_rng(3).normal(size=720))[:, None] * frame.normals
+    deviations = SurfacePoints(follower, 1, places).deviations
+    return {cause.names: cause for cause in causes([deviations], [fit(deviations.parameter, deviations.e).curve])}
+
+
+PLANTED = {
+    ("turned",): (TURN * MOMENT, TURN),
+    ("shifted along x",): (0.02 * FRAME.normals[:, 0], 0.02),
+    ("shifted along y",): (-0.02 * FRAME.normals[:, 1], -0.02),
+    ("size",): (0.0 * T - 0.01, -0.01),
+    ("waves",): (0.005 * np.cos(9 * T), 0.005),
+}
+
+
+@pytest.mark.parametrize("names", list(PLANTED))
+def test_a_planted_cause_is_named_alone(names):
+    e, value = PLANTED[names]
+    told = found(e)
+    assert set(told) == {names}
+    assert told[names].value == pytest.approx(value, abs=max(told[names].uncertainty, 0.05 * abs(value)))
+    assert told[names].waves == (9 if names == ("waves",) else None)
+
+
+def test_several_are_told_from_one_another():
+    told = found(TURN * MOMENT + 0.02 * FRAME.normals[:, 0] + 0.01 + 0.004 * np.cos(11 * T))
+    assert set(told) == {("turned",), ("shifted along x",), ("size",), ("waves",)}
+    for names, value in ((("turned",), TURN), (("shifted along x",), 0.02), (("size",), 0.01), (("waves",), 0.004)):
+        assert abs(told[names].value - value) <= told[names].uncertainty + 2e-5
+
+
+def test_a_local_fault_comes_first():
+    told = found(0.02 * np.exp(-0.5 * ((T - 1.0) / 0.08) ** 2))
+    first = next(iter(told.values()))
+    assert first.names == ("local",)
+    assert first.at == pytest.approx(1.0, abs=0.02)
+
+
+def test_noise_has_no_cause():
+    assert found(0.0 * T) == {}
