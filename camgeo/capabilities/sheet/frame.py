@@ -56,7 +56,8 @@ def framed(name: str, paper: str) -> Page:
     wide, high = SIZES[paper]
     page = Page(name, wide, high)
     page.box((BINDING, EDGE), wide - BINDING - EDGE, high - 2.0 * EDGE, BORDER, "FRAME")
-    for x, inner, outer in ((0.5 * wide, EDGE + 5.0, 5.0), (0.5 * wide, high - EDGE - 5.0, high - 5.0)):
+    # below, where the title block or notes stand, the mark ends at the frame
+    for x, inner, outer in ((0.5 * wide, EDGE, 5.0), (0.5 * wide, high - EDGE - 5.0, high - 5.0)):
         page.line((x, inner), (x, outer), weight=THICK, layer="FRAME")
     for y, inner, outer in ((0.5 * high, BINDING + 5.0, 5.0), (0.5 * high, wide - EDGE - 5.0, wide - 5.0)):
         page.line((inner, y), (outer, y), weight=THICK, layer="FRAME")
