@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.capabilities.made.judge import motion_uncertainty, systematic
+from camgeo.capabilities.made.keys import Made
 from camgeo.measures.units import UNIT_NAMES
 from kin.made.causes import causes
 from kin.made.motion import COVERAGE, least_fault
@@ -97,9 +98,27 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         found["certificate"] = 2.0 * held.certified.certificate / mm
         found["multipliers"] = held.certified.multipliers.tolist()
     found["causes"] = _causes(recipe, disc)
+    zone = recipe.of(Made)
+    lack = 0.0 if zone is None or zone.profile is None else -float(held.e.min()) - 0.5 * zone.profile
+    if lack > 0.0:
+        found["reduction"] = _reduction(recipe, disc, lack)
     if disc.placing.turn or any(disc.placing.shift):
         found["aligned"] = _placing(recipe, disc.placing)
     return found
+
+
+def _reduction(recipe: Recipe, disc: DiscMade, lack: float) -> dict[str, Any]:
+    """Least reduction all round that leaves no metal lacking, and what it does to the motion: offset, and change."""
+    swings = disc.surfaces[0].on.surface.gauge.unit == "deg"
+    scale = math.degrees(1.0) if swings else 1.0 / recipe.mm
+    moved = -lack * disc.surfaces[0].errors.gain
+    offset = float(moved.mean())
+    return {
+        "size": lack / recipe.mm,
+        "offset": scale * offset,
+        "change": scale * float(np.abs(moved - offset).max()),
+        "unit": "deg" if swings else UNIT_NAMES[recipe.units],
+    }
 
 
 def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:

@@ -62,6 +62,10 @@ def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, st
             told += f" at {cause['at_deg']:.1f} degrees" if "at_deg" in cause else ""
             told += f", {cause['waves']} a turn" if "waves" in cause else ""
             rows.append((f"  cause: {cause['cause']}", f"{told}; makes {cause['effect']:.3g} {unit}"))
+        if "reduction" in disc:
+            cure = disc["reduction"]
+            told = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
+            rows.append(("  good if smaller all round by", f"{told}, within {cure['change']:.2g} of that"))
     motion = found["motion"]
     for name, label in PER.items():
         own = motion[name]

@@ -272,6 +272,16 @@ def test_a_folder_of_page_drawing_and_table(tmp_path, capsys):
     assert foot == pytest.approx(np.abs(rows["deviation_mm"]), abs=1e-9)
 
 
+def test_metal_that_lacks_asks_for_a_smaller_cam(tmp_path, capsys):
+    recipe, files = measured(tmp_path, limited(ROLLER), bump(-0.03))
+    assert main(["verify", str(recipe), *map(str, files)]) == 1
+    assert "good if smaller all round by" in capsys.readouterr().out
+    cure = camgeo.verify(recipe, *files)["made"]["discs"][0]["reduction"]
+    assert cure["size"] == pytest.approx(0.01, abs=1e-5)
+    assert cure["offset"] == pytest.approx(-0.0102, abs=5e-4)
+    assert 0.0 < cure["change"] < 0.002
+
+
 def test_json_has_the_section(tmp_path, capsys):
     recipe, files = measured(tmp_path, ROLLER)
     assert main(["verify", str(recipe), *map(str, files), "--json"]) == 0
