@@ -149,6 +149,52 @@ def test_leans_of_all_walls_and_turns_there_and_back(
     assert (not failing(recipe, spoilt)) is turned
 
 
+def leaning(path: Path, target: Path, top: float, amount: float, *, single: bool) -> Path:
+    """Its upper edge drawn out at one vertex of the contour, or all of it sheared by as much."""
+
+    def lean(vertices: np.ndarray) -> np.ndarray:
+        x, y, z = vertices.T
+        if not single:
+            return vertices + np.outer((z - z.min()) / np.ptp(z), [amount, 0.0, 0.0])
+        at = np.flatnonzero((np.abs(z - top) < 1e-6) & (np.hypot(x, y) > 20.0))[0]
+        vertices[at, :2] *= 1.0 + amount / np.hypot(x[at], y[at])
+        return vertices
+
+    return moved(path, target, lean)
+
+
+@pytest.mark.parametrize(
+    ("amount", "single"),
+    [
+        (1e-4, True),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in ((2e-5, True), (2e-5, False), (1e-3, True), (1e-3, False))
+        ),
+    ],
+)
+def test_leans_of_single_walls_and_of_all(
+    solid: tuple[str, Path, Path], tmp_path: Path, amount: float, single: bool
+) -> None:
+    """On every kind the same bound, that of single precision: 2e-5 mm pass, 1e-4 mm are named as a lean."""
+    kind, recipe, path = solid
+    found = failing(recipe, leaning(path, tmp_path / "cam.stl", WALLS[kind][1], amount, single=single))
+    assert bool(found) is (amount > 3e-5)
+    assert not found or {"thickness", "chamfer", "set-screw"} & set(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", ["ply", "3mf"])
+@pytest.mark.parametrize(("amount", "single"), [(2e-5, True), (1e-4, True), (1e-4, False)])
+def test_leans_in_other_formats(tmp_path: Path, suffix: str, amount: float, single: bool) -> None:
+    """The bound is that of a format's own numbers: single precision in a PLY, decimals of a 3MF that are finer."""
+    for kind in ("plain", "groove", "camshaft"):
+        (tmp_path / kind).mkdir()
+        recipe, path = exported(kind, tmp_path / kind)
+        spoilt = leaning(path, tmp_path / kind / f"lean.{suffix}", WALLS[kind][1], amount, single=single)
+        assert ("thickness" in failing(recipe, spoilt)) is (amount > 3e-5 or suffix == "3mf")
+
+
 @pytest.mark.parametrize("out", [0.0, 0.05])
 def test_a_chamfer_with_vertices_on_its_way(tmp_path: Path, out: float) -> None:
     """As remeshing leaves it, every triangle cut in four; and one vertex halfway up drawn out."""
