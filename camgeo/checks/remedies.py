@@ -285,7 +285,7 @@ def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     if figure not in keys:
         return ""
     if figure == BASE_RADIUS and recipe.cam.sizes:
-        angle, limited = "pressure-angle", "cam.sizing.pressure-angle" in recipe.marks
+        angle, limited = PRESSURE_ANGLE, "cam.sizing.pressure-angle" in recipe.marks
         return f"a {'smaller' if more else 'greater'} {angle} under sizing" if limited else ""
     return f"a {keys[figure]} of {bound:.9g} {unit} or {'more' if more else 'less'}"
 

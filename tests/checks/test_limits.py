@@ -88,6 +88,11 @@ LOBE = (
     "motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}}\n" + VERIFY
 )
 RIGID = STEM.replace("stiffness: 2.0e5", "width: 10, material: steel")
+SPLIT = (
+    f"cam: {{kind: disc, base_radius: 36, follower: {{kind: roller, radius: 9}}, {MOVE}}}\n"
+    + VERIFY
+    + "budget: {permitted: 0.1, tolerances: {profile: 0.02, follower.radius: 0.01}}\n"  # needs: budget
+)
 # of each figure a recipe that has it
 HAVE = {
     **dict.fromkeys(("pressure-angle", "velocity-ratio", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
@@ -112,6 +117,7 @@ HAVE = {
     **dict.fromkeys(("dwell", "dwell-relative", "transmission-angle", "force-angle"), LINKED + VERIFY),
     **dict.fromkeys(("margin", "shaft-rate", "output-error"), LINKED + VERIFY),
     **dict.fromkeys(("clearance", "collision"), SET),
+    **dict.fromkeys(("budget-worst", "budget-rss"), SPLIT),  # needs: budget
 }
 
 

@@ -37,7 +37,12 @@ def test_every_motion_has_the_keys_that_the_page_shows_once():
         assert meanings(motion.inner) == segment, name
         other = meanings(motion.form.instead)
         assert other.items() <= sources.items(), name
-        assert {key.split(".")[0] for key in sources.keys() - other.keys()} <= {"repeat", "segments", "units"}, name
+        assert {key.split(".")[0] for key in sources.keys() - other.keys()} <= {
+            "repeat",
+            "segments",
+            "units",
+            "contour",
+        }, name
 
 
 def meanings(table):

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.budget.sums import POWERS, by_name, powers
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,7 +36,7 @@ LEAST_STEP = 1e-12  # of Newton's, below which nothing is gained
 MOST_STEPS = 200  # of Newton's method; ten are usual
 
 
-class TakenError(ValueError):
+class TakenError(CamgeoError, ValueError):
     """A budget of which the stated dimensions leave nothing: which takes most, and its share, at an angle, rad."""
 
     def __init__(self, name: str, taken: float, at: float) -> None:

@@ -165,13 +165,9 @@ def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[C
     return checks
 
 
-OF_SOLID = ("watertight", "thickness", "phase", "contour", "motion", "position")
-"""Checks of every solid of a camshaft, those of lobes among them."""
-
-
 def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
     """Tell the checks that are sure to come, each once whatever its lobes; raises kin.law.programme.IntentError."""
-    from camgeo.checks.declared import CHECKS, LIMIT
+    from camgeo.checks.declared import CHECKS, CONTOUR, LIMIT, MOTION, THICKNESS, WATERTIGHT
     from camgeo.recipe.figures import FIGURES
     from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
@@ -187,10 +183,11 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
     taken = math.fsum(lobe.high - lobe.low for lobe in recipe.lobes)
     rounds = ["journal"] if journals or shaft.high - shaft.low > taken + ROUNDING else []
     rounds += ["bore"] if recipe.bore is not None else []
+    of_solid = (WATERTIGHT.name, THICKNESS.name, "phase", CONTOUR.name, MOTION.name, "position", *rounds, "volume")
     for request in recipe.export.files:
         if request.format.solid and request.format.contour:
             (name,) = recipe.filenames(request)
-            found |= dict.fromkeys(Foreseen(check, name) for check in (*OF_SOLID, *rounds, "volume"))
+            found |= dict.fromkeys(Foreseen(check, name) for check in of_solid)
     return tuple(found)
 
 

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.numeric.errors import CamgeoError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -37,7 +39,7 @@ _BACK = np.array([2, 1, 0])  # B-splines on a piece, counted back from the one t
 _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 
 
-class UnsolvedError(ArithmeticError):
+class UnsolvedError(CamgeoError, ArithmeticError):
     """Bounds that are missed by more than rounding when the integral grows no more."""
 
 
