@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width
 from camgeo.capabilities.sheet.marks import BORDER, THICK, THIN, Circle, Page
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from camgeo.capabilities.sheet.marks import Point
@@ -34,7 +35,7 @@ class Area(NamedTuple):
     high: float
 
 
-class LongTextError(ValueError):
+class LongTextError(CamgeoError, ValueError):
     """A text that does not fit into its cell: the option's name, and how many characters would."""
 
     def __init__(self, option: str, fits: int) -> None:

@@ -30,6 +30,7 @@ from camgeo.capabilities.sheet.marks import (
 )
 from camgeo.capabilities.sheet.options import SCALES
 from camgeo.capabilities.sheet.part import hatching, number, sections
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ HATCH = 2.5  # mm between lines of the hatching
 DATUM = 2.0 * ARROW + 9.5  # mm: how far a datum's box reaches beyond a short dimension's line
 
 
-class NoRoomError(ValueError):
+class NoRoomError(CamgeoError, ValueError):
     """The views do not fit on the paper at a scale; `largest` is the largest of ISO 5455 that does, empty for none."""
 
     def __init__(self, largest: str) -> None:
@@ -144,7 +145,7 @@ def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance)
         )
     column += _holes(drawn)
     if part.mark is not None:
-        column += [_mark(drawn, k) for k, one in enumerate(body.openings) if one.name == "mark"]
+        column += [_mark(drawn, k) for k, opening in enumerate(body.openings) if opening.name == "mark"]
     if part.set_screw is not None and part.hub is not None:
         screw, height = part.set_screw, part.set_screw.height or 0.5 * part.hub.height
         at = drawn.direction(screw.at)
