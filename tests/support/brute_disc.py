@@ -143,7 +143,7 @@ def _vertices(entity: Any, step: float) -> np.ndarray:
         start, chord, angle = complex(x, y), complex(u - x, v - y), 4 * math.atan(bulge)
         share = np.linspace(0.0, 1.0, max(4, math.ceil(abs(chord) / step)), endpoint=False)
         if bulge:
-            centre = start + chord / 2 + 1j * chord * (1 - bulge**2) / (4 * bulge)
+            centre = start + chord / 2 + 1j * chord * (1 / bulge - bulge) / 4
             parts.append(centre + (start - centre) * np.exp(1j * angle * share))
         else:
             parts.append(start + chord * share)

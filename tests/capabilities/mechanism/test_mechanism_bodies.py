@@ -463,6 +463,17 @@ def test_too_small_an_axial_gap_is_caught() -> None:
     assert check.detail.startswith("yoke and cap-right interfere")
 
 
+def test_what_drives_is_told_by_how_much_it_is_too_wide_to_slip_round() -> None:
+    """In the words of report.json: of the shaft in the bore of the cam, and the figure is the assembly's own."""
+    recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", "bore: {square: 5}"), "set.yaml")
+    design = designed(recipe)
+    assembly = assembly_of(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
+    (fit,) = (fit for fit in assembly.fits if fit.held is not None)
+    (check, *_) = collision_checks(assembly)
+    assert f"; {fit.name} drives: {fit.held:.4g} mm too wide to slip round; thinnest wall " in check.detail
+    assert "turn there" not in check.detail
+
+
 def test_bodies_pressed_together_move_as_one_and_are_not_held_against_each_other() -> None:
     assembly = made("double roller")[2]
     motions = {mover.name: mover.motion for mover in movers(assembly)}
