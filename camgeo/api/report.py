@@ -5,10 +5,11 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 from camgeo.api.check import Check
 from camgeo.api.errors import CallError
+from camgeo.api.json_value import JSON
 from camgeo.common.arguments import is_a
 from kin.numeric.records import dataclass, field
 
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from camgeo.api.check import Figures
     from camgeo.api.designing import Designed
     from camgeo.recipe.recipe import Order
-
-JSON: TypeAlias = "bool | int | float | str | list[JSON] | dict[str, JSON] | None"
 
 
 @dataclass(frozen=True)

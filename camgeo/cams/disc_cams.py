@@ -64,8 +64,11 @@ class DiscCam(GuidedCam):
         return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
 
     def _turn(self) -> Motion:
-        asked = self.motion.of_follower(Contact(self.guide, self.touch, self.datum), self.side)
-        return asked.motion(2.0 * math.pi, "motion", 1)
+        motion = self.motion.of_follower(self._contact, self.side)
+        return motion.motion(2.0 * math.pi, "motion", 1)
+
+    def _contact(self) -> Contact[Guide, Touch]:
+        return Contact(self.guide, self.touch, self.datum)
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the turn, or of the part of it that repeats."""
@@ -80,7 +83,7 @@ class DiscCam(GuidedCam):
         checks: tuple[str, ...] = ("pressure-angle",)
         if isinstance(self.touch, Flat):
             checks += ("contact-travel",) if self.touch.width is None else ("contact-travel", "face-width")
-        first, name = Contact(self.guide, self.touch, self.datum), f"{self.guide.word} {self.touch.word}"
+        first, name = self._contact(), f"{self.guide.word} {self.touch.word}"
         holding = self.holding
         return Follower(holding.named(name), holding.contacts(first), checks, holding.closure)
 

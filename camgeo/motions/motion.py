@@ -20,6 +20,8 @@ from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entr
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.motions.contour_motion import Drawn
     from camgeo.motions.segments import MotionSegment
     from camgeo.schema.fields import Schema
@@ -73,8 +75,11 @@ class MotionAsked(ABC):
                 math.degrees(at),
             )
 
-    def of_follower(self, contact: Contact[Guide, Touch], side: Side) -> MotionAsked:  # noqa: ARG002
-        """The motion where it depends on the follower; the metal lies inside its contour (1) or outside (-1)."""
+    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], side: Side) -> MotionAsked:  # noqa: ARG002
+        """The motion where it depends on the follower; the metal lies inside its contour (1) or outside (-1).
+
+        `contact` is called only where it does: a cam that is being sized has no place of its follower yet.
+        """
         return self
 
     @property
@@ -190,9 +195,9 @@ class ContourAsked(MotionAsked):
     side: Side = 1
     source: ClassVar[str] = ".contour"
 
-    def of_follower(self, contact: Contact[Guide, Touch], side: Side) -> ContourAsked:
+    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], side: Side) -> ContourAsked:
         """The same with its follower."""
-        return replace(self, contact=contact, side=side)
+        return replace(self, contact=contact(), side=side)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from camgeo.motions.contour_motion import felt
