@@ -96,7 +96,7 @@ def test_studies(text: str, lengths: int) -> None:
     studies = []
     for recipe in recipes(text):
         found = [rung, Ended("arcs", 0.001, "no finer one is held")]
-        study = document(recipe, found, margins(recipe, designed(recipe)), [], [])
+        study = document(recipe, found, margins(recipe, designed(recipe)), [])
         (row,) = study["rows"]
         row["motion_error"] = {"unit": row["motion_unit"], "value": row["motion_error"]}
         row["output_error"] = {"unit": row["output_unit"], "value": row["output_error"]}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.loading import RecipeSource
-    from camgeo.api.report import JSON
+    from camgeo.api.json_value import JSON
     from camgeo.recipe.recipe import Recipe
 
 
