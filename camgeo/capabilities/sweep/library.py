@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    from camgeo.api.loading import RecipeSource
     from camgeo.api.json_value import JSON
+    from camgeo.api.loading import RecipeSource
     from camgeo.recipe.recipe import Recipe
 
 
