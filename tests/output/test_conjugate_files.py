@@ -167,12 +167,21 @@ def test_one_file_for_both_discs_is_refused(made, capsys):
     assert "give each file once" in told
 
 
-@pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "c_deg,x_mm\n0,30\n"])
-def test_a_table_is_not_judged_against_a_pair(made, tmp_path, capsys, text):
+def test_a_table_is_not_judged_against_a_pair(made, tmp_path, capsys):
     table = tmp_path / "pair.csv"
-    table.write_text(text)
+    table.write_text("c_deg,x_mm\n0,30\n")
     assert main(["verify", str(made[0]), str(table)]) == 1
     assert "readable (pair.csv): a 3MF or STEP holds 2 discs" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [("", "no row of numbers"), ("a,b\n1,2\n", "no columns of measured points")]
+)
+def test_a_table_that_is_none_is_no_points_of_a_pair_either(made, tmp_path, capsys, text, words):
+    table = tmp_path / "pair.csv"
+    table.write_text(text)
+    assert main(["verify", str(made[0]), str(table)]) == 2
+    assert words in capsys.readouterr().err
 
 
 def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):

@@ -124,11 +124,13 @@ def test_a_file_is_refused_by_its_size_before_it_is_read(tmp_path, monkeypatch, 
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\n")
     others = {"dxf": read_drawing, "svg": read_drawing, "gcode": read_gcode, "csv": lambda path: contents(path, "csv")}
     read = others.get(kind_of(path), read_solid)
-    for size, told in ((FORMATS[kind].most + 1, "MB are read"), (3 << 30, "3221 MB, and of a")):
+    for size, told in ((FORMATS[kind].most + 1, "MB are read"), (3 << 30, "3221 MB, and of")):
         with path.open("wb") as stream:
             stream.truncate(size)
         with pytest.raises(ReadError, match=told):
             read(path)
+        if kind == "csv" and size < 3 << 30:
+            continue  # a table that no form claims may hold measured points, of which more are read
         assert main(["verify", str(recipe), str(path)]) == 2
         assert told in capsys.readouterr().err
 
