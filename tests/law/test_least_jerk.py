@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 from support.cases import examples
 
-from kin.law.sources.least_jerk import Bounds, Floor, Space, curve_through, least, missed_by, pulls
+from kin.law.sources import least_jerk
+from kin.law.sources.least_jerk import Bounds, CrowdedError, Floor, Space, Touch, curve_through, least, missed_by, pulls
 
 TURN = 2 * math.pi
 
@@ -114,6 +115,32 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     few = least(space, limits)
     assert few.square == pytest.approx(plain.square, rel=1e-9)
     assert missed_by(few.curve, limits)[0].max() <= 1e-5
+
+
+@pytest.mark.parametrize("count", [3_000, 120_000])
+def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):
+    knots = []
+    third = least_jerk._third
+    monkeypatch.setattr(least_jerk, "_third", lambda space, x, s: knots.append(len(x)) or third(space, x, s))
+    monkeypatch.setattr(least_jerk, "_MOST_WORK", 0.02 * least_jerk._MOST_WORK)
+    noise = np.random.default_rng(1).uniform(0.0, 10.0, count)
+    with pytest.raises(CrowdedError):
+        least(Space(0.0, TURN), bounds(np.arange(count) * TURN / count, noise, 0.1))
+    assert max(knots) < 1000
+    assert sum(k**3 for k in knots) <= least_jerk._MOST_WORK
+
+
+def test_a_solve_of_too_many_knots_is_not_begun():
+    x = np.arange(20_000) * TURN / 20_000
+    limits = bounds(x, np.cos(x), 1e-9)
+    with pytest.raises(CrowdedError):
+        least(Space(0.0, TURN), limits, Touch(np.arange(20_000), np.zeros(20_000, dtype=bool)))
+
+
+def test_a_hundred_thousand_rounded_bounds_take_a_hundredth_of_the_work(monkeypatch):
+    monkeypatch.setattr(least_jerk, "_MOST_WORK", 0.01 * least_jerk._MOST_WORK)
+    x = np.arange(100_000) * TURN / 100_000
+    assert len(least(Space(0.0, TURN), bounds(x, np.round(5 - 5 * np.cos(x), 3), 0.0005)).x) < 200
 
 
 def test_a_function_above_a_floor_touches_it_and_costs_more():

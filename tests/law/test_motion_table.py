@@ -342,6 +342,45 @@ def test_noise_beyond_the_digits_is_remarked_with_a_reading_that_calms_it(readin
     assert peaks[0] < 1.15 * peaks[2] < peaks[1]
 
 
+def scattered(count, scatter):
+    """The plate's rows, off by as much at random."""
+    rows = plate(count, places=9)
+    return rows._replace(s=np.round(rows.s + np.random.default_rng(5).uniform(-scatter, scatter, count), 3))
+
+
+@pytest.fixture
+def short_search(monkeypatch):
+    monkeypatch.setattr("kin.law.sources.least_jerk._MOST_WORK", 5e8)
+
+
+@pytest.mark.usefixtures("short_search")
+@pytest.mark.parametrize(("around", "scatter"), [(1, 0.01), (1, 0.5), (-1, 0.01), (None, 0.01)])
+def test_rows_that_scatter_too_far_to_be_followed_are_refused_with_a_reading_that_does(around, scatter):
+    rows = scattered(1200, scatter)
+    if around != 1:  # a rise from 0, with both ends where they belong
+        theta = np.linspace(0.0, TURN, 1200)
+        s = 5.0 * (theta - np.sin(theta)) + np.random.default_rng(5).uniform(-scatter, scatter, 1200)
+        s[0], s[-1] = 0.0, 5.0 * TURN
+        rows = rows._replace(theta=theta, s=s)
+    with pytest.raises(IntentError, match=r"rows scatter too far beyond their reading, 0\.0005 mm") as caught:
+        from_table(rows, 0.0005, around=around)
+    told = float(re.search(r"give reading: (\S+) mm, or fewer rows$", caught.value.message)[1])
+    assert scatter / 2 < told <= 3 * scatter
+    motion = from_table(rows, told, around=around)
+    assert len(motion.motion.functions) < 200
+    from_table(rows.part(slice(None, None, 11 if around != 1 else 12)), 0.0005, around=around, suspects="keep")
+
+
+@pytest.mark.usefixtures("short_search")
+def test_rows_about_no_curve_are_refused_and_means_of_them_are_a_motion():
+    rows = plate(3000)._replace(s=np.random.default_rng(5).uniform(0, 10, 3000))
+    with pytest.raises(IntentError, match=r"lie about no smooth curve; .* write means of successive rows$"):
+        from_table(rows, 0.0005)
+    theta, s = (column.reshape(60, 50).mean(axis=1) for column in (rows.theta, rows.s))
+    means = Samples(theta, s, np.arange(60) + 1)
+    assert off(from_table(means, 0.0005), means).max() <= 0.0005
+
+
 def test_a_distance_of_more_than_a_hundredth_of_the_stroke_is_remarked():
     (remark,) = from_table(plate(24, 0), 0.5).kept.remarks
     assert remark.name == "table-distance"

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 _MISSED = 1e-6  # of the unit of a bound: by so much it may be missed
 _STALLED = 1e-3  # of it, where rounding lets the integral grow no more
 _GROWS = 1e-12  # of the integral: a growth above rounding
+# of one search: the cubes of the knots, summed over its solves, which are some 3 s of a core. A thousand rows that
+# scatter by 400 readings take 4.3e10, a hundred thousand that are but rounded 2.3e8
+_MOST_WORK = 5e10
 _FEW = 1000  # bounds that are looked at together; of more these are the first, and then those that are missed
 _DIPS, _HELD = 60, 0.1  # times at most that a function is held up at dips, and to what share of the depth it may have
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
@@ -41,6 +44,10 @@ _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 
 class UnsolvedError(CamgeoError, ArithmeticError):
     """Bounds that are missed by more than rounding when the integral grows no more."""
+
+
+class CrowdedError(CamgeoError, ArithmeticError):
+    """So many bounds are touched, and found one by one, that the search would take minutes."""
 
 
 class Space(NamedTuple):
@@ -314,7 +321,7 @@ def least(space: Space, bounds: Bounds, start: Touch | None = None, floor: Floor
     """The function of least mean square jerk within bounds and above a floor, looked for from the rows of `start`.
 
     None where a constant keeps all the bounds of a function with a period. Raises UnsolvedError where rounding stands
-    in the way.
+    in the way, and CrowdedError where the bounds touched are too many for it to end in seconds.
     """
     begun = bounds.touching(start)
     for turn in range(_DIPS):
@@ -362,9 +369,11 @@ def _of_many(space: Space, bounds: Bounds, start: Touch | None) -> Least | None:
     chosen = np.arange(n) if n <= _FEW else np.arange(0, n, -(-n // _FEW))
     if start is not None:
         chosen = np.union1d(chosen, start.which)
+    work = 0.0
     while True:
         begun = None if start is None else Touch(np.searchsorted(chosen, start.which), start.upper)
-        found = _Search(space, bounds.at(chosen)).run(begun)
+        search = _Search(space, bounds.at(chosen), work)
+        found, work = search.run(begun), search.work
         if found is None:
             missed = np.array([np.argmax(bounds.lo), np.argmin(bounds.hi)])
             if bounds.lo[missed[0]] <= bounds.hi[missed[1]]:
@@ -401,10 +410,10 @@ def _worst(miss: Array) -> Indices:
 
 
 class _Search:
-    """The search for the bounds that are touched."""
+    """The search for the bounds that are touched, after so much work (the knots' cubes, summed over the solves)."""
 
-    def __init__(self, space: Space, bounds: Bounds) -> None:
-        self.space, self.bounds = space, bounds
+    def __init__(self, space: Space, bounds: Bounds, work: float) -> None:
+        self.space, self.bounds, self.work = space, bounds, work
         self.least = 2 if space.rest is None else 0  # bounds that are touched, of a function that is no constant
         self._before: set[bytes] = set()
 
@@ -415,6 +424,7 @@ class _Search:
         while state is not None:
             touch, pull, square = state
             x, values = self.bounds.x[touch.which], self._values(touch)
+            self._count(touch)
             curve = curve_through(self.space, x, values)
             miss, above = missed_by(curve, self.bounds)
             miss[touch.which] = -1.0
@@ -444,7 +454,14 @@ class _Search:
     def _values(self, touch: Touch) -> Array:
         return np.where(touch.upper, self.bounds.hi[touch.which], self.bounds.lo[touch.which])
 
+    def _count(self, touch: Touch) -> None:
+        """Add a solve to the work before it is done: one of many thousand knots would take all memory."""
+        self.work += float(len(touch.which)) ** 3
+        if self.work > _MOST_WORK:
+            raise CrowdedError
+
     def _solved(self, touch: Touch) -> tuple[Array, float]:
+        self._count(touch)
         return pulls(self.space, self.bounds.x[touch.which], self._values(touch))
 
     def _begun(self) -> tuple[Touch, Array, float] | None:

@@ -10,7 +10,7 @@ import numpy as np
 from kin.law.programme import IntentError
 from kin.law.segment import Constant
 from kin.law.sources.dwells import runs, stretches
-from kin.law.sources.least_jerk import Bounds, Floor, UnsolvedError, least
+from kin.law.sources.least_jerk import Bounds, CrowdedError, Floor, UnsolvedError, curve_through, least
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
 from kin.law.sources.ring import SAME_ANGLE, Samples, settled
 from kin.law.sources.spline import Ends, through
@@ -36,6 +36,8 @@ _ZERO = 2.0  # readings, within which the least value of a motion is meant to be
 _FAR = 0.01  # of the stroke: a distance of rows above that is told
 _PINS = 3  # times that a motion above its least level is brought down to it, where it was lowest
 _TOUCHES = 1e-9  # of the stroke: by so much it may stay above
+_CALM = 120  # knots of a smooth curve, from which the distances of rows that scatter are taken
+_MOST_ADVISED = 0.25  # of the stroke: a reading above that leaves little of a motion
 _ABOUT = 0.01  # of a reading: by so much the motion without dwells, which is but compared with, may be too low
 _QUARTER = 0.25  # of the angle: rows that cover less were hardly meant to
 _NEARLY = 1e-3  # of a last angle
@@ -60,7 +62,8 @@ def from_table(
     motion, and what is to be remarked on them, is in its `kept`.
 
     Raises TableError, with the line, for rows that do not close within their readings, for doubled angles, and, where
-    `suspects` are refused, for a row, or two, without which the mean square is less than half.
+    `suspects` are refused, for a row, or two, without which the mean square is less than half. Raises IntentError for
+    many rows that scatter far beyond their readings.
     """
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
@@ -71,6 +74,8 @@ def from_table(
         stroke = layout.tell(layout.stroke)
         problem = f"no motion was found within {layout.tell(reading)} of rows over {stroke}: rounding stands in the way"
         raise IntentError(f"{problem}; give a greater reading, or leave rows out", field) from None
+    except CrowdedError:
+        raise IntentError(_scattered(layout, reading), field) from None
 
 
 def _motion(
@@ -210,6 +215,19 @@ def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
         told = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
         problem = f"{told}: {layout.tell(reading)} to either side"
         raise IntentError(f"{problem}; give reading: {layout.advised(0.05 * layout.stroke)} or less", field)
+
+
+def _scattered(layout: Tabled, reading: float) -> str:
+    """Say that rows scatter, and with what reading a smooth curve through means of successive rows would do."""
+    count = len(layout.x)
+    groups = np.array_split(np.arange(count), min(_CALM, count))
+    x, s = (np.array([column[group].mean() for group in groups]) for column in (layout.x, layout.s))
+    apart = float(layout.off(curve_through(layout.space, x, s)).max())
+    problem = f"{count} rows scatter too far beyond their reading, {layout.tell(reading)}, for a motion to follow each"
+    if apart > _MOST_ADVISED * layout.stroke:
+        remedy = "see that the columns are those meant, or write means of successive rows"
+        return f"{problem}, and lie about no smooth curve; {remedy}"
+    return f"{problem}; give reading: {layout.advised(apart)}, or fewer rows"
 
 
 def _standing(layout: Tabled, standing: Suspect) -> str:
