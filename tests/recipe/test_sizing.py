@@ -252,7 +252,7 @@ def test_limits_beside_sizing_name_the_keys_of_sizing() -> None:
     both = steep.replace("at_most: 30", "at_most: 30, on_return: 40")
     assert "at_most and on_return of 20 under sizing" in failure(both)
     sharp = BOUND + "limits: {radius-of-curvature: {at_least: 40}}\n"
-    assert "radius-of-curvature: {at_least: 40} under sizing, or" in failure(sharp)
+    assert "radius-of-curvature: {at_least: 40} under sizing" in failure(sharp)
     assert failure(sharp.replace("at_most: 30}", "at_most: 30}, radius-of-curvature: {at_least: 40}")) == ""
 
 
