@@ -39,7 +39,7 @@ def test_the_version_stands_in_one_place():
 
 IN_THE_ROOT = {
     *(".ci", ".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "README.md"),
-    *("benchmarks", "camgeo", "docs", "examples", "kin", "out", "pyproject.toml", "recipes", "tests"),
+    *("benchmarks", "camgeo", "docs", "examples", "kin", "out", "pyproject.toml", "recipes", "tests", "web"),
 }
 
 

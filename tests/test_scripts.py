@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from support.places import ROOT
 
-SCRIPTS = sorted([*(ROOT / "benchmarks").glob("*.py"), *(ROOT / "docs").glob("make_*.py")])
+SCRIPTS = sorted([*(ROOT / "benchmarks").glob("*.py"), *(ROOT / "docs").glob("make_*.py"), ROOT / "web" / "build.py"])
 NAMES = [str(path.relative_to(ROOT)) for path in SCRIPTS]
 RUN = [name for name in NAMES if "__main__" in (ROOT / name).read_text(encoding="utf-8")]  # others are only imported
 

@@ -151,9 +151,9 @@ class Browser:
         self.call("Page.navigate", url=address)
         self.wait("document.documentElement?.dataset.ready === 'true'")
 
-    def wait(self, condition: str) -> None:
+    def wait(self, condition: str, patience: float = PATIENCE) -> None:
         """Wait until an expression is true."""
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + patience
         while not self._holds(condition):
             assert time.monotonic() < end, f"never true: {condition}"
             time.sleep(0.05)

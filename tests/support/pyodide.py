@@ -5,12 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from importlib.util import find_spec
 from pathlib import Path
 
-from support.places import ROOT
+from support.places import ROOT, script
 
-PURE = ("yaml", "ezdxf", "fontTools", "pyparsing", "typing_extensions")  # what camgeo needs besides numpy
 INSTALLED = "node_modules/pyodide/pyodide.mjs"
 
 
@@ -30,16 +28,7 @@ def why_not() -> str:
 
 def gather(target: Path) -> None:
     """Copy the packages that camgeo needs, without their compiled parts."""
-    target.mkdir()
-    for name in PURE:
-        spec = find_spec(name)
-        assert spec is not None
-        assert spec.origin is not None
-        source = Path(spec.origin)
-        if source.name == "__init__.py":
-            shutil.copytree(source.parent, target / name, ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
-        else:
-            shutil.copy(source, target)
+    script("build").gather(target)
 
 
 def run(script: Path, packages: Path, *arguments: Path) -> subprocess.CompletedProcess[str]:

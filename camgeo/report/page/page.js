@@ -1,6 +1,7 @@
 "use strict";
-// the one player: moves and plots a scene in the elements of this document, and returns what ends that, for another one
-function playScene(data) {
+// the one player: moves and plots a scene in the elements of this document, and returns what ends that, for another one;
+// it begins as the address says, or as `begin` does, { degrees, playing }, and then leaves the address alone
+function playScene(data, begin = null) {
   const find = (id) => document.getElementById(id);
   const root = document.documentElement;
   const ended = new AbortController();
@@ -130,6 +131,7 @@ function playScene(data) {
   // the address follows the angle at rest, so that it can be kept or passed on; browsers allow a few changes a second
   let later = 0;
   function noted() {
+    if (begin) return;
     clearTimeout(later);
     later = setTimeout(() => {
       try {
@@ -534,7 +536,7 @@ function playScene(data) {
 
   document.addEventListener("keydown", (event) => {
     const on = event.target;
-    const own = on.closest("select, button, summary, a") || (on.tagName === "INPUT" && on.id !== "slider");
+    const own = on.closest("select, button, summary, a, textarea") || (on.tagName === "INPUT" && on.id !== "slider");
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = event.shiftKey ? 10 : 1;
     const keys = {
@@ -616,8 +618,13 @@ function playScene(data) {
     play(Boolean(place[2]));
     return true;
   }
-  window.addEventListener("hashchange", addressed, until);
-  if (!addressed()) play(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
+  if (begin) {
+    turnTo(begin.degrees);
+    play(begin.playing);
+  } else {
+    window.addEventListener("hashchange", addressed, until);
+  }
+  if (!begin && !addressed()) play(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
   root.dataset.ready = "true";
 
   return () => {

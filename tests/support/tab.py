@@ -1,0 +1,117 @@
+"""The live page: built once a session, served as a plain static server does, and opened in a browser."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import http.server
+import json
+import threading
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from support import pyodide
+from support.browser import executable
+from support.places import script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from support.browser import Browser
+
+PATIENCE = 240.0  # seconds that Python's start may take on a busy machine
+
+
+def why_not() -> str:
+    """Say why the page cannot be opened; empty where it can."""
+    if executable() is None:
+        return "no browser here: install chromium, or name one in CAMGEO_BROWSER"
+    return pyodide.why_not()
+
+
+def built(folder: Path) -> Path:
+    """The page in a new folder."""
+    build = script("build")
+    build.build(folder, pyodide.folder(), build.fetch(pyodide.folder()))
+    return folder
+
+
+class _Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serve a folder meanwhile, and give its address."""
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}/"
+    finally:
+        server.shutdown()
+        server.server_close()
+
+
+class Tab:
+    """The page in a browser, as somebody at the keyboard has it."""
+
+    def __init__(self, browser: Browser, address: str) -> None:
+        self.browser, self.address = browser, address
+
+    def open(self, fragment: str = "") -> Tab:
+        """Open it and wait for the first design."""
+        self.browser.open(f"{self.address}{fragment}")
+        self.wait("document.body.dataset.loaded")
+        self.settle()
+        return self
+
+    def wait(self, condition: str) -> None:
+        """Wait until an expression is true."""
+        self.browser.wait(condition, PATIENCE)
+
+    def settle(self) -> None:
+        """Wait until every change of the recipe is answered."""
+        self.wait("document.body.dataset.answered === String(asked)")
+
+    def ask(self, expression: str) -> Any:
+        """Value of an expression in the page."""
+        return self.browser.ask(expression)
+
+    def text_of(self, name: str) -> str:
+        """Text of an element."""
+        text: str = self.ask(f"byId({name!r}).textContent")
+        return text
+
+    def click(self, name: str) -> None:
+        """Press a button by its id."""
+        self.ask(f"byId({name!r}).click()")
+
+    def write(self, text: str) -> None:
+        """Put a text in the place of the recipe's, as if it were typed, and wait for what comes of it."""
+        self._put("byId('text')", text, "input")
+
+    def enter(self, path: str, text: str) -> None:
+        """Put a text into the box of a field, and wait for what comes of it."""
+        self._put(f"document.querySelector({_row(path)!r}).querySelector('.box, .wide')", text, "change")
+
+    def slide(self, path: str, value: float) -> None:
+        """Move a slider, and wait for the picture."""
+        self._put(
+            f"document.querySelector({_row(path)!r}).querySelector('[type=range]')", f"{value:.9g}", "input", "change"
+        )
+
+    def _put(self, element: str, text: str, *events: str) -> None:
+        fire = "".join(f"element.dispatchEvent(new Event({name!r}, {{bubbles: true}}));" for name in events)
+        self.ask(f"(() => {{const element = {element}; element.value = {json.dumps(text)}; {fire}}})()")
+        self.settle()
+
+    def drop(self, name: str, data: bytes) -> None:
+        """Give the page a file, as dropping it does."""
+        packed = base64.b64encode(data).decode()
+        self.ask(f"taken([new File([Uint8Array.from(atob({packed!r}), (c) => c.charCodeAt(0))], {json.dumps(name)})])")
+
+
+def _row(path: str) -> str:
+    return f'[data-path="{path}"]'

@@ -1,0 +1,319 @@
+"""Gather camgeo as a page for a browser in one folder: `python web/build.py [FOLDER]`.
+
+Any static server serves that folder, as docs/tab.md says. Taken are Pyodide by npm, numpy's wheel of the same
+distribution, held to the checksum of its list, and camgeo with what it imports from the Python that runs this script.
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import urllib.request
+from importlib import metadata
+from importlib.util import find_spec
+from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+ROOT = Path(__file__).resolve().parents[1]
+WEB = ROOT / "web"
+VERSION = "0.27.7"  # of Pyodide; before 0.27.3 it ends Safari on iOS
+DISTRIBUTION = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"
+RUNTIME = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
+OTHERS = ("yaml", "ezdxf", "fontTools", "pyparsing", "typing_extensions")  # what camgeo needs besides numpy
+UNUSED: tuple[str, ...] = ("*.so", "*.pyd", "__pycache__", "*.pyx", "*.pxd", "*.c", "*.cpp", "*.pyi")
+# parts of ezdxf and fontTools that draw, convert and compile fonts, a third of both: nothing here imports them
+UNUSED += ("addons", "varLib", "feaLib", "otlLib", "voltLib", "ufoLib", "cffLib", "designspaceLib", "subset", "merge")
+MINOR = (3, 12)  # of Pyodide's Python, whose compiled modules it reads
+FIRST = "disc-roller"  # the starter that stands there while the page loads
+SITE = WEB / "site"
+
+
+def main() -> None:
+    """Build the folder."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=SITE, help="made anew (default: web/site)")
+    text = "where Pyodide is, or is put (default: CAMGEO_PYODIDE or .ci-pyodide)"
+    default = Path(os.environ.get("CAMGEO_PYODIDE", ROOT / ".ci-pyodide"))
+    parser.add_argument("--pyodide", type=Path, default=default, metavar="FOLDER", help=text)
+    parser.add_argument("--fetch", action="store_true", help="get Pyodide and numpy, and build nothing")
+    arguments = parser.parse_args()
+    wheel = fetch(arguments.pyodide)
+    if arguments.fetch:
+        print(f"Pyodide {VERSION} is in {arguments.pyodide}")
+        return
+    print(f"{build(arguments.folder, arguments.pyodide, wheel)}; serve it, such as by")
+    print(f"python3 -m http.server --bind 127.0.0.1 --directory {arguments.folder}")
+
+
+# --- Pyodide ----------------------------------------------------------------------------------------------------------
+
+
+def fetch(folder: Path) -> Path:
+    """Have Pyodide and numpy's wheel in a folder, where they are not there yet; the wheel is returned.
+
+    A wheel that is there already counts if it has the checksum of Pyodide's list.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    modules = folder / "node_modules" / "pyodide"
+    described = modules / "package.json"
+    if not described.is_file() or json.loads(described.read_text("utf-8"))["version"] != VERSION:
+        if shutil.which("npm") is None:
+            sys.exit(
+                f"Pyodide comes by npm, which is not here: install Node.js, or have pyodide@{VERSION} in {modules}"
+            )
+        if not (folder / "package.json").is_file():
+            (folder / "package.json").write_text('{"private": true}\n', "utf-8")
+        command = ["npm", "install", "--silent", "--no-audit", "--no-fund", f"pyodide@{VERSION}"]
+        subprocess.run(command, cwd=folder, check=True)
+    entry = json.loads((modules / "pyodide-lock.json").read_text("utf-8"))["packages"]["numpy"]
+    wheel = folder / entry["file_name"]
+    if not wheel.is_file():
+        address = f"{DISTRIBUTION}/{entry['file_name']}"
+        try:
+            with urllib.request.urlopen(address, timeout=120) as answer:
+                data = answer.read()
+        except OSError as error:
+            sys.exit(f"{address}: {error}; put that file into {folder}")
+        demand_sum(address, data, entry["sha256"])
+        wheel.write_bytes(data)
+    demand_sum(str(wheel), wheel.read_bytes(), entry["sha256"])
+    return wheel
+
+
+def demand_sum(name: str, data: bytes, wanted: str) -> None:
+    """End with a message where bytes have another SHA-256 than Pyodide's list."""
+    if hashlib.sha256(data).hexdigest() != wanted:
+        sys.exit(f"{name}: not the file of Pyodide's list, which has the SHA-256 {wanted}; delete it and try again")
+
+
+# --- Python -----------------------------------------------------------------------------------------------------------
+
+
+def gather(target: Path, names: tuple[str, ...] = OTHERS) -> None:
+    """Copy packages from this Python into a folder, without their compiled parts."""
+    target.mkdir(exist_ok=True)
+    for name in names:
+        spec = find_spec(name)
+        if spec is None or spec.origin is None:
+            sys.exit(f"the package {name} is missing in {sys.executable}: run this with the Python that has camgeo")
+        source = Path(spec.origin)
+        if source.name == "__init__.py":
+            shutil.copytree(source.parent, target / name, ignore=shutil.ignore_patterns(*UNUSED))
+        else:
+            shutil.copy(source, target)
+
+
+def python_of_pyodide() -> str | None:
+    """A Python of the version of Pyodide's; None where there is none."""
+    name = ".".join(map(str, MINOR))
+    if sys.version_info[:2] == MINOR:
+        return sys.executable
+    known = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    kept = sorted(known.glob(f"{name}.*/bin/python3"))
+    candidates = [*filter(None, [shutil.which(f"python{name}")]), *map(str, kept)]
+    ask = f"import sys; sys.exit(sys.version_info[:2] != {MINOR})"
+    return next((path for path in candidates if subprocess.run([path, "-c", ask], check=False).returncode == 0), None)
+
+
+def packed() -> bytes:
+    """Pack camgeo with what it imports as a zip, compiled where there is the right Python; same input, same bytes.
+
+    The source of each `__init__` stays: camgeo lists its capabilities by them.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name) / "packages"
+        gather(folder, (*OTHERS, "camgeo", "kin"))
+        shutil.copy(WEB / "live.py", folder)
+        python = python_of_pyodide()
+        if python is not None:
+            command = [
+                python,
+                "-m",
+                "compileall",
+                "-q",
+                "-b",
+                "-s",
+                str(folder),
+                "--invalidation-mode",
+                "unchecked-hash",
+            ]
+            subprocess.run([*command, str(folder)], check=True)
+        bundle = Path(name) / "packages.zip"
+        with ZipFile(bundle, "w", ZIP_DEFLATED, compresslevel=9) as archive:
+            for path in sorted(folder.rglob("*")):
+                compiled = path.with_suffix(".pyc").is_file()
+                twice = path.stem != "__init__" and path.suffix == ".py" and compiled
+                if path.is_file() and not twice and path.name != "__init__.pyc":
+                    archive.writestr(entry_of(str(path.relative_to(folder))), path.read_bytes(), ZIP_DEFLATED)
+        return bundle.read_bytes()
+
+
+def licences() -> str:
+    """The licences of everything that the folder holds."""
+    texts = [
+        f"Pyodide {VERSION}: Mozilla Public License 2.0, https://pyodide.org",
+        (ROOT / "LICENSE").read_text("utf-8"),
+    ]
+    for name in ("numpy", "PyYAML", "ezdxf", "fonttools", "pyparsing", "typing_extensions"):
+        found = metadata.distribution(name)
+        kept = [path for path in found.files or () if path.name.upper().startswith(("LICENSE", "LICENCE", "COPYING"))]
+        words = "\n\n".join(path.read_text("utf-8") for path in kept) or found.metadata["License"]
+        texts.append(f"{name} {found.version}\n\n{words}")
+    return f"\n\n{'=' * 72}\n\n".join(texts)
+
+
+def entry_of(name: str) -> ZipInfo:
+    """An entry of a zip without a time of its own."""
+    return ZipInfo(name, date_time=(2000, 1, 1, 0, 0, 0))
+
+
+# --- what is shown ----------------------------------------------------------------------------------------------------
+
+
+def starters() -> list[dict[str, object]]:
+    """Starters and shipped recipes of single cams: name, title, text, tables that it names, and the picture."""
+    import camgeo
+    from camgeo.api.notebook import drawing
+    from camgeo.recipe.starter import STARTERS, starter
+    from camgeo.registry.root import CAM
+
+    entries: list[dict[str, object]] = []
+    for name, one in STARTERS.items():
+        if one.root == CAM and one.kind:
+            text = starter(name)
+            design = camgeo.design(camgeo.load(text))
+            picture = drawing(design.recipe, design.exact)
+            entries.append({"name": name, "title": one.title, "text": text, "tables": {}, "picture": picture})
+    for path in sorted((ROOT / "recipes").glob("*.yaml")):
+        recipe = camgeo.load(path)
+        text = path.read_text("utf-8")
+        named = {name: (path.parent / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
+        picture = (ROOT / "docs" / "gallery" / f"{path.stem}.svg").read_text("utf-8")
+        shipped = {"name": path.stem, "title": recipe.about, "text": text, "tables": named, "picture": picture}
+        entries.append({**shipped, "shipped": True})
+    return entries
+
+
+def first_page(text: str) -> str:
+    """The whole page of a recipe as `camgeo report` makes it."""
+    import camgeo
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{FIRST}.yaml"
+        path.write_text(text, "utf-8")
+        report = camgeo.export(path, Path(folder) / "out", only=("dxf", "html"))
+        if report.path is None:
+            raise AssertionError(report)
+        return (report.path / f"{FIRST}.html").read_text("utf-8")
+
+
+def build(target: Path, pyodide: Path, wheel: Path) -> str:
+    """Make the folder anew, and say how large it is."""
+    import camgeo
+    from camgeo.report.page import looks, page
+    from camgeo.report.page.asset import asset
+
+    if target.exists() and not (target / "worker.js").is_file():
+        sys.exit(f"{target} is there and is no folder that this script has made: name another")
+    shutil.rmtree(target, ignore_errors=True)
+    (target / "pyodide").mkdir(parents=True)
+    (target / "pictures").mkdir()
+    for name in RUNTIME:
+        shutil.copyfile(pyodide / "node_modules" / "pyodide" / name, target / "pyodide" / name)
+    shutil.copyfile(wheel, target / "pyodide" / wheel.name)
+    shown = starters()
+    for one in shown:
+        (target / "pictures" / f"{one['name']}{'-shipped' if 'shipped' in one else ''}.svg").write_text(
+            str(one.pop("picture")), "utf-8"
+        )
+    first = next(one for one in shown if one["name"] == FIRST)
+    text = str(first["text"])
+    made = first_page(text)
+    scene = dict(camgeo.design(camgeo.load(text)).scene())
+    scene["name"] = FIRST
+    style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
+    files = {
+        "camgeo.zip": packed(),
+        "tab.css": style.encode(),
+        "page.js": asset("page.js").encode(),
+        "licences.txt": licences().encode(),
+        "starters.json": json.dumps(shown, ensure_ascii=False).encode(),
+        **{name: (WEB / name).read_bytes() for name in ("tab.js", "worker.js")},
+    }
+    for name, data in files.items():
+        (target / name).write_bytes(data)
+    frame = asset("page.html")
+    parts = {
+        "policy": policy(made),
+        "stage": between(frame, '<div class="left">', '<section class="checks"'),
+        "note": "",
+        "drawing": str(scene["drawing"]),
+        "recipe": escaped(text),
+        "scene": page.encoded(scene),
+        "numpy": wheel.name,
+        "version": camgeo.__version__,
+        **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
+    }
+    (target / "index.html").write_text(filled((WEB / "index.html").read_text("utf-8"), parts), "utf-8")
+    size = sum(path.stat().st_size for path in target.rglob("*") if path.is_file())
+    return f"{target}: {size / 1e6:.1f} MB"
+
+
+def policy(made: str) -> str:
+    """What the page may load, for its content security policy: its own files, and the judged page's style and script.
+
+    That page stands in a frame, which takes the policy over, and its style and script are the same for every recipe.
+    """
+    scripts = re.findall(r"<script>(.*?)</script>", made, re.DOTALL)
+    styles = re.findall(r"<style>(.*?)</style>", made, re.DOTALL)
+    (script,), (style,) = scripts, styles
+    return "; ".join(
+        [
+            "default-src 'none'",
+            f"script-src 'self' 'wasm-unsafe-eval' {hashed(script)}",
+            f"style-src 'self' {hashed(style)}",
+            "img-src 'self' data: blob:",
+            "connect-src 'self'",
+            "worker-src 'self'",
+            "frame-src 'self'",
+            "base-uri 'none'",
+            "form-action 'none'",
+        ]
+    )
+
+
+def hashed(text: str) -> str:
+    """The source expression of an inline script or style."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def between(text: str, start: str, end: str) -> str:
+    """What stands in a text from one mark up to another."""
+    before, mark, rest = text.partition(start)
+    inside, behind, _ = rest.partition(end)
+    if not mark or not behind:
+        raise AssertionError((start, end, before[:80]))
+    return mark + inside
+
+
+def filled(text: str, parts: dict[str, str]) -> str:
+    """A text with its {{parts}} in their places, those within parts too."""
+    once = re.sub(r"\{\{stage\}\}", lambda _: parts["stage"], text)
+    return re.sub(r"\{\{([\w.:-]+)\}\}", lambda found: parts[found[1]], once)
+
+
+def escaped(text: str) -> str:
+    """A text as it stands in HTML."""
+    return text.replace("&", "&amp;").replace("<", "&lt;")
+
+
+if __name__ == "__main__":
+    main()

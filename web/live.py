@@ -1,0 +1,299 @@
+"""What the page's worker asks of camgeo: each call takes plain data and gives plain data, which JSON carries."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import traceback
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+import camgeo
+from camgeo.api.report import explained
+from camgeo.capabilities.follow.command import summary
+from camgeo.capabilities.follow.library import shown
+from camgeo.recipe.export import FileRequest
+from camgeo.recipe.keys import read_values, recipe_table
+from camgeo.recipe.words import words_of
+from camgeo.registry import registry
+from camgeo.report.page import tables
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import Kind, field_at
+from camgeo.schema.quantity import parted, units_for
+from camgeo.schema.reader import Reader
+from camgeo.schema.readers import READERS
+from camgeo.schema.scalars import Complaint, read_number
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, scalars
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from camgeo.api.report import Report
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.errors import RecipeError
+    from camgeo.schema.fields import Field
+
+FOLDER = "/tmp/recipe"  # noqa: S108 - of the browser's own file system; the recipe, its tables, somebody's file
+OUT = "/tmp/out"  # noqa: S108 - the same
+PAGE = FileRequest("html")
+WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
+Path(FOLDER).mkdir(parents=True, exist_ok=True)
+
+
+def answer(call: str, text: str) -> str:
+    """Answer a call by its name; faults of a recipe and of a call are part of the answer."""
+    try:
+        output = CALLS[call](**json.loads(text))
+    except RecipeErrors as errors:
+        output = {"faults": [_fault(error) for error in errors.errors]}
+    except camgeo.CamgeoError as error:
+        output = {"faults": [_sentence(line) for line in str(error).splitlines()]}
+    except MemoryError:
+        output = {"faults": [_sentence("there is not enough memory for this: close other tabs, or make it smaller")]}
+    except Exception:  # noqa: BLE001 - the page tells it, and goes on
+        output = {"faults": [_sentence("camgeo has failed")], "trace": traceback.format_exc()}
+    return json.dumps(output, separators=(",", ":"))
+
+
+def _sentence(text: str) -> dict[str, Any]:
+    return {"line": 0, "column": 0, "path": "", "text": text.replace(f"{FOLDER}/", "")}
+
+
+def _fault(error: RecipeError) -> dict[str, Any]:
+    given = f", given {error.value}" if error.value is not None else ""
+    remedy = f"; {error.remedy}" if error.remedy else ""
+    place = f"{error.path}: " if error.path else ""
+    text = f"{place}{error.problem}{given}{remedy}".replace(f"{FOLDER}/", "")
+    return {"line": error.line, "column": error.column, "path": error.path, "text": text}
+
+
+# --- design -----------------------------------------------------------------------------------------------------------
+
+
+def design(name: str, text: str) -> dict[str, Any]:
+    """Everything that the page draws of a recipe, its fields, and its faults, each with line and column."""
+    output: dict[str, Any] = {"fields": [], "faults": []}
+    try:
+        output["fields"] = fields(Source.of(text, name))
+        recipe = _recipe(name, text)
+        exact = camgeo.design(recipe)
+        scene = dict(exact.scene())
+    except RecipeErrors as errors:
+        return {**output, "faults": [_fault(error) for error in errors.errors]}
+    except camgeo.CamgeoError as error:
+        return {**output, "faults": [_sentence(line) for line in str(error).splitlines()]}
+    report: dict[str, Any] = {"checks": scene["checks"], "remarks": scene["remarks"], "units": recipe.units}
+    if scene["linked"]:
+        report["linkage"] = True
+    failed = [check for check in report["checks"] if not check["ok"]]
+    return {
+        **output,
+        "scene": scene,
+        "ok": exact.ok,
+        "name": recipe.name,
+        "verdict": "every check of the design holds" if exact.ok else tables.failing(report["checks"]),
+        "checks": tables.checks(report),
+        "failed": [_explained(check, report, recipe) for check in failed],
+    }
+
+
+def _recipe(name: str, text: str) -> Recipe:
+    """The recipe of a text; files that it names stand beside it."""
+    path = Path(FOLDER) / f"{name}.yaml"
+    path.write_text(text, "utf-8")
+    recipe: Recipe = camgeo.load(path)
+    return recipe
+
+
+def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> dict[str, Any]:
+    """A check that fails in words, with the line of the recipe's field that it hangs on."""
+    head, *rows = explained(check, report, recipe, "").splitlines()
+    told = {row.strip().partition(" ")[0]: row.strip().partition(" ")[2].strip() for row in rows}
+    place = re.match(r":(\d+):(\d+) (.*)", told.pop("recipe", ""))
+    line, column, path = (int(place[1]), int(place[2]), place[3]) if place else (0, 0, "")
+    text = "; ".join(filter(None, (told.get("found"), told.get("remedy"))))
+    return {"line": line, "column": column, "path": path, "head": head, "text": text, "at_deg": check["at_deg"]}
+
+
+# --- form -------------------------------------------------------------------------------------------------------------
+
+
+def fields(source: Source) -> list[dict[str, Any]]:
+    """The fields of a recipe that a form edits, in the order of the text: each says where its value stands there.
+
+    `start` and `end` are indices in units of UTF-16, as browsers count. A number has its unit and the ends of a slider.
+    """
+    if not isinstance(source.root, Mapping):
+        return []
+    capabilities = registry.by_words(words_of(source.root))
+    reader = Reader(source, READERS, recipe_table(capabilities))
+    read_values(reader, capabilities)
+    nodes = list(scalars(source.root))
+    shared = Counter(id(node) for _, node in nodes)
+    entries = [
+        entry
+        for path, node in nodes
+        if shared[id(node)] == 1 and node.tag is None
+        for entry in _entry(reader, path, node)
+    ]
+    return sorted([*entries, *_files(reader)], key=lambda entry: entry["start"])
+
+
+def _files(reader: Reader) -> Iterator[dict[str, Any]]:
+    """The list of files, where it is one of plain words in brackets."""
+    export = entries(reader.source.root).get("export")
+    node = entries(export).get("files") if isinstance(export, Mapping) else None
+    field = field_at(reader.root, "export.files", reader.kinds)
+    if field is None or field.form is None or not isinstance(node, Sequence):
+        return
+    source = reader.source
+    start, end = source.index(node.mark), source.index(node.end)
+    raw = source.text[start:end]
+    if re.fullmatch(r"\[[\w ,]*\]", raw) is None:
+        return
+    place = {"start": _utf16(source.text, start), "end": _utf16(source.text, end)}
+    choices = _words(field.form.schema(field)["items"])
+    words = [item.text for item in node.items if isinstance(item, Scalar)]
+    about = {"path": "export.files", "about": field.about, "text": raw, "kind": "list"}
+    yield {**about, **place, "choices": choices, "words": words}
+
+
+def _words(schema: dict[str, Any]) -> list[str]:
+    """The words that a schema permits, beside whatever else it does."""
+    options = schema.get("anyOf") or schema.get("oneOf") or [schema]
+    return [word for option in options for word in option.get("enum", ()) if isinstance(word, str)]
+
+
+def _entry(reader: Reader, path: str, node: Scalar) -> Iterator[dict[str, Any]]:
+    """The field at a path, where a form knows its kind."""
+    field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
+    if field is None:
+        return
+    source = reader.source
+    start, end = source.index(node.mark), source.index(node.end)
+    raw = source.text[start:end]
+    if "\n" in raw:
+        return
+    place = {"start": _utf16(source.text, start), "end": _utf16(source.text, end)}
+    shown = {"path": path, "about": field.about, "text": node.text, **place}
+    choices = list(field.choices) or ([] if field.form is None else _words(field.form.schema(field)))
+    if node.text in choices:
+        yield {**shown, "kind": "choice", "choices": choices}
+    elif field.kind is Kind.TRUTH:
+        yield {**shown, "kind": "choice", "choices": ["true", "false"]}
+    elif field.kind in WRITTEN:
+        yield {**shown, "kind": "text"}
+    else:
+        yield from _number(reader, field, node, shown)
+
+
+def _number(reader: Reader, field: Field, node: Scalar, shown: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """A field of a number: its value, unit and bounds; the place is that of the number without the unit."""
+    number, unit = parted(node.text)
+    try:
+        value = read_number(number)
+    except Complaint:
+        return
+    if not node.plain:
+        shown = {**shown, "start": shown["start"] + 1}
+    own = reader.unit(field.unit or field.kind)
+    yield {
+        **shown,
+        "kind": "number",
+        "text": number,
+        "end": shown["start"] + len(number),
+        "value": value,
+        "unit": unit or own,
+        "units": list(units_for(own)),
+        "whole": field.kind is Kind.INTEGER,
+        "odd": field.odd,
+        "least": field.at_least if field.above is None else field.above,
+        "most": field.at_most,
+        "open": field.above is not None,
+    }
+
+
+def _utf16(text: str, index: int) -> int:
+    return len(text[:index].encode("utf-16-le")) // 2
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def make(name: str, text: str) -> dict[str, Any]:
+    """Make and judge all files of a recipe: the page, the report, each file, and all of them as a zip."""
+    recipe = _recipe(name, text)
+    if PAGE.kind not in {request.kind for request in recipe.export.files}:
+        recipe = replace(recipe, export=replace(recipe.export, files=(*recipe.export.files, PAGE)))
+    shutil.rmtree(OUT, ignore_errors=True)
+    report = camgeo.export(recipe, OUT)
+    folder = report.path
+    if folder is None:
+        raise AssertionError(report)
+    files = sorted(path for path in folder.iterdir() if path.is_file())
+    page = next(path for path in files if path.suffix == ".html")
+    output = _judged(report, page.read_text("utf-8"))
+    kept = files if report.ok else [path for path in files if path.suffix in {".html", ".json"}]
+    bundle = Path(OUT) / f"{recipe.name}.zip"
+    with ZipFile(bundle, "w", ZIP_DEFLATED) as archive:
+        for path in kept:
+            archive.writestr(ZipInfo(f"{recipe.name}/{path.name}"), path.read_bytes(), ZIP_DEFLATED)
+        archive.writestr(ZipInfo(f"{recipe.name}/{name}.yaml"), text, ZIP_DEFLATED)
+    return {**output, "files": [{"name": path.name, "path": str(path)} for path in (*kept, bundle)]}
+
+
+def _judged(report: Report, page: str) -> dict[str, Any]:
+    """What the page shows of a report."""
+    failed = [check for check in report["checks"] if not check["ok"]]
+    return {
+        "ok": report.ok,
+        "verdict": str(report),
+        "page": page,
+        "missing": [{"what": name, "why": why} for name, why in report.missing.items()],
+        "failed": len(failed),
+    }
+
+
+# --- files of others --------------------------------------------------------------------------------------------------
+
+
+def verify(name: str, text: str, file: str, units: str) -> dict[str, Any]:
+    """Judge somebody's file by the recipe: its page, and the report."""
+    recipe = _recipe(name, text)
+    report = camgeo.verify(recipe, Path(FOLDER) / file, units=units or None, page=True)
+    path = Path(OUT) / "report.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(report.to_json(), "utf-8")
+    return {**_judged(report, report.page or ""), "files": [{"name": f"{file}.report.json", "path": str(path)}]}
+
+
+def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
+    """The motion that somebody's file gives a follower: in words, its table, its recipe and the page of that."""
+    arm, at = follower.pop("arm"), follower.pop("at")
+    followed = camgeo.follow(
+        Path(FOLDER) / file,
+        **follower,
+        arm=tuple(arm) if arm else None,
+        at=tuple(at),
+    )
+    stem = re.sub(r"[^A-Za-z0-9_-]", "-", Path(file).stem)
+    folder = Path(OUT)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{stem}-motion.csv").write_text(followed.table(), "utf-8")
+    output: dict[str, Any] = {"words": summary(followed), "page": "", "ok": True, "verdict": ""}
+    output["files"] = [{"name": f"{stem}-motion.csv", "path": str(folder / f"{stem}-motion.csv")}]
+    if not followed.follower.yoke:
+        table = f"{stem}-lifts.csv"
+        (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
+        output |= {"name": stem, "recipe": followed.recipe(table), "tables": {table: followed.lifts()}}
+        if followed.at == (0.0, 0.0):
+            report = shown(followed)
+            output |= {"page": report.page or "", "ok": report.ok, "verdict": str(report)}
+    return output
+
+
+CALLS: dict[str, Callable[..., dict[str, Any]]] = {"design": design, "make": make, "verify": verify, "follow": follow}

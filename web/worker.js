@@ -1,0 +1,43 @@
+// The one worker: Python with camgeo. A message { id, call, input, files } is answered by { id, output, files } or
+// { id, error }; while it begins it says how far it is.
+import { loadPyodide } from "./pyodide/pyodide.mjs";
+
+const parameters = new URL(import.meta.url).searchParams;
+
+async function bytes(name) {
+  const answer = await fetch(new URL(name, import.meta.url));
+  if (!answer.ok) throw new Error(`${name}: the server answers ${answer.status}`);
+  return answer.arrayBuffer();
+}
+
+async function begin() {
+  const say = (stage, share) => postMessage({ stage, share });
+  const [numpy, code] = [bytes(parameters.get("numpy")), bytes(parameters.get("code"))];
+  say("Python is coming", 0.05);
+  const python = await loadPyodide();
+  say("numpy is coming", 0.5);
+  python.unpackArchive(await numpy, "wheel");
+  say("camgeo is coming", 0.65);
+  const packages = python.runPython("import site; site.getsitepackages()[0]");
+  python.unpackArchive(await code, "zip", { extractDir: packages });
+  say("camgeo is starting", 0.8);
+  const live = python.pyimport("live");
+  say("", 1);
+  return { python, live };
+}
+
+const begun = begin();
+begun.catch((error) => postMessage({ broken: String(error.message || error) }));
+
+self.onmessage = async ({ data }) => {
+  const { python, live } = await begun;
+  const { id, call, input, files = {} } = data;
+  try {
+    for (const [name, content] of Object.entries(files)) python.FS.writeFile(`${live.FOLDER}/${name}`, content);
+    const output = JSON.parse(live.answer(call, JSON.stringify(input)));
+    const made = (output.files || []).map((file) => ({ ...file, bytes: python.FS.readFile(file.path) }));
+    postMessage({ id, output, files: made }, made.map((file) => file.bytes.buffer));
+  } catch (error) {
+    postMessage({ id, error: String(error.message || error) });
+  }
+};
