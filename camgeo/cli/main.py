@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import io
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
@@ -34,11 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     open_streams()
     try:
         words = sys.argv[1:] if argv is None else argv
-        try:
-            arguments = _parser(words).parse_args(words)
-        except SystemExit:  # after help, the version, or what is wrong with the call
-            sys.stdout.flush()
-            raise
+        arguments = _arguments(words)
         command: Callable[[argparse.Namespace], int] = arguments.run
         status = command(arguments)
         sys.stdout.flush()
@@ -53,6 +51,23 @@ def main(argv: Sequence[str] | None = None) -> int:
         silence("stdout")
         return SURROUNDINGS
     return status
+
+
+def _arguments(words: Sequence[str]) -> argparse.Namespace:
+    """Parse a call; SystemExit after help, the version, or what is wrong with it.
+
+    argparse keeps it to itself where it cannot write these, and writes a call's words as they are.
+    """
+    answer, complaint = io.StringIO(), io.StringIO()
+    try:
+        with redirect_stdout(answer), redirect_stderr(complaint):
+            return _parser(words).parse_args(words)
+    except SystemExit:
+        for text, write in ((answer.getvalue(), say), (complaint.getvalue(), complain)):
+            if text:
+                write(text.removesuffix("\n"))
+        sys.stdout.flush()
+        raise
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:

@@ -331,7 +331,8 @@ def _checked(table: PointTable, path: Path) -> PointTable:
             at = int(np.argmax(wrong))
             raise ReadError("range", f"line {table.lines[at]}: {name} is {column[at]:.6g}, which no part has", path)
     if len(table) < LEAST_POINTS:
-        raise ReadError("range", f"{len(table)} points; {LEAST_POINTS} are needed at least, all round the cam", path)
+        message = f"points: {len(table)}, and at least {LEAST_POINTS} are needed, all round the cam"
+        raise ReadError("range", message, path)
     if {"nx", "ny"} <= set(table.columns):
         size = np.hypot(table.columns["nx"], table.columns["ny"])
         if (size < 0.5).any():

@@ -65,10 +65,12 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
 
 @pytest.mark.thin(4)
 @FULL
+@pytest.mark.parametrize("buffered", [True, False])
 @pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["--version"], ["laws"]])
-def test_a_full_standard_output_is_told(call: list[str]) -> None:
+def test_a_full_standard_output_is_told(call: list[str], buffered: bool) -> None:
+    environment = {**os.environ, "PYTHONUNBUFFERED": "" if buffered else "1"}
     with Path("/dev/full").open("wb") as full:
-        done = run(*call, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+        done = run(*call, capture_output=False, stdout=full, stderr=subprocess.PIPE, env=environment)
     assert done.returncode == 3
     assert done.stderr.count(b"\n") == 1
     assert b"No space left" in done.stderr
@@ -104,6 +106,12 @@ def test_closed_streams() -> None:
 )
 def test_nothing_that_a_terminal_obeys(text: str, shown: str) -> None:
     assert escaped(text) == shown
+
+
+def test_what_a_call_says_reaches_the_terminal_escaped() -> None:
+    done = run("check", "none", "--\x1b[31mred")
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.endswith(b"error: unrecognized arguments: --\\x1b[31mred\n")
 
 
 def test_json_stays_json_where_it_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -353,11 +353,13 @@ def paper() -> list[PaperRow]:
         bar.said("3.1", "dead centres at θ = θ₃, θ₃ + π", "not so", "[misprint](#what-the-papers-misprint)"),
         two.said("3.1", "θ the cam rotation angle", "relative angle", "[misprint](#what-the-papers-misprint)"),
         bar.said("3.1", "no such dwell in a classical four-bar", "none", "nothing to compare: no figure is given"),
+        # needs: sweep
         Section("sweep-four-bar", "[sweep](sweep.md)").said(
             "section 4",
             "the shaft's place changes motion and dwell",
             "searched",
             "[long-dwell](gallery.md#linkages) rests longer",
+            needs="sweep",
         ),
         beyond.said("3.2, section 4", "slider-crank, and more links, alike", "two recipes", "the paper shows none"),
         at("coupler-curve", "Figures 8 to 11", "figures-8-to-11-four-bars").zero(

@@ -69,7 +69,7 @@ def sizes(breadth, unit):
 
 def shaft(x):
     """The shaft on the contour, or as good as on it."""
-    cam = f"kind: support\nfourier: {{mean: 25, cos: {{3: 1}}}}\npivot: [{x!r}, 0]"
+    cam = f"kind: support\nfourier: {{mean: 25, cos: {{3: 1}}}}\nshaft: [{x!r}, 0]"
     asked = recipe(cam, files=f"{FORMS}, {SPLINE}", thickness=10)
     oracle = fourier(25, {3: 1}, {}, pivot=(x, 0.0))
     what = f"shaft {x - 26.0:.2g} mm outside the contour" if x != 26.0 else "shaft on the contour"

@@ -190,7 +190,7 @@ def test_same_bytes_in_any_process_and_time_zone(tmp_path):
         folder = tmp_path / str(i)
         folder.mkdir()
         environment = {**os.environ, "TZ": zone, "PYTHONHASHSEED": str(i), "LC_ALL": "C"}
-        command = [sys.executable, "-c", WRITE_ALL, str(folder), str(TESTS), str(TESTS / "files")]
+        command = [sys.executable, "-c", WRITE_ALL, str(folder), str(TESTS), str(TESTS / "formats")]
         subprocess.run(command, check=True, env=environment)
         written.append({path.name: path.read_bytes() for path in folder.iterdir()})
     assert len(written[0]) == 11

@@ -388,7 +388,7 @@ def test_export_and_verify_by_the_command(tmp_path, capsys):
     told = capsys.readouterr()
     assert code == 0, told
     files = sorted((tmp_path / "out" / "cam").glob("*.svg"))
-    assert [file.name for file in files] == ["cam.svg", "cam-spline.svg"]
+    assert [file.name for file in files] == ["cam-spline.svg", "cam.svg"]
     assert main(["verify", str(recipe), *map(str, files)]) == 0
     assert main(["verify", str(recipe), str(recipe)]) == 2
     assert "none of .dxf, .svg, .stl" in capsys.readouterr().err

@@ -265,10 +265,13 @@ def test_the_finest_table_can_be_read_back(tmp_path) -> None:
 def test_table_of_any_origin_is_verified(tmp_path, capsys) -> None:
     path, table, _ = made(tmp_path, FLAT % (0.001, GRINDING % ""))
     assert main(["verify", str(path), str(table)]) == 0
-    other = tmp_path / "motion.csv"
-    other.write_text("shaft_deg,lift_mm\n0,1\n")
+    other = tmp_path / "other.csv"
+    other.write_text("c_deg,y_mm\n0,1\n")
     assert main(["verify", str(path), str(other)]) == 1
-    assert "its columns are" in capsys.readouterr().out
+    assert "its columns are c_deg, y_mm" in capsys.readouterr().out
+    other.write_text("shaft_deg,lift_mm\n0,1\n")  # no grinder's: places of a cam that was measured
+    assert main(["verify", str(path), str(other)]) == 2
+    assert "points: 1, and at least 36 are needed, all round the cam" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -61,12 +61,13 @@ class PaperRow(Row):
     """One figure, table, equation or claim of a paper; `source` is the item, `quantity` what it says.
 
     `recipe` and `place` in the docs are shown as they are written. Without a number of ours `why` says what stands for
-    it, or why there is none.
+    it, or why there is none. `needs` is the capability without which the row is not there.
     """
 
     recipe: str = "-"
     place: str = "-"
     why: tuple[str, str] = ("", "")
+    needs: str = ""
 
     @property
     def key(self):
@@ -86,6 +87,9 @@ class PaperRow(Row):
     def holds(self):
         return bool(self.why[0]) or super().holds
 
+    def line(self):
+        return super().line() + (f" <!-- needs: {self.needs} -->" if self.needs else "")
+
 
 @dataclass(frozen=True)
 class Section:
@@ -103,15 +107,16 @@ class Section:
         """Return a row of what an equation leaves, 0."""
         return self.number(source, says, measured, within, published=("0", 0.0), form=".1e")
 
-    def said(self, source, says, ours, why, *, published="text"):
+    def said(self, source, says, ours, why, *, published="text", needs=""):
         """Return a row without a number: what stands for it, and why."""
-        return PaperRow(says, source, published, None, 0.0, 0.0, ".7g", self.recipe, self.place, (ours, why))
+        return PaperRow(says, source, published, None, 0.0, 0.0, ".7g", self.recipe, self.place, (ours, why), needs)
 
 
 def cells(page: Path, mark: str) -> list[list[str]]:
-    """Rows of a table of a page, as lists of cells."""
+    """Rows of a table of a page, as lists of cells, without the marks of what they need."""
     block = page.read_text(encoding="utf-8").split(f"<!-- {mark} -->\n")[1].split("<!-- end -->")[0]
-    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in block.splitlines()[2:]]
+    lines = [line.partition(" <!-- needs: ")[0] for line in block.splitlines()[2:]]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
 
 
 def write(page: Path, mark: str, lines: list[str]) -> None:

@@ -116,7 +116,7 @@ def file_table(workshop):
         linkage = made.report["linkage"]
         file = linkage["files"][0]
         size = 1.0 if linkage["error"]["unit"] == "deg" else made.recipe.mm
-        plays = [file[f"play_{way}"] for way in ("across", "along")]
+        plays = [file[f"backlash_{way}"] for way in ("across", "along")]
         scale = 1e3 * made.recipe.mm
         dwells = {
             one["from"] == "intended": f"{one['length_deg']:.2f}"

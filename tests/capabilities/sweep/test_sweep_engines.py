@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
     from distributed import LocalCluster
 
+HELPERS = f"{TESTS}{os.pathsep}{TESTS / 'capabilities' / 'sweep'}"  # where a run of its own finds this file
+
 RUN = """\
 import sys
 from pathlib import Path
@@ -279,7 +281,7 @@ def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
 def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
     script = tmp_path / "start.py"
     script.write_text(STARTING)
-    environment = {**os.environ, "PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'sweep'}"}
+    environment = {**os.environ, "PYTHONPATH": HELPERS}
     with subprocess.Popen(
         [sys.executable, str(script)],
         env=environment,
@@ -356,7 +358,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     out = tmp_path / "out"
     script = tmp_path / "run.py"
     script.write_text(RUN)
-    environment = {**os.environ, "PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'sweep'}"}
+    environment = {**os.environ, "PYTHONPATH": HELPERS}
     # killed once so many chunks are there, and after them at some moments of what follows
     moments = [(1, 0.0), (5, 0.004), (9, 0.013), *((GRID.chunks, delay) for delay in (0.01, 0.7, 1.1, 1.5))]
     for run, (chunks, delay) in enumerate(moments):
@@ -388,7 +390,7 @@ def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
     script.write_text(RUN)
     told = tmp_path / "calls"
     told.mkdir()
-    environment = {**os.environ, "PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'sweep'}"}
+    environment = {**os.environ, "PYTHONPATH": HELPERS}
     command = [sys.executable, str(script), f"calls={told}; seconds=0.2;", str(tmp_path / "out"), "2"]
     # workers hold the pipe open: it ends with the last of them
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
@@ -405,7 +407,7 @@ def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
 def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)
-    environment = {**os.environ, "PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'sweep'}"}
+    environment = {**os.environ, "PYTHONPATH": HELPERS}
     out = tmp_path / "out"
     command = [sys.executable, str(script), "seconds=0.01;", str(out), "1"]
     runs = [subprocess.Popen(command, env=environment) for _ in range(2)]
