@@ -177,14 +177,15 @@ def budgeted(rng: Random, number: int) -> Attack:
     tolerances = ", ".join(f"{word}: {rng.choice(sizes)}" for word in dict.fromkeys(words))
     if rng.random() < 0.3:
         tolerances = tolerances.replace("0.01", "free", 1)
-    ways = ["zero: 40", "zero: none", "sum: rss", "sum: rss", "play: 0.1", "guide: 80", "cost: {profile: 2, angle: 1}"]
+    ways = ["zero: 40", "zero: none", "sum: rss", "sum: rss", "play: 0.1", "guide: 80", "exponent: 2"]
+    ways += ["cost: {profile: 2, angle: 1}", "cost: {profile: 2, angle: 1}, exponent: 3"]
     more = rng.sample(ways, rng.choice([0, 0, 1, 1, 2]))
     options = "".join(f", {option}" for option in [*more, f"runs: {rng.choice([0, 50, 500])}"])
     permitted = rng.choice(["0.05", "0.5", "1e-9", "100"])
     text = cam.text("dxf", f"budget: {{permitted: {permitted}, tolerances: {{{tolerances}}}{options}}}\n")
     if rng.random() < 0.2:
         text = text.replace("bore: 8}", "bore: {diameter: 8, fit: H7}}").replace("budget: {", "budget: {fit: g6, ")
-    call = ("budget", "cam.yaml", *rng.choice([(), (), ("--json",), ("cam.yaml",)]))
+    call = ("budget", "cam.yaml", *rng.choice([(), (), ("--json",), ("cam.yaml",), ("a-1.dxf", "a-2.dxf")]))
     return Attack(f"budget {number}", call, {"cam.yaml": text.encode()}, (0, 1, 2))
 
 

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `budget`")
-    text = "a drawing or a solid of the cam, on whose contour parts are simulated in place of the exact one"
-    parser.add_argument("file", nargs="?", type=name_of, metavar="FILE", help=text)
+    text = "drawing or solid of the cam, or one of each disc: parts are simulated on its contour"
+    parser.add_argument("files", nargs="*", type=name_of, metavar="FILE", help=text)
     parser.add_argument("--json", action="store_true", help="all figures, for machines")
 
 
@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     try:
         recipe = load(arguments.recipe)
-        found = budget(recipe, arguments.file)
+        found = budget(recipe, *arguments.files)
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG

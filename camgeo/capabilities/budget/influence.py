@@ -1,14 +1,14 @@
 """What each dimension of a budget does to the follower, or to a linkage's output, over the shaft angle.
 
-The metal of the cam stays as it is: no dimension makes a new design. A contribution is what one made size does, alone
-of all: two rollers of one drawing are two of them. Where a machine is set at one angle, all are counted from there; the
-profile is another one at each angle, so that what it does at that angle stands beside what it does elsewhere.
+The metal of the cam stays as it is: no dimension makes a new design. A contribution is what one made size does alone:
+two rollers made to one drawing are two of them. Where the machine is set at one angle, errors count from there. The
+profile's error is another one at each angle, so that both that angle's and the one at the setting contribute.
 """
 
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
     from kin.linkage.influence import FrameBearing
     from kin.numeric.arrays import Array, Complexes
 
-Rows: TypeAlias = "list[Array]"  # (contacts, components, n) of each contribution
 COMPONENTS = (1.0, 1j)  # of a displacement in any direction
 
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """What one size does: `rows` (m, k, n) at m contacts, in mm or rad of the motion per mm or rad of the size.
+    """Influence of one made size: `rows` (m, k, n) at m contacts, in mm or rad of the motion per mm or rad of the size.
 
-    `tolerance` is plus and minus, or with k = 2 the radius about the two components; None where it is to be found.
-    `constant` is that of the profile where the machine is set, which is the same at all angles.
+    With k = 1 the tolerance is plus and minus, with k = 2 it is the radius of a circle about the two components; it is
+    None where it is to be found. `constant` marks the profile's error where the machine is set, which is one at all
+    angles.
     """
 
     name: str
@@ -47,9 +47,9 @@ class Contribution:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A figure of the motion that errors change: the position by one contact, their middle, or the play between them.
+    """A figure of the motion: the position by one contact, the middle of two positions, or the play between them.
 
-    `weights` (c, n) are what each contribution does to it, at most, per mm or rad of its tolerance.
+    `weights` (c, n) are its greatest changes by each contribution, in mm or rad per mm or rad of the tolerance.
     """
 
     name: str
@@ -60,7 +60,8 @@ class Output:
 class Influence:
     """All contributions at shaft angles (n,), rad; `contacts` names what the follower, or the frame, bears on.
 
-    `upper` is the index of the contact that bounds the position from above, of two; `play` the nominal one (n,).
+    Of two contacts `upper` is the index of the one that bounds the position from above, and `play` (n,) the nominal
+    play between them, mm or rad.
     """
 
     shaft: Array
@@ -79,7 +80,7 @@ class Influence:
         return tuple(Output(name, self._weights(itemgetter(i))) for i, name in enumerate(self.contacts))
 
     def middle(self) -> Output | None:
-        """The middle of what two contacts leave, None of a follower with one."""
+        """The middle between two contacts, None of a follower with one."""
         return None if self.upper is None else Output("middle", self._weights(lambda rows: rows.mean(axis=0)))
 
     def play_between(self) -> Output | None:
@@ -89,24 +90,34 @@ class Influence:
             return None
         return Output("play", self._weights(lambda rows: rows[upper] - rows[1 - upper]))
 
-    def _weights(self, chosen: Callable[[Array], Array]) -> Array:
-        rows = (chosen(contribution.rows) for contribution in self.contributions)
+    def _weights(self, figure: Callable[[Array], Array]) -> Array:
+        rows = (figure(contribution.rows) for contribution in self.contributions)
         return np.stack([np.sqrt((row**2).sum(axis=0)) for row in rows])
 
 
+class Dimensions(NamedTuple):
+    """Influences of a cam by the words of its dimensions: `rows` gives the (m, k, n) of each made size of a word.
+
+    The other fields are those of `Influence`.
+    """
+
+    rows: Callable[[str], list[Array]]
+    contacts: tuple[str, ...]
+    upper: int | None
+    play: Array | None
+
+
 def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Influence:
-    """What each dimension of a budget does at shaft angles (n,).
+    """Influences of the dimensions of a budget at shaft angles (n,).
 
     Raises PlaceError of a linkage that does not turn.
     """
     zero = budget.zero
     places = shaft if zero is None else np.append(shaft, zero)
-    rows_of, contacts, upper, play = (
-        _of_linkage(design, places) if recipe.linkage else _of_follower(design, places, budget.guide or 0.0)
-    )
+    cam = _of_linkage(design, places) if recipe.linkage else _of_follower(design, places, budget.guide or 0.0)
     contributions = []
     for name, tolerance in budget.tolerances:
-        for rows in rows_of(name):
+        for rows in cam.rows(name):
             at_zero = rows[:, :, -1:]
             if zero is None:
                 contributions.append(Contribution(name, tolerance, rows))
@@ -116,28 +127,29 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
                 contributions.append(Contribution(name, tolerance, at_all, constant=True))
             else:
                 contributions.append(Contribution(name, tolerance, rows[:, :, :-1] - at_zero))
-    nominal = None if play is None else play[: len(shaft)]
-    return Influence(shaft, tuple(contributions), contacts, upper, nominal)
+    play = None if cam.play is None else cam.play[: len(shaft)]
+    return Influence(shaft, tuple(contributions), cam.contacts, cam.upper, play)
 
 
 def velocities(influence: Influence, waves: int) -> Influence:
-    """The same of the velocity by the shaft angle, from even angles over a whole turn.
+    """Influences on the velocity by the shaft angle, from those on the motion at even angles over a whole turn.
 
     A size that is off by t changes the velocity by t dw/dphi. The profile's error t sin(n phi + any) of n `waves`
     changes it by at most t hypot(dw/dphi, n w): its two components.
     """
     step = float(influence.shaft[1] - influence.shaft[0])
     contributions = []
-    for one in influence.contributions:
-        slope = (np.roll(one.rows, -1, axis=2) - np.roll(one.rows, 1, axis=2)) / (2.0 * step)
-        wavy = one.name == PROFILE and not one.constant
-        rows = np.concatenate([slope, waves * one.rows], axis=1) if wavy else slope
-        contributions.append(replace(one, rows=rows))
+    for contribution in influence.contributions:
+        rows = contribution.rows
+        slope = (np.roll(rows, -1, axis=2) - np.roll(rows, 1, axis=2)) / (2.0 * step)
+        wavy = contribution.name == PROFILE and not contribution.constant
+        rows = np.concatenate([slope, waves * rows], axis=1) if wavy else slope
+        contributions.append(replace(contribution, rows=rows))
     return replace(influence, contributions=tuple(contributions), play=None)
 
 
 def even(count: int) -> Array:
-    """So many even shaft angles of one turn, from 0, rad."""
+    """Even shaft angles (count,) of one turn, from 0, rad."""
     angles: Array = np.linspace(0.0, TURN, count, endpoint=False)
     return angles
 
@@ -147,42 +159,58 @@ def even(count: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """The contacts of a follower and where they bear at shaft angles (n,); `guide` as `Budget.guide`."""
+    """The contacts of a follower and where they bear at shaft angles (n,); `guide` as `Budget.guide`.
+
+    Its methods give the rows (m, k, n) of each made size, from the change that the size makes to the position by a
+    contact.
+    """
 
     contacts: tuple[Contact[Guide, Touch], ...]
     bearings: tuple[Bearing, ...]
-    shaft: Array
     guide: float
     discs: int
 
     @property
     def axis(self) -> Complexes:
-        """The x axis of the frame: along the travel of the first contact, or from the shaft to the pivot."""
+        """The x axis of the frame (n,): along the travel of the first contact, or from the shaft to the pivot."""
         return self.bearings[0].axis
 
-    def all(self, change: Callable[[Bearing], Array]) -> Rows:
-        """One size that every contact feels."""
+    @property
+    def middle(self) -> Complexes:
+        """Middle of a stem's guide, in the cam's axes (n,)."""
+        offset = (np.conj(self.axis) * self.bearings[0].anchor).imag
+        return self.axis * (self.guide + 1j * offset)
+
+    def shared(self, change: Callable[[Bearing], Array]) -> list[Array]:
+        """One size that acts at every contact."""
         return [np.stack([change(bearing)[None] for bearing in self.bearings])]
 
-    def each(self, change: Callable[[Bearing], Array]) -> Rows:
-        """A size of each contact."""
-        return [self._alone(i, change(bearing)[None]) for i, bearing in enumerate(self.bearings)]
+    def each(self, change: Callable[[Bearing], Array]) -> list[Array]:
+        """A size of its own for each contact."""
+        return [rows for i in range(len(self.bearings)) for rows in self.only(i, change)]
 
-    def only(self, index: int, change: Callable[[Bearing], Array]) -> Rows:
-        """A size of one contact."""
+    def only(self, index: int, change: Callable[[Bearing], Array]) -> list[Array]:
+        """A size that acts at one contact."""
         return [self._alone(index, change(self.bearings[index])[None])]
 
-    def first(self, change: Callable[[Bearing], Array]) -> Rows:
+    def first(self, change: Callable[[Bearing], Array]) -> list[Array]:
         """A size of the first touch, which on the flanks of a groove is the second one too."""
-        return self.only(0, change) if self.discs > 1 else self.all(change)
+        return self.only(0, change) if self.discs > 1 else self.shared(change)
 
-    def any(self, change: Callable[[Bearing, complex], Array]) -> Rows:
-        """A displacement in any direction that every contact feels."""
+    def shifted(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
+        """A displacement in any direction that acts at every contact."""
         return [np.stack([self._components(bearing, change) for bearing in self.bearings])]
 
-    def any_each(self, change: Callable[[Bearing, complex], Array]) -> Rows:
-        """A displacement in any direction of each contact."""
+    def bored(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
+        """A displacement in any direction of each disc."""
+        if self.discs == 1:
+            return self.shifted(change)
         return [self._alone(i, self._components(bearing, change)) for i, bearing in enumerate(self.bearings)]
+
+    def faced(self, change: Callable[[Bearing], Array]) -> list[Array]:
+        """A size of each face: two on one arm are two, two of one frame one."""
+        on_one_arm = len(self.contacts) > 1 and self.contacts[0].apart != 0.0
+        return (self.each if on_one_arm else self.shared)(change)
 
     def _components(self, bearing: Bearing, change: Callable[[Bearing, complex], Array]) -> Array:
         return np.stack([change(bearing, component) for component in COMPONENTS])
@@ -193,57 +221,47 @@ class Held:
         return whole
 
 
-def _of_follower(
-    design: Design, shaft: Array, guide: float
-) -> tuple[Callable[[str], Rows], tuple[str, ...], int | None, Array | None]:
+def _of_follower(design: Design, shaft: Array, guide: float) -> Dimensions:
     from kin.follower.influence import bearing
 
-    contacts = design.follower.contacts
+    follower = design.follower
     position = design.motion.travel(shaft, 1)
     sides = {surface.name: surface.side for surface in design.exact.surfaces}
-    bearings = tuple(bearing(contact, sides[contact.surface], shaft, position) for contact in contacts)
-    held = Held(contacts, bearings, shaft, guide, design.follower.arrangement.discs)
-    names = tuple(contact.surface or f"contact {i}" for i, contact in enumerate(contacts, 1))
-    if len(contacts) == 1:
-        return lambda name: FOLLOWER[name](held), ("follower",), None, None
-    (upper,) = (i for i, one in enumerate(bearings) if one.upper)
+    bearings = tuple(bearing(contact, sides[contact.surface], shaft, position) for contact in follower.contacts)
+    held = Held(follower.contacts, bearings, guide, follower.arrangement.discs)
+    if len(bearings) == 1:
+        return Dimensions(lambda name: FOLLOWER[name](held), ("follower",), None, None)
+    names = tuple(contact.surface or f"contact {i}" for i, contact in enumerate(follower.contacts, 1))
+    (upper,) = (i for i, bearing in enumerate(bearings) if bearing.upper)
     # a gauge as wide as its flank stands off the other flank by what it is wider
-    wider = contacts[upper].touch.radius - design.follower.running(contacts[upper]).radius
+    wider = follower.contacts[upper].touch.radius - follower.running(follower.contacts[upper]).radius
     play = -wider * bearings[upper].grown
-    return lambda name: FOLLOWER[name](held), names, upper, play
-
-
-def _mounted(held: Held) -> Complexes:
-    """Middle of a stem's guide, in the cam's axes (n,)."""
-    offset = (np.conj(held.axis) * held.bearings[0].anchor).imag
-    return held.axis * (held.guide + 1j * offset)
+    if design.exact.preload is not None:
+        overlaps = zip(bearings, design.exact.preload.overlaps, strict=True)
+        play = play - np.sum([overlap * np.abs(bearing.grown) for bearing, overlap in overlaps], axis=0)
+    return Dimensions(lambda name: FOLLOWER[name](held), names, upper, play)
 
 
 def _datum(bearing: Bearing) -> Array:
-    """Change where the contact's own position counts from farther out, or the arm stands at a larger angle."""
+    """Change of the position per mm or rad of a greater `datum` of the contact (`Contact`)."""
     return np.full(bearing.gain.shape, -float(bearing.sense))
 
 
-def _bored(held: Held) -> Rows:
-    """Each disc has a bore of its own."""
-    return held.any_each(lambda b, v: b.metal(v)) if held.discs > 1 else held.any(lambda b, v: b.metal(v))
-
-
-FOLLOWER: Mapping[str, Callable[[Held], Rows]] = {
+FOLLOWER: Mapping[str, Callable[[Held], list[Array]]] = {
     PROFILE: lambda held: held.each(lambda b: b.grown),
-    "angle": lambda held: held.all(lambda b: b.metal_turned()),
-    BORE: _bored,
-    "shaft": lambda held: held.any(lambda b, w: b.metal(w * held.axis)),
+    "angle": lambda held: held.shared(lambda b: b.metal_turned()),
+    BORE: lambda held: held.bored(lambda b, v: b.metal(v)),
+    "shaft": lambda held: held.shifted(lambda b, w: b.metal(w * held.axis)),
     "index": lambda held: held.only(1, lambda b: b.metal_turned()),
-    "guide": lambda held: held.all(lambda b: b.touch_turned(_mounted(held))),
-    "face": lambda held: (held.each if _on_one_arm(held) else held.all)(lambda b: b.touch_turned(b.anchor)),
-    "pivot": lambda held: held.any(lambda b, v: b.touch(v * held.axis)),
+    "guide": lambda held: held.shared(lambda b: b.touch_turned(held.middle)),
+    "face": lambda held: held.faced(lambda b: b.touch_turned(b.anchor)),
+    "pivot": lambda held: held.shifted(lambda b, v: b.touch(v * held.axis)),
     "breadth": lambda held: held.only(1, _datum),
     "follower.radius": lambda held: held.first(lambda b: b.grown),
-    "follower.offset": lambda held: held.all(lambda b: b.touch(1j * held.axis)),
+    "follower.offset": lambda held: held.shared(lambda b: b.touch(1j * held.axis)),
     "follower.tilt": lambda held: held.first(lambda b: b.touch_turned(b.anchor)),
     "follower.arm.length": lambda held: held.first(lambda b: b.touch(b.arm)),
-    "follower.arm.pivot": lambda held: held.all(lambda b: b.touch(held.axis)),
+    "follower.arm.pivot": lambda held: held.shared(lambda b: b.touch(held.axis)),
     "follower.arm.face": lambda held: held.first(lambda b: b.grown),
     "conjugate.radius": lambda held: held.only(1, lambda b: b.grown),
     "conjugate.distance": lambda held: held.only(1, _datum),
@@ -253,51 +271,70 @@ FOLLOWER: Mapping[str, Callable[[Held], Rows]] = {
     "arm": lambda held: held.each(lambda b: b.touch(b.arm)),
     "spread": lambda held: held.each(lambda b: b.touch_turned(b.anchor)),
 }
-"""What a dimension does to each contact of a follower, by its word."""
-
-
-def _on_one_arm(held: Held) -> bool:
-    """Whether two contacts share a pivot on one disc, each with a face of its own."""
-    return len(held.contacts) > 1 and held.contacts[0].apart != 0.0
+"""Rows of each made size of a follower's dimension, by its word."""
 
 
 # --- a linkage --------------------------------------------------------------------------------------------------------
 
+FRAME_CONTACTS = ("+y and -x", "-y and +x")  # faces of a square frame in its axes; face 1 is at +y, face 2 at -x
 
-def _of_linkage(
-    design: Design, shaft: Array
-) -> tuple[Callable[[str], Rows], tuple[str, ...], int | None, Array | None]:
+
+def _of_linkage(design: Design, shaft: Array) -> Dimensions:
+    """Influences on the output of a linkage, whose frame bears with two faces, or with the two that are opposite.
+
+    Either pair of opposite faces leaves play by itself. As errors are added by their size, those of the two contacts
+    that are named tell what both pairs leave together.
+    """
     from kin.linkage.influence import frame_bearing
 
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
-    bearing = frame_bearing(mechanism, mechanism.relative(shaft))
-    return (
-        lambda name: [row if row.ndim == 3 else row[None, None] for row in FRAME[name](bearing)],
-        ("output",),
-        None,
-        None,
-    )
+    frame = frame_bearing(mechanism, mechanism.relative(shaft))
+    overlap = 0.0 if design.exact.preload is None else design.exact.preload.overlaps[0]
+    play = -2.0 * overlap * (np.abs(frame.output(along=1.0)) + np.abs(frame.output(across=1.0)))
+    return Dimensions(lambda name: FRAME[name](frame), FRAME_CONTACTS, 0, play)
+
+
+def _both(row: Array) -> Array:
+    """One size (n,), or (k, n) by component, that does the same to either contact: (2, k, n)."""
+    return np.stack([np.atleast_2d(row)] * 2)
 
 
 def _in_any(change: Callable[[complex], Array]) -> Array:
-    return np.stack([change(component) for component in COMPONENTS])[None]
+    return _both(np.stack([change(component) for component in COMPONENTS]))
 
 
-FRAME: Mapping[str, Callable[[FrameBearing], Rows]] = {
-    PROFILE: lambda frame: [frame.output(across=1.0), frame.output(along=-1.0)],
-    "angle": lambda frame: [frame.metal_turned()],
+def _at_each(first: Array, second: Array) -> Array:
+    """One size (n,) that does something to the first contact and something to the second: (2, 1, n)."""
+    return np.stack([first, second])[:, None]
+
+
+def _faces(frame: FrameBearing) -> list[Array]:
+    """The profile under each of four faces."""
+    y, x = frame.output(across=1.0), frame.output(along=1.0)
+    return [_at_each(y, 0.0 * y), _at_each(-x, 0.0 * x), _at_each(0.0 * y, -y), _at_each(0.0 * x, x)]
+
+
+def _breadths(frame: FrameBearing) -> list[Array]:
+    """Between the x faces, of which +x holds the joint, and between the y faces, whose middle holds it."""
+    x, half = frame.output(along=1.0), frame.output(across=0.5)
+    return [_at_each(x, 0.0 * x), _at_each(-half, half)]
+
+
+FRAME: Mapping[str, Callable[[FrameBearing], list[Array]]] = {
+    PROFILE: _faces,
+    "angle": lambda frame: [_both(frame.metal_turned())],
     BORE: lambda frame: [_in_any(frame.metal)],
     "shaft": lambda frame: [_in_any(frame.shaft)],
-    "face": lambda frame: [frame.squareness()],
+    "face": lambda frame: [_both(frame.squareness())],
     "pivot": lambda frame: [_in_any(lambda v: frame.output(pivot=v))],
-    "breadth": lambda frame: [frame.output(along=1.0), frame.output(across=-0.5)],
-    "linkage.ground": lambda frame: [frame.output(pivot=1.0)],
-    "linkage.coupler": lambda frame: [frame.output(along=1.0)],
-    "linkage.rocker": lambda frame: [frame.output(link=1.0)],
-    "linkage.offset": lambda frame: [frame.output(link=1.0)],
-    "linkage.joint_offset": lambda frame: [frame.output(across=1.0)],
+    "breadth": _breadths,
+    "linkage.ground": lambda frame: [_both(frame.output(pivot=1.0))],
+    "linkage.coupler": lambda frame: [_both(frame.output(along=1.0))],
+    "linkage.rocker": lambda frame: [_both(frame.output(link=1.0))],
+    "linkage.offset": lambda frame: [_both(frame.output(link=1.0))],
+    "linkage.joint_offset": lambda frame: [_both(frame.output(across=1.0))],
     "joints": lambda frame: [_in_any(lambda v: frame.output(joint=v)), _in_any(lambda v: frame.output(pivot=v))],
 }
-"""What a dimension does to the output of a linkage, by its word."""
+"""Rows (2, k, n) of each made size of a linkage's dimension, by its word."""

@@ -1,14 +1,17 @@
 """The widest tolerances that stay within a permitted error at every angle.
 
 Of one free dimension what the others leave: (T - rest)/w in the worst case, sqrt(T^2 - rest^2)/w as root of the sum of
-squares. Of several those of least cost, sum c_i/t_i. With t_i = exp(x_i) cost and constraints are sums of exponentials
-of linear functions, so that the problem is convex (a geometric programme) and its optimum the only one:
+squares. Of several those of least cost, sum c_i/t_i^k. With t_i = exp(x_i) cost and constraints are sums of
+exponentials of linear functions, so that the problem is convex (a geometric programme) and its optimum the only one:
 
-    least sum c_i/t_i   with   sum_i w_ij^q t_i^q <= T_j^q  at every angle j,  q = 1 worst case, 2 squares.
+    least sum c_i/t_i^k   with   sum_i w_ij^q t_i^q <= T_j^q  at every angle j,  q = 1 worst case, 2 squares.
 
 Its dual has a multiplier of each angle, and of each angle that does not bind it is 0 (Boyd, Vandenberghe, Convex
-Optimization, 2004, 4.5 and 5.5). One angle alone gives t_i = T sqrt(c_i/w_i)/sum sqrt(c_j w_j), or
-T (c_i/w_i^2)^(1/3)/sqrt(sum (c_j w_j)^(2/3)).
+Optimization, 2004, 4.5 and 5.5). With multipliers m_j the tolerances are
+
+    t_i = (k c_i/(q sum_j m_j w_ij^q))^(1/(k + q)),
+
+one angle alone has a closed form: t_i = T sqrt(c_i/w_i)/sum sqrt(c_j w_j) for k = q = 1.
 """
 
 from __future__ import annotations
@@ -26,11 +29,9 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.budget.influence import Influence
     from camgeo.capabilities.budget.sums import Sum
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
-NEAR = (
-    1e-6  # share by which sums are off, below which Newton's steps need no search along them, which rounding would stop
-)
+NEAR = 1e-6  # share by which sums are off, below which rounding would stop a search along Newton's steps
 BROKEN = 1e-11  # share of what is permitted by which a sum may exceed it in the course of the search
 LEAST_STEP = 1e-12  # of Newton's, below which nothing is gained
 MOST_STEPS = 200  # of Newton's method; ten are usual
@@ -69,7 +70,7 @@ class Constraints(NamedTuple):
 def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraints:
     """The constraints of a budget with free dimensions; raises TakenError where the others leave nothing."""
     q = POWERS[sum_]
-    free = tuple(dict.fromkeys(one.name for one in influence.contributions if one.tolerance is None))
+    free = tuple(dict.fromkeys(row.name for row in influence.contributions if row.tolerance is None))
     weights, left = [], []
     for output in influence.outputs():
         spent = by_name(influence, powers(influence, output, sum_))
@@ -79,8 +80,8 @@ def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraint
             name = max(spent, key=lambda name: spent[name][place])
             taken = float(spent[name][place]) ** (1.0 / q)
             raise TakenError(name, taken, float(influence.shaft[place]))
-        of = by_name(influence, output.weights**q)
-        weights.append(np.stack([of[name] for name in free], axis=1))
+        per_tolerance = by_name(influence, output.weights**q)
+        weights.append(np.stack([per_tolerance[name] for name in free], axis=1))
         left.append(rest)
     return Constraints(free, np.concatenate(weights), np.concatenate(left), np.tile(influence.shaft, len(weights)))
 
@@ -98,76 +99,95 @@ def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
     return least
 
 
-def widest(influence: Influence, permitted: float, cost: Mapping[str, float], sum_: Sum) -> Split:
-    """Tolerances of the free dimensions by least cost; raises TakenError as `constraints` does.
+def widest(
+    influence: Influence, permitted: float, cost: Mapping[str, float], sum_: Sum, exponent: float = 1.0
+) -> Split:
+    """Tolerances of the free dimensions of least cost, sum c/t^exponent; raises TakenError as `constraints` does.
 
     A dimension that moves nothing at any angle has an infinite tolerance.
     """
     limits = constraints(influence, permitted, sum_)
-    q = POWERS[sum_]
     weights = limits.weights / limits.left[:, None]
     moves = weights.max(axis=0) > 0.0
     names = [name for name, does in zip(limits.names, moves, strict=True) if does]
-    weights, costs = weights[:, moves], np.array([cost[name] for name in names])
     tolerances = dict.fromkeys(limits.names, math.inf)
     if not names:
         return Split(tolerances, 0.0, ())
-    found, binding = _least_cost(weights, costs, q)
-    tolerances |= dict(zip(names, found.tolist(), strict=True))
+    problem = Problem(weights[:, moves], np.array([cost[name] for name in names]), POWERS[sum_], exponent)
+    least, binding = _least_cost(problem)
+    tolerances |= dict(zip(names, least.tolist(), strict=True))
     angles = sorted({float(limits.at[place]) for place in binding})
-    return Split(tolerances, float((costs / found).sum()), tuple(angles))
+    return Split(tolerances, float(problem.cost(least)), tuple(angles))
 
 
-def _least_cost(weights: Array, costs: Array, q: int) -> tuple[Array, Array]:
-    """Tolerances (f,) of least cost with weights (n, f) @ t^q <= 1, and the indices of the angles that bind.
+class Problem(NamedTuple):
+    """Least sum costs/t^k of tolerances t (f,) with weights (n, f) @ t^q <= 1."""
 
-    Of the few angles that may bind the multipliers are found; the angle that the tolerances then break most joins them,
+    weights: Array
+    costs: Array
+    q: int
+    k: float
+
+    def at(self, angles: Indices) -> Problem:
+        """The problem with the constraints of these angles alone."""
+        return self._replace(weights=self.weights[angles])
+
+    def cost(self, tolerances: Array) -> float:
+        """Cost of tolerances (f,)."""
+        return float((self.costs / tolerances**self.k).sum())
+
+    def cheapest(self, multipliers: Array) -> Array:
+        """Tolerances (f,) that make cost + multipliers @ (weights @ t^q - 1) least."""
+        cheapest: Array = (self.k * self.costs / (self.q * (multipliers @ self.weights))) ** (1.0 / (self.k + self.q))
+        return cheapest
+
+
+def _least_cost(problem: Problem) -> tuple[Array, Indices]:
+    """Tolerances (f,) of least cost, and the indices of the angles that bind.
+
+    Multipliers are sought of the few angles that may bind. The angle that the tolerances then break most joins them,
     until none is broken.
     """
-    some = np.unique(np.append(weights.argmax(axis=0), weights.sum(axis=1).argmax()))
-    multipliers = _scaled(np.ones(len(some)), weights[some], costs, q)
+    weights, q = problem.weights, problem.q
+    active = np.unique(np.append(weights.argmax(axis=0), weights.sum(axis=1).argmax()))
+    multipliers = _scaled(problem.at(active))
     for _ in range(len(weights)):
-        multipliers = _multipliers(multipliers, weights[some], costs, q)
-        tolerances = _cheapest(multipliers, weights[some], costs, q)
+        multipliers = _multipliers(multipliers, problem.at(active))
+        tolerances = problem.at(active).cheapest(multipliers)
         totals = weights @ tolerances**q
         worst = int(totals.argmax())
-        if totals[worst] <= 1.0 + BROKEN or worst in some[multipliers > 0.0]:
+        if totals[worst] <= 1.0 + BROKEN or worst in active[multipliers > 0.0]:
             tolerances = tolerances / max(float(totals[worst]), 1.0) ** (1.0 / q)
-            return tolerances, np.sort(some[multipliers > 0.0])
+            return tolerances, np.sort(active[multipliers > 0.0])
         kept = multipliers > 0.0
-        some, multipliers = np.append(some[kept], worst), np.append(multipliers[kept], 0.0)
+        active, multipliers = np.append(active[kept], worst), np.append(multipliers[kept], 0.0)
     raise ArithmeticError("the widest tolerances were not found")
 
 
-def _cheapest(multipliers: Array, weights: Array, costs: Array, q: int) -> Array:
-    """Tolerances (f,) that make sum c/t + sum multiplier (weights @ t^q - 1) least."""
-    cheapest: Array = (costs / (q * (multipliers @ weights))) ** (1.0 / (q + 1))
-    return cheapest
-
-
-def _scaled(multipliers: Array, weights: Array, costs: Array, q: int) -> Array:
-    """Multipliers (n,) in the same proportion, of which the constraints hold together: their mean is what is left."""
-    shares = multipliers / multipliers.sum()
-    used = float(shares @ (weights @ _cheapest(shares, weights, costs, q) ** q))
-    scaled: Array = shares * used ** ((q + 1) / q)
+def _scaled(problem: Problem) -> Array:
+    """Equal multipliers (n,), as large as makes the mean of the constraints hold."""
+    shares = np.full(len(problem.weights), 1.0 / len(problem.weights))
+    used = float(shares @ (problem.weights @ problem.cheapest(shares) ** problem.q))
+    scaled: Array = shares * used ** ((problem.q + problem.k) / problem.q)
     return scaled
 
 
-def _multipliers(start: Array, weights: Array, costs: Array, q: int) -> Array:
-    """Multipliers (n,) at which the least of `_cheapest` is greatest, none below 0, by Newton's method, projected."""
+def _multipliers(start: Array, problem: Problem) -> Array:
+    """Multipliers (n,), none below 0, at which the least of `cheapest` is greatest, by Newton's method, projected."""
+    weights, q = problem.weights, problem.q
 
     def bound(multipliers: Array) -> float:
-        t = _cheapest(multipliers, weights, costs, q)
-        return float((costs / t).sum() + multipliers @ (weights @ t**q - 1.0))
+        t = problem.cheapest(multipliers)
+        return problem.cost(t) + float(multipliers @ (weights @ t**q - 1.0))
 
     now, moving = start, np.ones(len(start), dtype=bool)
     for _ in range(MOST_STEPS):
-        t = _cheapest(now, weights, costs, q)
+        t = problem.cheapest(now)
         broken = weights @ t**q - 1.0
         off = np.abs(broken[moving]).max()
         if off < BROKEN:
             return now
-        per = q * t**q / ((q + 1) * (now @ weights))
+        per = q * t**q / ((q + problem.k) * (now @ weights))
         bend = (weights[moving] * per) @ weights[moving].T
         step = np.zeros(len(now))
         step[moving] = np.linalg.lstsq(bend, broken[moving], rcond=None)[0]

@@ -6,7 +6,17 @@ import math
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
-from camgeo.capabilities.budget.words import ANGLE, BORE, GUIDE, PROFILE, WORDS, traits, words_of
+from camgeo.capabilities.budget.words import (
+    ANGLE,
+    BORE,
+    CONJUGATE,
+    GUIDE,
+    LINKAGE,
+    PROFILE,
+    WORDS,
+    traits,
+    words_of,
+)
 from camgeo.recipe.din6885 import key_for
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -26,6 +36,7 @@ FREE, NO_ZERO = "free", "none"
 RUNS, MOST_RUNS = 10_000, 1_000_000
 MOST_SEED = 2**63 - 1
 MOST_WAVES = 1000
+MOST_EXPONENT = 10  # of costs; what is known of machining lies between 0.5 and 3
 MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
 SHAPES = (
     "base_radius",
@@ -47,7 +58,8 @@ class Budget:
     """What a recipe says of the errors of a cam: lengths in mm, angles in rad.
 
     `permitted` is the greatest error of the follower or of the linkage's output, mm or rad; `tolerances` are plus and
-    minus by the words of the dimensions, None of one that is free, which is to be found; `cost` weighs the free ones.
+    minus by the words of the dimensions, None of one that is free, which is to be found. `cost` c weighs the free ones,
+    c/tolerance^`exponent`.
     `zero` is the shaft angle, rad, at which the machine is set, None without one. `play` is the greatest permitted of a
     follower that is held from both sides. `guide` is the distance of the middle of a stem's guide from the shaft's
     foot on its line. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must
@@ -58,6 +70,7 @@ class Budget:
     permitted: float
     tolerances: tuple[tuple[str, float | None], ...]
     cost: tuple[tuple[str, float], ...] = ()
+    exponent: float = 1.0
     zero: float | None = None
     play: float | None = None
     guide: float | None = None
@@ -197,10 +210,11 @@ BUDGET = Table(
         Field(
             "tolerances", Kind.OWN, "what each dimension may be off, plus and minus", required=True, form=_TOLERANCES
         ),
-        Field("cost", Kind.OWN, "cost c of each free dimension, c over its tolerance", default="none", form=_COST),
+        Field("cost", Kind.OWN, "cost c of each free dimension, c/tolerance^exponent", default="none", form=_COST),
+        Field("exponent", Kind.NUMBER, "of the tolerance in the costs", default="1", above=0, at_most=MOST_EXPONENT),
         Field("zero", Kind.OWN, "where the machine is set: its error there is subtracted", default="none", form=_ZERO),
         Field("sum", Kind.CHOICE, "the sum that must stay within", default="worst", choices=("worst", "rss")),
-        Field("play", Kind.BACKLASH, "greatest play of a follower held from both sides", above=0, at_most=MOST),
+        Field("play", Kind.MOTION, "greatest play of a follower held from both sides", above=0, at_most=MOST),
         Field(GUIDE, Kind.LENGTH, "from the shaft to the middle of the stem's guide, along it", above=0, at_most=MOST),
         Field("fit", Kind.CHOICE, "tolerance class of the shaft in the bore", choices=tuple(SHAFTS)),
         Field("key", Kind.TABLE, "tolerance classes of the keyways", default="the key has no play", table=_KEY),
@@ -256,6 +270,8 @@ def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
             reader.fault_at(where, "its tolerance is stated", None, f"give tolerances.{name}: free, or no cost")
         elif name not in tolerances:
             tolerances[name] = None
+    if "exponent" in budget and "cost" not in budget:
+        reader.fault_at("budget.exponent", "without a cost it has no use", None, "leave it out, or give cost")
     without = [name for name in free if name not in budget.get("cost", {})]
     if without and (len(free) > 1 or "cost" in budget):
         where = join("budget.tolerances", without[0])
@@ -272,15 +288,10 @@ def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
 
 
 def _check_play(values: Values, reader: Reader) -> None:
-    if "play" not in values["budget"]:
-        return
-    cam = values.get("cam", {})
-    two = "swings" in reader.offers or "breadth" in words_of(_traits(reader)) or "conjugate" in cam
-    if "linkage" in reader.marks or not (two or isinstance(cam.get("track"), dict)):
-        what, remedy = "the follower is not held from both sides", "leave it out"
-        if "linkage" in reader.marks:
-            what = "play in a square frame is not found for a linkage"
-        reader.fault_at("budget.play", what, None, remedy)
+    cam, held = values.get("cam", {}), {"swings", "breadth", LINKAGE, CONJUGATE}
+    held_twice = held & {*_traits(reader), *words_of(_traits(reader))} or isinstance(cam.get("track"), dict)
+    if "play" in values["budget"] and not held_twice:
+        reader.fault_at("budget.play", "the follower is not held from both sides", None, "leave it out")
 
 
 def _check_made(values: Values, reader: Reader) -> None:
@@ -340,7 +351,7 @@ def build_budget(values: Values) -> Budget | None:
         tolerances |= {} if fit.angle is None else {ANGLE: fit.angle}
     stated = {name: tolerances[name] for name in WORDS if name in tolerances}
     zero = budget.get("zero", NO_ZERO)
-    optional = {name: budget[name] for name in ("play", GUIDE, "waves", "runs", "seed") if name in budget}
+    optional = {name: budget[name] for name in ("exponent", "play", GUIDE, "waves", "runs", "seed") if name in budget}
     return Budget(
         permitted=budget["permitted"],
         tolerances=tuple(stated.items()),

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def budget(recipe: Recipe, file: str | PathLike[str] | None = None) -> dict[str, Any]:
+def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     """The budget of a recipe as plain data, in the recipe's unit and degrees; docs/budget.md names its keys.
 
     Parts are made by chance within its tolerances, `runs` of them, and looked at by contact on the exact contour, or on
-    that of a `file`. `ok` is whether the budget is kept. Raises RecipeErrors for a recipe without a budget, for one
-    whose tolerances leave nothing for a free dimension, and for a linkage that does not turn; CallError for a file that
-    holds no contour of the cam.
+    that of `files`, one of each disc. `ok` is whether the budget is kept. Raises RecipeErrors for a recipe without a
+    budget, for one whose tolerances leave nothing for a free dimension, and for a linkage that does not turn; CallError
+    for files that do not hold all contours of the cam.
     """
     stated = recipe.of(Budget)
     if stated is None:
@@ -36,20 +36,20 @@ def budget(recipe: Recipe, file: str | PathLike[str] | None = None) -> dict[str,
     found = outcome(recipe, design, stated)
     entry = section(recipe, found)
     if stated.runs:
-        entry["parts"] = _parts(recipe, design, found, None if file is None else Path(file))
+        entry["parts"] = _parts(recipe, design, found, [Path(file) for file in files])
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
 
 
-def _parts(recipe: Recipe, design: Design, found: Outcome, file: Path | None) -> dict[str, Any]:
+def _parts(recipe: Recipe, design: Design, found: Outcome, files: list[Path]) -> dict[str, Any]:
     """What a simulation says, or why there is none."""
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import looked_at, simulate
 
     read = None
-    if file is not None:
+    if files:
         from camgeo.capabilities.budget.read_contours import read_contours
 
-        read = read_contours(recipe, design, file)
+        read = read_contours(recipe, design, files)
     shaft = looked_at([worst.at for worst in found.sums.values()])
     try:
         parts = simulate(recipe, design, found.budget, shaft, read)
@@ -72,7 +72,7 @@ def _parts(recipe: Recipe, design: Design, found: Outcome, file: Path | None) ->
     return {
         "runs": parts.runs,
         "seed": parts.seed,
-        "file": None if file is None else file.name,
+        "files": [file.name for file in files],
         "unit": told(recipe, 1.0)[1],
         "within": parts.within,
         "greatest": max(row["greatest"] for row in rows),

@@ -71,7 +71,8 @@ def _outcome(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Ou
         left = left_for(rows, budget.permitted, budget.sums)
         chosen = {free[0]: float(left.min())}
     elif free:
-        splits = {kind: widest(rows, budget.permitted, dict(budget.cost), kind) for kind in SUMS}
+        costs = dict(budget.cost)
+        splits = {kind: widest(rows, budget.permitted, costs, kind, budget.exponent) for kind in SUMS}
         chosen = dict(splits[budget.sums].tolerances)
     if free:
         # a dimension that moves nothing has no bound, and adds nothing
@@ -288,7 +289,7 @@ def _simulated(parts: dict[str, Any]) -> list[str]:
         return [f"  no parts were simulated: {parts['why']}"]
     worst, unit = parts["worst"], parts["unit"]
     agrees = "agrees" if worst["agrees"] else "does not agree"
-    where = "" if parts["file"] is None else f" on {parts['file']}"
+    where = f" on {' and '.join(parts['files'])}" if parts["files"] else ""
     kept, greatest = f"{parts['within']:.2%} keep it", f"the greatest error is {parts['greatest']:.4g} {unit}"
     deviation = f"standard deviation at {worst['at_deg']:.4g} deg {worst['sd']:.4g} {unit}"
     return [

@@ -14,10 +14,13 @@ import numpy as np
 from camgeo.capabilities.budget.contact import LostError, Metal, Off, Place, positions
 from camgeo.capabilities.budget.exact_metal import MOST_STEPS, SETTLED, ExactMetal
 from camgeo.capabilities.budget.influence import influence
+from camgeo.capabilities.budget.read_contours import trimmed_contours
 from camgeo.capabilities.budget.read_metal import read_metal
 from camgeo.capabilities.budget.sums import spread
 from camgeo.capabilities.budget.words import BORE, PROFILE, WORDS
 from kin.follower.influence import bearing
+from kin.law.contacts import eased
+from kin.linkage.influence import QUARTER
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -106,8 +109,12 @@ def errors_by_contact(
     After the angles stands the one at which the machine is set, if any. `read` as of `simulate`. Raises LostError, as
     the errors do.
     """
-    of_any = _of_linkage if recipe.linkage else _of_follower
-    return of_any(design, budget, rows_at(budget, shaft), read)
+    if not design.contours:
+        raise LostError("parts are not simulated, as no contour is made")
+    if read is None and design.trimmed:
+        read = trimmed_contours(design)
+    errors_of = _of_linkage if recipe.linkage else _of_follower
+    return errors_of(design, budget, rows_at(budget, shaft), read)
 
 
 def rows_at(budget: Budget, shaft: Array) -> Array:
@@ -219,13 +226,10 @@ def offs(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Of
 
 
 def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None) -> list[Place]:
-    """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`.
-
-    Raises LostError for an exact contour that is trimmed or not made, and for a knife edge on one that was read.
-    """
-    if read is None and (design.trimmed or not design.contours):
-        raise LostError("parts are simulated on whole contours or on a file, and this contour is trimmed or forbidden")
-    contacts = design.follower.contacts
+    """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`."""
+    contacts, preload = design.follower.contacts, design.exact.preload
+    if preload is not None:  # their errors are those beside what each overlaps the metal by
+        contacts = tuple(map(eased, contacts, preload.overlaps))
     position = design.motion.travel(shaft, 1)
     parameters = list(design.motion.parameters(shaft, shaft).values())
     first = np.exp(1j * (shaft + contacts[0].turned))
@@ -260,12 +264,14 @@ def _of_linkage(
     angles: Array,
     read: Mapping[str, Contour] | None,
 ) -> Callable[[Sizes], Array]:
-    """Errors of the output by the support function of the made cam in its frame, each loop closed anew."""
+    """Errors of the output by either pair of faces, from the support function of the metal, each loop closed anew."""
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
     loop, breadth, lift = mechanism.linkage, mechanism.breadth, mechanism.lift
     contour = None if read is None else read[""]
+    # the metal of a file overlaps the faces by a preload
+    overlap = 0.0 if contour is None or design.exact.preload is None else design.exact.preload.overlaps[0]
     relative = mechanism.relative(angles)
     motion = mechanism.at(relative, 0)
     frame, nominal = motion.frame[0], motion.output[0]
@@ -274,41 +280,51 @@ def _of_linkage(
     def errors(drawn: Sizes) -> Array:
         size, radius = drawn.size, drawn.radius
         turned, bore, moved = size("angle"), radius(BORE), radius("shaft")
-        near, far = size(PROFILE), size(PROFILE)
         wider, higher, squared = size("breadth"), size("breadth"), size("face")
         pivot = radius("pivot") + size("linkage.ground") + radius("joints")
         play, link = radius("joints"), size("linkage.rocker") + size("linkage.offset")
         longer, joint = size("linkage.coupler"), size("linkage.joint_offset")
 
-        def support(direction: Array, grown: Array) -> Array:
+        def support(direction: Array) -> Array:
             """Distance from the shaft, mm, of the made cam's tangent across a direction in the cam's axes as meant."""
             inner = direction - turned
             flat = np.mod(inner, TURN).ravel()
             own = (lift.derivatives(flat, 0)[0] if contour is None else contour.support(flat).q).reshape(inner.shape)
-            shifted: Array = (np.conj(bore) * np.exp(1j * inner)).real
-            reach: Array = own + grown + shifted
+            reach: Array = own + (np.conj(bore) * np.exp(1j * inner)).real - overlap
             return reach
 
-        def off(change: Array) -> tuple[Array, Array]:
-            """Distance from closing, mm, and output where the frame stands further by a change, rad."""
-            direction = relative + change
-            middle = support(direction, near) - 0.5 * (breadth + higher)
-            side = support(direction + 0.5 * math.pi + squared, far) + middle * np.sin(squared)
-            across = middle + loop.joint_offset + joint
-            along = breadth + wider + coupler + longer - side / np.cos(squared)
-            u = np.exp(1j * (frame + change))
-            return loop.closure(moved + u * (along + 1j * across) + play, u, pivot, link)
+        def output(sense: int) -> Array:
+            """Output where the frame bears with its faces +y and -x (1), or with those opposite (-1)."""
+            near, far = size(PROFILE), size(PROFILE)
 
-        change = np.zeros((len(turned), len(angles)))
-        slope = (off(change + STEP)[0] - off(change - STEP)[0]) / (2.0 * STEP)
-        for _ in range(MOST_STEPS):
-            open_by, output = off(change)
-            if np.abs(open_by).max() < SETTLED:
-                change_of_output: Array = output - nominal
-                if mechanism.unit == "deg":
-                    change_of_output = np.remainder(change_of_output + math.pi, TURN) - math.pi
-                return change_of_output[None]
-            change = change - open_by / slope
-        raise LostError("the loop of a made part does not close near where it is meant to be")
+            def off(change: Array) -> tuple[Array, Array]:
+                """Distance from closing, mm, and output where the frame stands further by a change, rad."""
+                direction = relative + change
+                y_face = support(direction + (1 - sense) * QUARTER) + near
+                middle = sense * (y_face - 0.5 * (breadth + higher))
+                x_face = support(direction + sense * QUARTER + squared) + far + sense * middle * np.sin(squared)
+                along = coupler + longer - sense * x_face / np.cos(squared) + (breadth + wider if sense > 0 else 0.0)
+                u = np.exp(1j * (frame + change))
+                joint_at = u * (along + 1j * (middle + loop.joint_offset + joint))
+                return loop.closure(moved + joint_at + play, u, pivot, link)
+
+            return _closed(off, np.zeros((len(turned), len(angles))))
+
+        changes: Array = np.stack([output(1), output(-1)]) - nominal
+        if mechanism.unit == "deg":
+            changes = np.remainder(changes + math.pi, TURN) - math.pi
+        return changes
 
     return errors
+
+
+def _closed(off: Callable[[Array], tuple[Array, Array]], start: Array) -> Array:
+    """Output of linkages where what is off of their loops is 0, from changes of the frame's angle (parts, angles)."""
+    change = start
+    slope = (off(change + STEP)[0] - off(change - STEP)[0]) / (2.0 * STEP)
+    for _ in range(MOST_STEPS):
+        open_by, output = off(change)
+        if np.abs(open_by).max() < SETTLED:
+            return output
+        change = change - open_by / slope
+    raise LostError("the loop of a made part does not close near where it is meant to be")

@@ -1,13 +1,15 @@
-"""The contours of a file by the surfaces of a cam, as the judge reads them."""
+"""Contours that parts are simulated on in place of the exact curves: those of files, and those that were trimmed."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.budget.contact import LostError
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from camgeo.recipe.recipe import Recipe
@@ -15,28 +17,55 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
 
 LOOKS = 36  # shaft angles at which the judge looks at a file here: `verify` judges it
+TRIMMED_WITHIN = 1e-6  # mm: arcs that stand for a trimmed contour
 
 
-def read_contours(recipe: Recipe, design: Design, path: Path) -> dict[str, Contour]:
-    """Contour of each surface of a cam on one disc, by its name, from a drawing or a solid.
+def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict[str, Contour]:
+    """Contour of each surface of a cam, by its name, from a drawing or solid of each disc, or one of all of them.
 
-    Raises CallError for a file that is none, has another suffix or lacks a contour, and for a cam of several discs.
+    Raises CallError for a file that is none, has another suffix, is made for a kerf or the like, or lacks a contour,
+    and where the files do not go together.
     """
-    from camgeo.synthesis.intent import intended, permitted
-    from kin.judge.verify import verify
+    from camgeo.output.file_intent import shaft_of_file
+    from camgeo.output.sets import sets_of
+    from camgeo.synthesis.intent import permitted
+    from kin.judge.together import DiscFile, verify_set
     from kin.numeric.errors import CamgeoError
 
-    shown = escaped(str(path))
-    if len(design.discs) > 1:
-        raise CallError(f"{shown}: parts of a cam of several discs are simulated on the exact contours; give no file")
-    meant, limits = intended(recipe, design), permitted(recipe, recipe.export.tolerance)
+    shown = ", ".join(escaped(str(path)) for path in paths)
     try:
-        verdict = verify(path, meant, LOOKS, limits, recipe.unstated(path))
+        first, *others = sets_of(recipe, paths, recipe.export.tolerance)
+        intent = shaft_of_file(recipe, design, first.held.kind)
+        files = [DiscFile(path, disc, recipe.unstated(path)) for _, path, disc in first.files]
+        verdicts = verify_set(files, intent, LOOKS, permitted(recipe, recipe.export.tolerance))
     except (OSError, CamgeoError, ValueError) as error:
         raise CallError(f"{shown}: {getattr(error, 'strerror', None) or error}") from error
-    contours = {surface.name: surface.contour for surface in verdict.surfaces if surface.contour is not None}
-    missing = [surface.name for surface in meant.surfaces if surface.name not in contours]
+    if others:
+        raise CallError(f"{shown}: give one file, or one of each disc that were made together")
+    request = first.held.asked
+    if request is not None and request.compensation is not None:
+        raise CallError(f"{shown}: its contour is not the cam's ({request.compensation.tags}); give a nominal file")
+    surfaces = [surface for verdict in verdicts for surface in verdict.surfaces]
+    contours = {surface.name: surface.contour for surface in surfaces if surface.contour is not None}
+    missing = [surface.name for part in intent.parts for surface in part.surfaces if surface.name not in contours]
     if missing or not contours:
-        why = next((check.detail for check in verdict.checks if not check.ok), "it holds no contour")
-        raise CallError(f"{shown}: {why}")
+        checks = (check for verdict in verdicts for check in verdict.checks)
+        lack = f"it holds no contour {missing[0]}; give a file of each disc" if contours else "it holds no contour"
+        raise CallError(f"{shown}: {next((check.detail for check in checks if not check.ok), lack)}")
     return contours
+
+
+def trimmed_contours(design: Design) -> dict[str, Contour]:
+    """Contour of each surface of a design whose undercut is trimmed, by its name, as arcs within 1e-6 mm.
+
+    Raises LostError where there are no such arcs.
+    """
+    from camgeo.fit.arcs import fit_arcs
+    from camgeo.fit.nodes import ToleranceError
+    from kin.contour.contour import Contour
+
+    try:
+        fits = {surface.name: fit_arcs(curve, TRIMMED_WITHIN) for surface, curve in design.contours}
+    except ToleranceError as error:
+        raise LostError(f"parts are not simulated on the trimmed contour: {error}") from error
+    return {name: Contour.from_bulges(fit.points, fit.bulges) for name, fit in fits.items()}

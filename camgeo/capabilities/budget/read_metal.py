@@ -1,13 +1,14 @@
 """The contour of a file under a touch: corners and points so close along every piece that those between bound no more.
 
 Each point bounds the touch alone. Coming from outside it is stopped by the one that holds it farthest out; in the
-opening of a ring, from within, by the one that holds it nearest the shaft.
+opening of a ring, from within, by the one that holds it nearest the shaft. A knife edge would fall between points: it
+is held by the chords.
 """
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from kin.law.contacts import Flat, Oscillating
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
     from kin.law.contacts import Contact, Guide, Side, Touch
@@ -49,15 +52,16 @@ def points_of(contour: Contour, radius: float) -> Complexes:
 def read_metal(
     contact: Contact[Guide, Touch], side: Side, contour: Contour, meant: Complexes, wander: float
 ) -> ReadMetal:
-    """The metal of a file's contour under a contact; raises LostError for a knife edge, which falls between points."""
-    if isinstance(contact.touch, Flat):
-        radius = np.inf
-    elif contact.touch.radius > 0.0:
-        radius = contact.touch.radius
-    else:
-        raise LostError("a knife edge is simulated on the exact contour alone: leave the file out")
-    hand = contact.guide.side if isinstance(contact.guide, Oscillating) else 1
-    return ReadMetal(points_of(contour, radius), side, hand, meant, wander)
+    """The metal of a contour under a contact, see `ReadMetal`; raises LostError for a contour that is too long."""
+    guide, touch = contact.guide, contact.touch
+    hand = guide.side if isinstance(guide, Oscillating) else 1
+    if isinstance(touch, Flat):
+        return ReadMetal(points_of(contour, np.inf), side, hand, meant, wander)
+    if touch.radius > 0.0:
+        return ReadMetal(points_of(contour, touch.radius), side, hand, meant, wander)
+    # the path of a knife edge is a line, or a circle about the pivot
+    path = guide.arm if isinstance(guide, Oscillating) else np.inf
+    return EdgeMetal(points_of(contour, path), side, hand, meant, wander)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,16 +78,11 @@ class ReadMetal:
     meant: Complexes
     wander: float
 
-    @cached_property
-    def _at(self) -> Indices:
-        """Index of the point nearest to each place."""
-        return np.array([int(np.abs(self.points - place).argmin()) for place in self.meant])
-
     def reach(self, normal: Complexes) -> Array:
         """See `Metal`."""
 
-        def bound(points: Complexes, n: Complexes) -> Array:
-            bound: Array = (np.conj(n) * points).real
+        def bound(within: Indices, n: Complexes) -> Array:
+            bound: Array = (np.conj(n) * self.points[within]).real
             return bound
 
         return self._held(bound, (normal,))
@@ -91,66 +90,68 @@ class ReadMetal:
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
         """See `Metal`."""
 
-        def bound(points: Complexes, d: Complexes, m: Complexes, r: Complexes) -> Array:
-            off = np.conj(d) * (points - m)
+        def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
+            off = np.conj(d) * (self.points[within] - m)
             with np.errstate(invalid="ignore"):
-                bound: Array = off.real + self.side * np.sqrt(r.real**2 - off.imag**2)
+                bound: Array = off.real + self.side * np.sqrt(r**2 - off.imag**2)
             return bound
 
-        return self._held(bound, (way, middle, _complex(radius)))
+        return self._held(bound, (way, middle, radius))
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """See `Metal`."""
 
-        def bound(points: Complexes, a: Complexes, arm: Complexes, r: Complexes, start: Complexes) -> Array:
-            distance = np.abs(points - a)
+        def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
+            distance = np.abs(self.points[within] - a)
             with np.errstate(invalid="ignore"):
-                opening = np.arccos((distance**2 + arm.real**2 - r.real**2) / (2.0 * distance * arm.real))
-            bound: Array = self.hand * np.angle((points - a) * np.conj(start)) + self.side * opening
+                opening = np.arccos((distance**2 + arm**2 - r**2) / (2.0 * distance * arm))
+            bound: Array = self._turn(self.points[within], a, start) + self.side * opening
             return bound
 
-        start = self._toward(pivot)
-        turn = self._held(bound, (pivot, _complex(length), _complex(radius), start))
-        arm: Complexes = start * np.exp(1j * self.hand * turn)
-        return arm
+        return self._swung(bound, pivot, length, radius)
 
     def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
         """See `Metal`."""
 
-        def bound(points: Complexes, a: Complexes, f: Complexes, start: Complexes) -> Array:
-            opening = np.arccos(-f.real / np.abs(points - a))
-            bound: Array = self.hand * np.angle((points - a) * np.conj(start)) + opening
-            return bound
+        def bound(within: Indices, a: Complexes, f: Array, start: Complexes) -> Array:
+            opening = np.arccos(-f / np.abs(self.points[within] - a))
+            return self._turn(self.points[within], a, start) + opening
 
-        start = self._toward(pivot)
-        turn = self._held(bound, (pivot, _complex(nearer), start))
-        normal: Complexes = start * np.exp(1j * self.hand * turn)
-        return normal
+        return self._swung(bound, pivot, nearer)
 
-    def _toward(self, pivot: Complexes) -> Complexes:
-        """Direction from a pivot to the place of contact."""
-        arm = self.meant - pivot
-        toward: Complexes = arm / np.abs(arm)
-        return toward
+    def _turn(self, points: Complexes, pivot: Complexes, start: Complexes) -> Array:
+        """Angles by which points lie beyond the direction `start` from a pivot, in the sense of the arm."""
+        turn: Array = self.hand * np.angle((points - pivot) * np.conj(start))
+        return turn
 
-    def _held(self, bound: Callable[..., Array], rows: tuple[Complexes, ...]) -> Array:
-        """What holds the touch, (parts, angles): the greatest bound by the points, or the least from within."""
+    def _swung(self, bound: Callable[..., Array], pivot: Complexes, *sizes: Array) -> Complexes:
+        """Direction from a pivot, turned from that to the place of contact by what the bounds of its turn hold."""
+        start = (self.meant - pivot) / np.abs(self.meant - pivot)
+        swung: Complexes = start * np.exp(1j * self.hand * self._held(bound, (pivot, *sizes, start)))
+        return swung
+
+    def _held(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]]) -> Array:
+        """What holds the touch, (parts, angles): the greatest bound by the points, or the least from within.
+
+        `bound` gives bounds (parts, k) by the points of k indices, of parts whose rows are (parts, 1).
+        """
         shape = np.broadcast_shapes(*(row.shape for row in rows), self.meant.shape)
-        rows = tuple(np.broadcast_to(row, shape) for row in rows)
+        whole = [np.broadcast_to(row, shape) for row in rows]
         held = np.empty(shape)
-        for angle, place in enumerate(self._at):
-            held[:, angle] = self._nearby(bound, [row[:, angle, None] for row in rows], int(place))
+        for angle, meant in enumerate(self.meant):
+            held[:, angle] = self._nearby(bound, [row[:, angle, None] for row in whole], meant)
         return held
 
-    def _nearby(self, bound: Callable[..., Array], rows: list[Complexes], place: int) -> Array:
-        count = len(self.points)
-        few = self._few(place)
+    def _nearby(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]], meant: complex) -> Array:
+        count, distances = len(self.points), np.abs(self.points - meant)
+        place = int(distances.argmin())
+        few = self._few(place, self.wander + 2.0 * float(distances[place]))
         while True:
             within = np.arange(place - few, place + few + 1) if 2 * few + 1 < count else np.arange(count)
-            bounds = self.side * bound(self.points[within % count], *rows)
+            bounds = self.side * bound(within % count, *rows)
             best = np.where(np.isnan(bounds), -np.inf, bounds)
-            found = best.argmax(axis=1)
-            if len(within) == count or ((found > 0) & (found < len(within) - 1)).all():
+            holding = best.argmax(axis=1)
+            if len(within) == count or ((holding > 0) & (holding < len(within) - 1)).all():
                 break
             few *= 4
         if not np.isfinite(best.max(axis=1)).all():
@@ -158,18 +159,59 @@ class ReadMetal:
         held: Array = self.side * best.max(axis=1)
         return held
 
-    def _few(self, place: int) -> int:
+    def _few(self, place: int, wander: float) -> int:
         """How many points stand within the way that a contact is looked for, on the side where they are closer."""
         count = len(self.points)
         few = FEWEST
         while 2 * few + 1 < count:
             ends = self.points[[(place - few) % count, (place + few) % count]]
-            if np.abs(ends - self.points[place]).min() >= self.wander:
+            if np.abs(ends - self.points[place]).min() >= wander:
                 break
             few *= 2
         return few
 
 
-def _complex(row: Array) -> Complexes:
-    numbers: Complexes = row.astype(np.complex128)
-    return numbers
+@dataclass(frozen=True, eq=False)
+class EdgeMetal(ReadMetal):
+    """The same under a knife edge, whose `radius` is what the metal has grown: held where its path crosses a chord."""
+
+    @cached_property
+    def _normals(self) -> Complexes:
+        """Normals out of the metal at the points (k,): across the middle of both chords there."""
+        chords = np.roll(self.points, -1) - self.points
+        tangents = chords / np.abs(chords)
+        tangents = tangents + np.roll(tangents, 1)
+        normals: Complexes = -1j * self.side * tangents / np.abs(tangents)
+        return normals
+
+    def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
+        """See `Metal`."""
+
+        def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
+            first, second = (np.conj(d) * (end - m) for end in self._chords(within, r))
+            return _crossings(first.imag, second.imag, first.real, second.real)
+
+        return self._held(bound, (way, middle, radius))
+
+    def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
+        """See `Metal`."""
+
+        def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
+            first, second = self._chords(within, r)
+            turns = (self._turn(end, a, start) for end in (first, second))
+            return _crossings(np.abs(first - a) - arm, np.abs(second - a) - arm, *turns)
+
+        return self._swung(bound, pivot, length, radius)
+
+    def _chords(self, within: Indices, grown: Array) -> tuple[Complexes, Complexes]:
+        """Ends (parts, k) of the chords that begin at points, of metal that has grown by amounts (parts, 1)."""
+        first, second = (self.points[i] + grown * self._normals[i] for i in (within, (within + 1) % len(self.points)))
+        return first, second
+
+
+def _crossings(first_off: Array, second_off: Array, first: Array, second: Array) -> Array:
+    """Values between the ends of chords where what is off there is 0, nan where it is not."""
+    crosses = (first_off > 0.0) != (second_off > 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        values: Array = np.where(crosses, first + first_off / (first_off - second_off) * (second - first), np.nan)
+    return values

@@ -1,4 +1,4 @@
-"""What budgets add to recipes: the key `budget`, figures, a section of the report, a panel and a plot of the page."""
+"""What budgets add: the key `budget`, figures, a section of the report, a panel and a plot of the page, a starter."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.starter import Starter
     from camgeo.report.page.curves import Plot
     from camgeo.synthesis.design import Design
 
@@ -97,11 +98,18 @@ def _profile(recipe: Recipe) -> float | None:
     return None if stated is None else 2.0 * stated
 
 
+def _starters() -> Mapping[str, Starter]:
+    from camgeo.capabilities.budget.starter import STARTERS
+
+    return STARTERS
+
+
 CAPABILITY = Capability(
     fields=fields,
     check=check_budget,
     build=build_budget,
     profile=_profile,
+    starters=_starters,
     figures=FIGURES,
     measure=_measure,
     examine=_examine,

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 import pytest
+from support.places import ROOT
 
 import camgeo
 from camgeo.capabilities.budget.fits import HOLES, KEYWAYS, SHAFTS, UPPER_ENDS, clearance, fit_of, key_clearance
@@ -29,6 +30,10 @@ export: {tolerance: 0.01, files: [dxf]}
 verify: {angles: 360}
 """
 YOKE = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
+FRAME = """\
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4]}
+linkage: {kind: slider-crank, coupler: 75, offset: 0}
+"""
 SIX_BAR = """\
 cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4]}
 linkage:
@@ -51,6 +56,7 @@ REFUSED = [
     ("tolerances: {}", CAM, "no tolerance is given", "profile: 0.01"),
     ("tolerances: {profile: free, angle: free}", CAM, "free, and without a cost", "give cost.profile"),
     ("tolerances: {profile: 0.1}, cost: {profile: 1}", CAM, "its tolerance is stated", "free"),
+    ("tolerances: {profile: free}, exponent: 2", CAM, "without a cost it has no use", "leave it out, or give cost"),
     ("tolerances: {guide: 0.1}", CAM, "the guide's place is not known", "budget.guide"),
     ("tolerances: {profile: 0.1}, guide: 50", CAM, "it has no use", "leave it out"),
     ("tolerances: {profile: 0.1}, play: 0.1", CAM, "not held from both sides", "leave it out"),
@@ -82,9 +88,11 @@ def test_the_remedies_do() -> None:
     for body, cam in (
         ("tolerances: {profile: 0.1}", CAM),
         ("tolerances: {profile: free, angle: free}, cost: {profile: 1, angle: 2}", CAM),
+        ("tolerances: {profile: free}, cost: {profile: 1}, exponent: 2", CAM),
         ("tolerances: {guide: 0.1}, guide: 120", CAM),
         ("tolerances: {profile: 0.1}, fit: h6, key: {hub: JS9, shaft: P9}", CAM),
         ("tolerances: {profile: 0.1}, play: 0.3", YOKE),
+        ("tolerances: {profile: 0.1}, play: 0.3", FRAME),
     ):
         assert budget(body, cam).permitted == 0.05
 
@@ -101,6 +109,13 @@ def test_the_profile_is_half_the_zone_of_measured_points() -> None:
     )
     for remedied in (budget("tolerances: {profile: 0.015}", made), budget("tolerances: {profile: free}", made)):
         assert remedied.permitted == 0.05
+
+
+def test_play_is_of_the_motion_and_has_its_unit() -> None:
+    arms = (ROOT / "recipes" / "print-double-roller.yaml").read_text(encoding="utf-8")
+    assert budget("tolerances: {profile: 0.01}, play: 0.2", arms).play == pytest.approx(math.radians(0.2))
+    four_bar = (ROOT / "recipes" / "print-four-bar.yaml").read_text(encoding="utf-8")
+    assert budget("tolerances: {profile: 0.01}, play: 0.2", four_bar).play == pytest.approx(math.radians(0.2))
 
 
 def test_values_are_in_mm_and_radians() -> None:

@@ -135,6 +135,36 @@ def test_play_of_a_groove_is_its_clearance_over_the_pressure_angle() -> None:
     assert np.abs(between.weights[radius] - 2.0 * np.array([1.0317718195, 1.1366018754])).max() < 1e-9
 
 
+def test_a_frame_bears_on_either_pair_of_faces_and_plays_between_them() -> None:
+    """Four-bar: worked cases of the breadths under the faces opposite, rad/mm."""
+    case = CASES["four-bar"]
+    rows = of_words(case.cam, case.angles, relative=True)
+    breadth_x, breadth_y = (one.rows[:, 0] for one in rows.contributions if one.name == "breadth")
+    under_minus_y = [0.0002872573, 0.0001855689, 0.0001097007, -0.0001143694]
+    assert np.abs(breadth_y - [np.negative(under_minus_y), under_minus_y]).max() < 1e-9
+    assert np.abs(breadth_x[1]).max() == 0.0
+    between = rows.play_between()
+    assert between is not None
+    assert rows.play == pytest.approx(0.0)
+    play = by_name(rows, between.weights)
+    # a frame that is wider plays by as much, and so does a cam that is smaller under both opposite faces
+    wider = np.abs(breadth_x[0]) + 2.0 * np.abs(breadth_y[0])
+    assert play["breadth"] == pytest.approx(wider)
+    assert play["profile"] == pytest.approx(2.0 * wider)
+    assert max(np.abs(play[name]).max() for name in play if name not in {"breadth", "profile"}) < 1e-12
+
+
+def test_a_preload_leaves_interference_in_place_of_play() -> None:
+    preload = "preload: {interference: 0.02}"
+    motion = "motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]"
+    yoke = of_words(f"cam: {{kind: constant-breadth, base_radius: 40, {motion}, {preload}}}\n", (30.0, 120.0, 230.0))
+    assert yoke.play == pytest.approx(-0.02)
+    four_bar = of_words(CASES["four-bar"].cam.replace("}\n", f", {preload}}}\n", 1), (30.0, 120.0, 230.0))
+    between = four_bar.play_between()
+    assert between is not None
+    assert four_bar.play == pytest.approx(-0.02 * by_name(four_bar, between.weights)["breadth"])
+
+
 def test_velocities_are_slopes_and_waves_of_the_profile() -> None:
     """Of a yoke the profile is the position's error: a wave t sin(n phi) has the velocity n t, an angle S'' t."""
     recipe = load_text(CASES["yoke"].cam, "a.yaml")

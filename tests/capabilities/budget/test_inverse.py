@@ -79,6 +79,23 @@ def test_the_worked_splits(costs, angles, kind, tolerances, cost) -> None:
         assert np.degrees(split.binding) == pytest.approx(expected)
 
 
+# costs 4, 1, 1.5 over tolerance^exponent at one angle, permitted 0.05
+EXPONENTS = [
+    (2, "worst", (0.025408163, 0.016006139, 0.029373075)),
+    (2, "rss", (0.037806863, 0.026733489, 0.060051943)),
+    (3, "worst", (0.024545388, 0.017356210, 0.027365414)),
+    (3, "rss", (0.037254670, 0.028233760, 0.053944337)),
+]
+
+
+@pytest.mark.parametrize(("exponent", "kind", "tolerances"), EXPONENTS)
+def test_the_worked_splits_of_other_exponents(exponent, kind, tolerances) -> None:
+    weights = np.array([[1.03], [1.03], [0.25]])
+    split = widest(made(weights, [None] * 3), 0.05, {"a": 4.0, "b": 1.0, "c": 1.5}, kind, exponent)
+    assert [*split.tolerances.values()] == pytest.approx(tolerances, abs=2e-9)
+    assert split.cost == pytest.approx((np.array([4.0, 1.0, 1.5]) / np.array(tolerances) ** exponent).sum(), rel=1e-6)
+
+
 def made(weights: np.ndarray, tolerances: list[float | None]) -> Influence:
     """Contributions with given influences (c, n)."""
     named = zip("abcdef", tolerances, weights, strict=False)
@@ -90,22 +107,23 @@ def made(weights: np.ndarray, tolerances: list[float | None]) -> Influence:
     st.integers(2, 5),
     st.integers(1, 40),
     st.sampled_from(["worst", "rss"]),
+    st.sampled_from([0.5, 1, 2, 3, 10]),
     st.integers(0, 2**32 - 1),
 )
-def test_no_angle_is_broken_and_the_dual_proves_the_cost_least(count, angles, kind, seed) -> None:
+def test_no_angle_is_broken_and_the_dual_proves_the_cost_least(count, angles, kind, exponent, seed) -> None:
     rng = np.random.default_rng(seed)
     weights, costs = rng.uniform(0.01, 3.0, (count, angles)), rng.uniform(0.1, 5.0, count)
-    split = widest(made(weights, [None] * count), 1.0, dict(zip("abcdef", costs, strict=False)), kind)
+    split = widest(made(weights, [None] * count), 1.0, dict(zip("abcdef", costs, strict=False)), kind, exponent)
     t = np.array([split.tolerances[name] for name in "abcdef"[:count]])
     q = 1 if kind == "worst" else 2
     sums = (weights.T**q) @ t**q
     assert sums.max() <= 1.0 + 1e-10
     assert sums.max() >= 1.0 - 1e-8
-    # stationary: c/(q t^(q+1)) is a mixture of the rows that bind, with weights that are not below 0
+    # stationary: k c/(q t^(q+k)) is a mixture of the rows that bind, with weights that are not below 0
     binding = np.array([int(at) for at in split.binding])
     from scipy.optimize import nnls
 
-    price = costs / (q * t ** (q + 1))
+    price = exponent * costs / (q * t ** (q + exponent))
     _, residual = nnls(weights[:, binding] ** q, price)
     assert residual <= 1e-6 * np.linalg.norm(price)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,6 @@ from support.made_cases import CASES
 from support.places import ROOT
 
 import camgeo
-from camgeo.capabilities.budget.contact import LostError
 from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.library import budget as split
@@ -52,7 +52,47 @@ FAMILIES = [
     "slider-crank",
 ]
 
-READ = ["disc-roller", "disc-ring", "disc-flat", "disc-arm", "disc-arm-flat", "groove-stem"]
+READ = [
+    "disc-roller",
+    "disc-ring",
+    "disc-flat",
+    "disc-arm",
+    "disc-arm-flat",
+    "groove-stem",
+    "disc-knife-edge",
+    "knife-arm",
+    "conjugate-stem",
+    "conjugate-flat",
+]
+OWN = {
+    "knife-arm": """\
+cam:
+  kind: disc
+  base_radius: 34
+  follower: {kind: knife-edge, arm: {length: 65, pivot: 80, side: trailing}}
+  motion: [{rise: 20, over: 130, law: cycloidal}, {dwell: 50}, {return: 20, over: 130, law: cycloidal}, {dwell: 50}]
+export: {tolerance: 0.01, files: [dxf]}
+""",
+    "trimmed-roller": """\
+cam:
+  kind: disc
+  base_radius: 10
+  undercut: trim
+  follower: {kind: roller, radius: 25}
+  motion: [{rise: 25, over: 40, law: cycloidal}, {return: 25, over: 40, law: cycloidal}, {dwell: 280}]
+export: {tolerance: 0.0001, files: [dxf]}
+""",
+    "trimmed-frame": """\
+cam: {kind: support, p: 25 + 3.4*cos(3*t), shaft: [10, 4], undercut: trim}
+linkage: {kind: slider-crank, coupler: 75, offset: 0}
+export: {tolerance: 0.0001, files: [dxf]}
+""",
+    "preload-frame": """\
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4], preload: {interference: 0.02}}
+linkage: {kind: slider-crank, coupler: 75, offset: 0}
+export: {tolerance: 0.001, files: [dxf]}
+""",
+}
 
 
 class Stepped:
@@ -70,7 +110,8 @@ class Stepped:
 
 @cache
 def of_recipe(name: str):
-    return load_text((ROOT / "recipes" / f"{name}.yaml").read_text(encoding="utf-8"), ROOT / "recipes" / f"{name}.yaml")
+    path = ROOT / "recipes" / f"{name}.yaml"
+    return load_text(OWN.get(name) or path.read_text(encoding="utf-8"), path)
 
 
 @cache
@@ -95,6 +136,17 @@ def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -
             # sizes that each contact has of its own are all off together
             ours = np.sum([one.rows[:, k] for one in rows.contributions if one.name == word], axis=0)
             assert np.abs(measured - ours).max() < 2e-6 * max(1.0, np.abs(ours).max()), (word, component)
+
+
+@pytest.mark.parametrize("name", ["yoke-preload", "preload-frame"])
+def test_errors_of_a_preloaded_follower_are_those_beside_its_overlap(name: str, tmp_path: Path) -> None:
+    recipe, design = of_recipe(name), design_of(name)
+    stated = Budget(1.0, (("profile", 0.01),))
+    assert np.abs(errors_by_contact(recipe, design, stated, SHAFT)(Stepped("", 0.0))).max() < 1e-9
+    camgeo.export(recipe, tmp_path, only=["dxf"])
+    contours = read_contours(recipe, design, [tmp_path / name / f"{name}.dxf"])
+    errors = errors_by_contact(recipe, design, stated, SHAFT, contours)(Stepped("", 0.0))
+    assert np.abs(errors).max() < 1.1 * recipe.export.tolerance
 
 
 def test_finite_errors() -> None:
@@ -165,13 +217,26 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> None:
     """Nothing off, the error by contact is the one that the judge finds of the file."""
     recipe, design = of_recipe(name), design_of(name)
-    contours = read_contours(recipe, design, made / name / f"{name}.dxf")
+    contours = read_contours(recipe, design, sorted((made / name).glob("*.dxf")))
     errors_of = errors_by_contact(recipe, design, Budget(1.0, (("profile", 0.01),)), SHAFT, contours)
-    errors = errors_of(Stepped("", 0.0))[0, 0]
-    surface = design.exact.surfaces[0].name
-    judged = design.exact.gauges[surface].judge(contours[surface], SHAFT).motion
-    rms = np.sqrt((errors**2).mean())
-    assert abs((math.degrees(rms) if judged.unit == "deg" else rms) - judged.rms) < 2e-6
+    for errors, contact in zip(errors_of(Stepped("", 0.0))[:, 0], design.follower.contacts, strict=True):
+        judged = design.exact.gauges[contact.surface].judge(contours[contact.surface], SHAFT).motion
+        rms = np.sqrt((errors**2).mean())
+        assert abs((math.degrees(rms) if judged.unit == "deg" else rms) - judged.rms) < 2e-6
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("name", ["disc-knife-edge", "knife-arm", "conjugate-flat"])
+def test_on_a_file_sizes_do_what_they_do_on_the_exact_contour(name: str, tmp_path: Path) -> None:
+    recipe, design = of_recipe(name), design_of(name)
+    camgeo.export(load_text(re.sub(r"tolerance: [0-9.]+", "tolerance: 0.0001", recipe.text), f"{name}.yaml"), tmp_path)
+    contours = read_contours(recipe, design, sorted((tmp_path / name).glob("*.dxf")))
+    for word in ("profile", "shaft", "angle"):
+        stated = Budget(1.0, ((word, 0.02),))
+        exact = errors_by_contact(recipe, design, stated, SHAFT)(Stepped(word, 0.01))
+        read = errors_by_contact(recipe, design, stated, SHAFT, contours)(Stepped(word, 0.01))
+        assert np.abs(exact).max() > 0.01
+        assert np.abs(exact - read).max() < 1.1e-4, word
 
 
 def test_the_command_simulates_a_file(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -193,16 +258,38 @@ def test_the_command_simulates_a_file(made: Path, tmp_path: Path, capsys: pytest
 
 def test_what_no_file_can_show_is_said(made: Path, tmp_path: Path) -> None:
     drawing = made / "disc-roller" / "disc-roller.dxf"
-    with pytest.raises(CallError, match="several discs"):
-        read_contours(of_recipe("conjugate-stem"), design_of("conjugate-stem"), drawing)
+    pair, design = of_recipe("conjugate-stem"), design_of("conjugate-stem")
+    discs = sorted((made / "conjugate-stem").glob("*.dxf"))
+    with pytest.raises(CallError, match="give a file of each disc"):
+        read_contours(pair, design, discs[:1])
+    with pytest.raises(CallError, match="give one file, or one of each disc"):
+        read_contours(pair, design, [*discs, *discs])
     (tmp_path / "a.dxf").write_text("no drawing", encoding="utf-8")
     with pytest.raises(CallError, match=r"a\.dxf"):
-        read_contours(of_recipe("disc-roller"), design_of("disc-roller"), tmp_path / "a.dxf")
+        read_contours(of_recipe("disc-roller"), design_of("disc-roller"), [tmp_path / "a.dxf"])
+    recipe = of_recipe("disc-kerf")
+    camgeo.export(recipe, tmp_path, only=["dxf"])
+    (drawing,) = (tmp_path / "disc-kerf").glob("*kerf.dxf")
+    with pytest.raises(CallError, match="its contour is not the cam's"):
+        read_contours(recipe, design_of("disc-kerf"), [drawing])
 
 
-def test_a_contour_that_is_trimmed_is_not_simulated() -> None:
-    recipe = of_recipe("disc-trim")
-    with pytest.raises(LostError, match="trimmed"):
-        simulate(recipe, designed(recipe), Budget(1.0, (("profile", 0.01),), runs=100), SHAFT)
-    text = recipe.text + "budget: {permitted: 0.05, tolerances: {profile: 0.01}}\n"
-    assert split(load_text(text, "a.yaml"))["parts"]["runs"] == 0
+@pytest.mark.parametrize("name", ["disc-trim", "trimmed-roller", "trimmed-frame"])
+def test_parts_of_a_trimmed_contour_begin_with_the_motion_that_is_lost(name: str, tmp_path: Path) -> None:
+    recipe, design = of_recipe(name), design_of(name)
+    stated, shaft = Budget(1.0, (("profile", 0.01),)), np.radians(np.arange(0.5, 360.0, 3.0))
+    lost = errors_by_contact(recipe, design, stated, shaft)(Stepped("", 0.0))
+    assert np.abs(lost).max() > 1e-3
+    camgeo.export(recipe, tmp_path, only=["dxf"])
+    contours = read_contours(recipe, design, [tmp_path / name / f"{name}.dxf"])
+    read = errors_by_contact(recipe, design, stated, shaft, contours)(Stepped("", 0.0))
+    assert np.abs(lost - read).max() < 1.1 * recipe.export.tolerance
+
+
+def test_a_contour_that_is_not_made_is_not_simulated() -> None:
+    text = of_recipe("disc-trim").text.replace("  undercut: trim\n", "")
+    text += "budget: {permitted: 0.05, tolerances: {profile: 0.01}}\n"
+    assert split(load_text(text, "a.yaml"))["parts"] == {
+        "runs": 0,
+        "why": "parts are not simulated, as no contour is made",
+    }
