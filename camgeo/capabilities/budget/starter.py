@@ -5,7 +5,7 @@ from __future__ import annotations
 from camgeo.recipe.starter import Starter
 
 STARTERS = {
-    "budget": Starter(
+    "disc-budget": Starter(
         "A disc cam whose roller may be off by 0.05, and what that leaves for the cam's profile.",
         "disc",
         {
