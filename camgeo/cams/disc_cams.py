@@ -64,7 +64,9 @@ class DiscCam(GuidedCam):
         return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
 
     def _turn(self) -> Motion:
-        motion = self.motion.of_follower(self._contact, self.side)
+        flanks = [flank for flank in self.holding.flanks(self.touch, self.side) if flank.disc == 0]
+        within = len(flanks) - 1 if self.side > 0 else -1
+        motion = self.motion.of_follower(self._contact, within)
         return motion.motion(2.0 * math.pi, "motion", 1)
 
     def _contact(self) -> Contact[Guide, Touch]:

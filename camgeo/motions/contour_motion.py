@@ -14,7 +14,7 @@ from camgeo.schema.scalars import MOST_TEXT
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader
     from kin.contour.contour import Contour
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Contact, Guide, Touch
     from kin.law.sources.motion import Motion
 
 ANGLES = 720  # shaft angles at which the follower is felt
@@ -42,7 +42,7 @@ def read_contours(reader: Reader, file: str, path: str, *, mirrored: bool, unit:
 
     where = Path(reader.source.file).parent / file
     try:
-        drawing = read_drawing(where, deepest=2, unstated=unit)
+        drawing = read_drawing(where, deepest=3, unstated=unit)  # blank, two flanks, bore
     except FileNotFoundError:
         reader.fault_at(path, "the file does not exist", repr(file), "give its path as seen from the recipe's folder")
         return None
@@ -54,26 +54,30 @@ def read_contours(reader: Reader, file: str, path: str, *, mirrored: bool, unit:
 
 
 @lru_cache(maxsize=8)
-def felt(drawn: Drawn, contact: Contact[Guide, Touch], side: Side, reading: float, field: str) -> Motion:
+def felt(drawn: Drawn, contact: Contact[Guide, Touch], within: int, reading: float, field: str) -> Motion:
     """The motion of least mean square jerk within `reading` of what a follower does on the drawing, mm or rad.
 
-    Raises kin's IntentError where no contour goes round the shaft, or the follower finds no contact.
+    It runs on the contour that lies `within` so many others round the shaft; -1 is a ring's opening, the innermost one.
+    Raises kin's IntentError where there is no such contour, or the follower finds no contact.
     """
     import numpy as np
 
+    from kin.contour.about import tracks
+    from kin.follower.measured import positions
     from kin.follower.motion_error import ContactError
-    from kin.follower.rolled import rolled, track
     from kin.law.programme import IntentError
     from kin.law.sources.ring import Samples
     from kin.law.sources.table import from_table
     from kin.numeric.records import replace
 
-    contour = track(list(drawn.contours), side)
-    if contour is None:
-        raise IntentError(f"{drawn.file}: no closed contour goes round the origin, where the shaft is", field)
+    contours = tracks(drawn.contours)
+    if len(contours) <= max(within, 0):
+        lacking = "no second" if contours else "no"
+        raise IntentError(f"{drawn.file}: {lacking} closed contour goes round the origin, where the shaft is", field)
     phi = np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) + math.pi / ANGLES
     try:
-        position = rolled(contact, contour, side, phi)
+        position = positions(contours[within], contact, -1 if within < 0 else 1, phi)
+        position -= position.min()
     except (ContactError, ValueError) as error:
         raise IntentError(f"{drawn.file}: the follower does not run on the contour: {error}", field) from error
     digit = 10.0 ** (math.floor(math.log10(reading)) - _DIGITS)  # so that a round part of the contour is a dwell

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.contacts import Contact, Guide, Touch
     from kin.law.sources.motion import Motion
     from kin.law.sources.table import Suspects
     from kin.law.sources.tabled import Rest
@@ -75,10 +75,11 @@ class MotionAsked(ABC):
                 math.degrees(at),
             )
 
-    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], side: Side) -> MotionAsked:  # noqa: ARG002
-        """The motion where it depends on the follower; the metal lies inside its contour (1) or outside (-1).
+    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> MotionAsked:  # noqa: ARG002
+        """The motion where it depends on the follower, whose contour lies `within` so many others round the shaft.
 
-        `contact` is called only where it does: a cam that is being sized has no place of its follower yet.
+        A ring's opening lies within all others: -1. `contact` is called only where the motion depends on it: a cam that
+        is being sized has no place of its follower yet.
         """
         return self
 
@@ -192,12 +193,12 @@ class ContourAsked(MotionAsked):
     reading: float
     scale: float
     contact: Contact[Guide, Touch] | None = None
-    side: Side = 1
+    within: int = 0
     source: ClassVar[str] = ".contour"
 
-    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], side: Side) -> ContourAsked:
+    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourAsked:
         """The same with its follower."""
-        return replace(self, contact=contact(), side=side)
+        return replace(self, contact=contact(), within=within)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from camgeo.motions.contour_motion import felt
@@ -206,7 +207,7 @@ class ContourAsked(MotionAsked):
         field = f"{field}.contour"
         if self.contact is None or around != 1 or abs(total - 2.0 * math.pi) > _ANGLE:
             raise IntentError("a contour gives the motion of one follower on a disc over a whole turn", field)
-        return felt(self.drawn, self.contact, self.side, self.reading, field)
+        return felt(self.drawn, self.contact, self.within, self.reading, field)
 
 
 @dataclass(frozen=True)

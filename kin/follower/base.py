@@ -148,6 +148,14 @@ class Follower(ABC):
         and infinite on a line.
         """
 
+    def contact_travel(self, contour: Contour) -> tuple[float, float] | None:  # noqa: ARG002
+        """Least and greatest place of contact 1 along a flat face over the turn, mm; None of a round touch.
+
+        On a line of travel it counts from the stem's axis, above 0 ahead of it; on an arm from the pivot's foot on the
+        face.
+        """
+        return None
+
     @abstractmethod
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
         """Shaft angle and the follower's position (n,) with each contact touching metal at points (n, 2), mm.

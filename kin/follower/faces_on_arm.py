@@ -18,7 +18,7 @@ import numpy as np
 from kin.contour.arcs import dot
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
-from kin.follower.flat import NEAR
+from kin.follower.flat import NEAR, TRAVEL_STEPS
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.rests import dwell_angles
 from kin.follower.support import Bearing, bearing_of
@@ -337,6 +337,13 @@ class SwingingFace(OfLaw, _OnArm):
     def pitch(self) -> ArmPitch:
         """The line through the pivot along the face, over the shaft angle."""
         return ArmPitch(self.law, self.faces[0].pivot, self.faces[0].side)
+
+    def contact_travel(self, contour: Contour) -> tuple[float, float]:
+        """See `Follower`."""
+        face = self.faces[0]
+        q, slope, _ = face.bearing(contour).all_round(TRAVEL_STEPS)
+        place = np.sqrt(face.pivot**2 - q**2) - face.side * slope
+        return float(place.min()), float(place.max())
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest swing, degrees, that a shift of the contour by `tolerance` gives the face."""

@@ -18,7 +18,7 @@ from kin.follower.motion_error import Judged, MotionError, Play, motion_error, w
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
 from kin.law.bounds import cubic_cells
-from kin.law.contacts import METRE, Flat
+from kin.law.contacts import METRE, Flat, Translating
 from kin.law.support_function import Lift
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Indices
 
+TRAVEL_STEPS = 3600  # of the turn: between two of them the place of contact hides 4e-7 of the radius
 NEAR = 1e-8  # mm: so near to a cubic is the intended motion between two places of a search
 
 
@@ -121,6 +122,14 @@ class FlatFace(Follower):
         bearing, theta = bearing_of(contour), phi + self.ahead
         q, _, bend = bearing.derivatives(theta, bearing.find(theta))
         return np.full(phi.shape, -self.tilt), q + bend
+
+    def contact_travel(self, contour: Contour) -> tuple[float, float]:
+        """See `Follower`."""
+        q, slope, _ = bearing_of(contour).all_round(TRAVEL_STEPS)
+        guide = self.contacts[0].guide
+        aside = guide.offset / self._share if isinstance(guide, Translating) else 0.0
+        place = slope + q * np.tan(self.tilt) - aside
+        return float(place.min()), float(place.max())
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
         """See `Follower`."""

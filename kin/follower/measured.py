@@ -1,7 +1,7 @@
 """The motion that a contour gives a follower by contact, where none is intended.
 
-Nothing is fitted: each angle has the position of a touch that rests on the contour as it is, with the derivatives of
-the piece that it rests on. A polygon so gives a motion of many small steps of the velocity.
+Nothing is fitted: at each shaft angle the touch rests on the lines, arcs and splines of the contour, and the
+derivatives are those of the piece on which it rests. A polygon gives a velocity that steps from edge to edge.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kin.contour.contour import Contour
-    from kin.follower.base import Follower
-    from kin.follower.drive import Excitation
-    from kin.law.contacts import Contact, Guide, Touch, Unit
+    from kin.law.contacts import Contact, Guide, Side, Touch, Unit
     from kin.numeric.arrays import Array, Mask
 
-LEAST_DWELL = math.radians(10.0)  # a stretch that is shorter may be the top of a nose
-WIDENS = 1.5  # a nose is twice as wide at four times the depth, a dwell hardly wider
-CLOSER, ROUNDS = 16, 5  # places on either side of the highest and lowest, and how often they are looked at more closely
+LEAST_DWELL = math.radians(10.0)  # a shorter stretch may be the top of a nose
+DEEPER = 4.0  # times the depth, at which a nose is twice as wide, and a dwell hardly wider
+WIDENS = 1.5  # times as wide at that depth: more is a nose
+CLOSER, ROUNDS = 16, 5  # angles on either side of an extreme, and how often they are drawn closer about it
+LEAP = 1e-9  # rad, on either side of an angle at which the contact may leap
 
 
 class Dwell(NamedTuple):
@@ -50,7 +50,9 @@ class MeasuredMotion:
     radius    radius of curvature of the contour where it is touched, mm (n,): 0 at a corner, negative in a hollow
     least     least position, and its shaft angle
     most      greatest position, and its shaft angle
-    breadth   least and greatest distance of two opposite contacts, mm; None of one
+    second    position with contact 2 held in place of contact 1 (n,); None of one contact
+    apart     least and greatest of `second` less the position; None of one contact
+    travel    least and greatest place of contact on a flat face, mm: `Follower.contact_travel`; None of a round touch
     """
 
     unit: Unit
@@ -60,7 +62,9 @@ class MeasuredMotion:
     radius: Array
     least: tuple[float, float]
     most: tuple[float, float]
-    breadth: tuple[float, float] | None = None
+    second: Array | None = None
+    apart: tuple[float, float] | None = None
+    travel: tuple[float, float] | None = None
 
     @property
     def lift(self) -> float:
@@ -70,87 +74,115 @@ class MeasuredMotion:
     def dwells(self, reading: float) -> list[Dwell]:
         """Stretches of at least 10 degrees that rest within `reading`, mm or rad, of their middle position.
 
-        A stretch that would be much longer for four times the reading is the top of a nose, and none.
+        A stretch that is much longer at four times the depth is the top of a nose, and none. A dwell ends where the
+        follower leaves its level by half the reading.
         """
-        position, left = self.rows[0], np.ones(len(self.phi), dtype=bool)
-        found: list[Dwell] = []
-        while (dwell := self._longest(position, left, reading)) is not None:
-            found.append(dwell)
-        return sorted(found)
-
-    def _longest(self, position: Array, left: Mask, reading: float) -> Dwell | None:
-        """Longest dwell among the angles that are left, which it takes out; None where there is none."""
+        position, free = self.rows[0], np.ones(len(self.phi), dtype=bool)
         n, step = len(position), TURN / len(position)
-        start, count = _longest_flat(position, left, 2.0 * reading)
-        if count * step < LEAST_DWELL:
-            return None
-        wide = _longest_about(position, start + count // 2, 8.0 * reading)
-        within = np.arange(start, start + count) % n
-        left[within] = False
-        if wide > WIDENS * count and count < n:
-            return self._longest(position, left, reading)
-        level = float(np.median(position[within]))
-        near = np.abs(position[within] - level) <= 0.5 * reading
-        inner = np.flatnonzero(near)
-        low, high = start + int(inner[0]), start + int(inner[-1])
-        rest = position[np.arange(low, high + 1) % n]
-        flatness = float(np.ptp(rest))
-        turns = low // n
-        return Dwell((low - turns * n) * step, (high - turns * n) * step, level, flatness)
+        dwells: list[Dwell] = []
+        while True:
+            start, count = _longest_flat(position, free, 2.0 * reading)
+            if count * step < LEAST_DWELL:
+                return sorted(dwells)
+            within = np.arange(start, start + count) % n
+            free[within] = False
+            rest = position[within]
+            middle = 0.5 * float(rest.max() + rest.min())
+            near = np.abs(np.roll(position, -(start + count // 2)) - middle) <= (2.0 * DEEPER - 1.0) * reading
+            if _ahead(near) + _ahead(near[::-1]) > WIDENS * count and count < n:
+                continue
+            level = float(np.median(rest))
+            inner = np.flatnonzero(np.abs(rest - level) <= 0.5 * reading)
+            low, high = int(inner[0]), int(inner[-1])
+            begin = start % n
+            flatness = float(np.ptp(rest[low : high + 1]))
+            dwells.append(Dwell((begin + low) * step, (begin + high) * step, level, flatness))
 
 
-def measured(contour: Contour, contacts: Sequence[Contact[Guide, Touch]], steps: int) -> MeasuredMotion:
+def measured(
+    contour: Contour,
+    contacts: Sequence[Contact[Guide, Touch]],
+    steps: int,
+    side: Side = 1,
+    outer: Contour | None = None,
+) -> MeasuredMotion:
     """Let a follower of one contact, or of two opposite ones, run on a contour about the shaft at the origin, mm.
 
-    The metal lies inside the contour. Raises ContactError where the touch meets nothing, ValueError for contacts that
-    `follower_of` does not know.
+    The metal lies inside the contour (side 1) or outside (-1). `outer` is the outer flank of a groove, whose inner one
+    is `contour`: the roller rests on it as contact 2. Raises ContactError where the touch meets nothing, ValueError
+    for contacts that `follower_of` does not know.
     """
-    follower = unled(contacts)
+    follower = unled(contacts, side)
+    first, *others = follower.resting(contour)
+    if outer is not None:
+        others = unled(contacts, -1).resting(outer)
+
+    def position(angle: Array) -> Array:
+        """Position of contact 1 (n,)."""
+        rows: Array = first.rows(angle)[0] / follower.si
+        return rows
+
+    def apart(angle: Array) -> Array:
+        """Position with contact 2 held less that with contact 1 (n,)."""
+        rows: Array = others[0].rows(angle)[0] / follower.si
+        return rows - position(angle)
+
     phi = TURN * np.arange(steps) / steps
-    drives = follower.drives(contour)
-    rows = _rows(follower, drives[0], phi)
+    rows = first.rows(phi) / follower.si
     pressure, radius = follower.pressed(contour, phi)
-    least, most = (_extreme(follower, drives[0], phi, rows[0], sign) for sign in (-1.0, 1.0))
-    breadth = None
-    if len(drives) > 1:
-        apart = np.concatenate([sum(drive.rows(angle)[0] for drive in drives) for angle in (phi, _breaks(drives))])
-        breadth = float(apart.min()) / follower.si, float(apart.max()) / follower.si
-    return MeasuredMotion(follower.unit, phi, rows, pressure, radius, least, most, breadth)
+    leaps = np.concatenate([drive.breaks for drive in (first, *others)])
+    finer = np.concatenate([phi, leaps - LEAP, leaps + LEAP])
+    step = TURN / steps
+    gap = apart(phi) if others else None
+    return MeasuredMotion(
+        follower.unit,
+        phi,
+        rows,
+        pressure,
+        radius,
+        least=_extreme(position, finer, step, -1.0),
+        most=_extreme(position, finer, step, 1.0),
+        second=None if gap is None else rows[0] + gap,
+        apart=None if gap is None else (_extreme(apart, finer, step, -1.0)[0], _extreme(apart, finer, step, 1.0)[0]),
+        travel=follower.contact_travel(contour),
+    )
 
 
-def _breaks(drives: Sequence[Excitation]) -> Array:
-    return np.concatenate([drive.breaks for drive in drives])
-
-
-def _rows(follower: Follower, drive: Excitation, phi: Array) -> Array:
-    """Position of contact 1 from the foot of the shaft, or its angle at the pivot, with two derivatives (3, n)."""
-    rows: Array = drive.rows(phi) / follower.si
+def positions(contour: Contour, contact: Contact[Guide, Touch], side: Side, phi: Array) -> Array:
+    """Positions of a follower of one contact at shaft angles phi (n,), mm or rad (n,); see `measured`."""
+    follower = unled((contact,), side)
+    rows: Array = follower.resting(contour)[0].rows(phi)[0] / follower.si
     return rows
 
 
-def _extreme(follower: Follower, drive: Excitation, phi: Array, position: Array, sign: float) -> tuple[float, float]:
-    """Greatest of sign * position, and its shaft angle: the samples are looked at more closely about the best."""
-    at = float(phi[int(np.argmax(sign * position))])
-    step = TURN / len(phi)
-    value = float((sign * position).max())
+def _extreme(values: Callable[[Array], Array], angles: Array, step: float, sign: float) -> tuple[float, float]:
+    """Greatest of sign * values over shaft angles (n,) and up to `step` from the best of them: value and angle."""
+    heights = sign * values(angles)
+    best = int(np.argmax(heights))
+    height, place = float(heights[best]), float(angles[best])
     for _ in range(ROUNDS):
-        angle = at + step * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)
-        there = sign * _rows(follower, drive, angle)[0]
-        best = int(np.argmax(there))
-        if there[best] > value:
-            value, at = float(there[best]), float(angle[best])
+        closer = place + step * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)
+        heights = sign * values(closer)
+        best = int(np.argmax(heights))
+        if heights[best] > height:
+            height, place = float(heights[best]), float(closer[best])
         step /= CLOSER
-    return sign * value, at % TURN
+    return sign * height, place % TURN
 
 
-def _longest_flat(position: Array, left: Mask, span: float) -> tuple[int, int]:
-    """First index and number of the longest run round the turn, of what is left, whose positions differ by `span`."""
+def _ahead(near: Mask) -> int:
+    """Number of entries before the first that is False."""
+    return len(near) if near.all() else int(np.argmin(near))
+
+
+def _longest_flat(position: Array, free: Mask, span: float) -> tuple[int, int]:
+    """First index and number of the longest run, among the free ones round the turn, that spans `span` at most."""
     n = len(position)
     best, begin = (0, 0), 0
     low: deque[int] = deque()
     high: deque[int] = deque()
     for end in range(2 * n):
-        if not left[end % n]:
+        if not free[end % n]:
             low.clear()
             high.clear()
             begin = end + 1
@@ -170,23 +202,4 @@ def _longest_flat(position: Array, left: Mask, span: float) -> tuple[int, int]:
                 high.popleft()
         if end - begin + 1 > best[1]:
             best = begin, end - begin + 1
-    return best
-
-
-def _longest_about(position: Array, middle: int, span: float) -> int:
-    """Number of positions in the longest run through one of them that differ by no more than `span`."""
-    n = len(position)
-    turned = np.roll(position, -(middle % n))
-    ahead, behind = turned, turned[np.r_[0, n - 1 : 0 : -1]]
-    low, high = 0, 0
-    ups = [np.minimum.accumulate(ahead), np.maximum.accumulate(ahead)]
-    downs = [np.minimum.accumulate(behind), np.maximum.accumulate(behind)]
-    best = 1
-    for low in range(n):
-        least, most = downs[0][low], downs[1][low]
-        if most - least > span:
-            break
-        fits = np.maximum(ups[1], most) - np.minimum(ups[0], least) <= span
-        high = int(np.argmin(fits)) if not fits.all() else n
-        best = max(best, min(low + high, n))
     return best

@@ -68,6 +68,11 @@ class Bearing:
         u = unit(nodes + turned)
         return stretch, self._rows(low, stretch, u[:-1]), self._rows(high, stretch, u[1:])
 
+    def all_round(self, steps: int) -> Array:
+        """Return q, q', q'' (3, n) at steps of the turn and at both sides of each break."""
+        _, low, high = self.between(self.nodes(0.0, TURN, TURN * np.arange(steps) / steps))
+        return np.concatenate([low, high], axis=1)
+
     def breadth_extremes(self, resolution: float) -> Extremes:
         """Extremes of the breadth q(theta) + q(theta + pi), over theta from 0 to pi, mm, to a resolution."""
         nodes = self.nodes(0.0, np.pi, np.mod(self.breaks - np.pi, TURN))

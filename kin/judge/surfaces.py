@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.contour.arcs import cross, dot
+from kin.contour.about import goes_round
 from kin.judge.bore import round_check
 from kin.numeric.angles import TURN
 from kin.read.errors import ReadError
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent, SurfaceIntent
     from kin.read.nesting import Chain
 
-LOOKS = 16  # on each piece: an arc of a whole turn is seen to go round
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
 
 
@@ -94,10 +93,3 @@ def missing(surface: SurfaceIntent, part: PartIntent) -> str:
         flank = " flank" if len(part.surfaces) > 1 else ""
         return f"the {surface.name}{flank} is missing, on which its follower runs"
     return "the ring has no opening about the shaft, in which its follower runs"
-
-
-def goes_round(contour: Contour) -> bool:
-    """Whether a contour encloses the shaft."""
-    points = contour.sample(LOOKS)
-    after = np.roll(points, -1, axis=0)
-    return bool(abs(np.arctan2(cross(points, after), dot(points, after)).sum()) > np.pi)

@@ -43,7 +43,8 @@ LENGTHS = [
     "10",
     "1 mm mm",
 ]
-FOLLOWED = ("roller", "offset", "arm", "at", "units", "rotation", "reading", "table", "recipe", "page")
+FOLLOWED = ["roller", "shoe", "width", "offset", "arm", "track", "at", "units", "rotation", "reading"]
+FOLLOWED += ["table", "recipe", "page"]
 OPTIONS: dict[str, list[list[str]]] = {
     "export": [["-v"], ["--json"], ["--only"], ["--out"], ["--tolerance"], ["--jobs"], ["--nothing"]],
     "check": [["-v"], ["--json"], ["--out"], ["--tolerance"], ["--jobs"]],
@@ -85,6 +86,9 @@ GIVEN = {
     "--table": ["turn.csv", "cam.yaml", "", "/dev/null/out"],
     "--recipe": ["found.yaml", "cam.yaml", "found", "a/b/c", "."],
     "--roller": LENGTHS,
+    "--shoe": LENGTHS,
+    "--width": [*LENGTHS, "60"],
+    "--track": ["internal", "groove", "external", "inside", ""],
     "--offset": LENGTHS,
     "--reading": LENGTHS,
     "--arm": [*LENGTHS, "30,20", "30,20,10", ",", "1e400,2", "30"],

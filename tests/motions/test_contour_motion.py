@@ -78,6 +78,20 @@ def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
     assert report["ok"]
 
 
+@pytest.mark.parametrize(("track", "outer"), [("internal", 140), ("{groove: {clearance: 0.02}}", 140)])
+def test_rings_and_grooves_come_back(track, outer, tmp_path):
+    def cam(motion):
+        return load_text(
+            f"cam: {{kind: disc, base_radius: 40, track: {track}, follower: {FOLLOWERS['roller']}, motion: {motion}}}\n"
+            f"part: {{outer: {outer}}}\nexport: {{tolerance: 0.001, files: [dxf]}}\n",
+            tmp_path / "cam.yaml",
+        )
+
+    assert pipeline.export(cam(MOTION), tmp_path / "out").report["ok"]
+    made = cam("{contour: out/cam/cam.dxf, reading: 0.003}").cam.exact()
+    assert moved(made)[0] == pytest.approx(moved(cam(MOTION).cam.exact())[0], abs=0.006)
+
+
 @pytest.mark.parametrize(
     ("motion", "message"),
     [

@@ -6,6 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from camgeo.capabilities.follow.follower import TRACKS
 from camgeo.cli.arguments import decimal, name_of
 from camgeo.cli.exit_status import OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, say, say_json
@@ -22,12 +25,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
     parser.add_argument("file", type=name_of, metavar="FILE", help="a drawing or a solid")
     parser.add_argument("--roller", type=_length, metavar="R", help="radius of the roller, mm; 0 for a knife edge")
+    parser.add_argument("--shoe", type=_length, metavar="R", help="radius of a curved shoe, mm, in place of a roller")
     parser.add_argument("--flat", action="store_true", help="a flat face in place of a roller")
+    parser.add_argument("--width", type=_length, metavar="W", help="width of that face, centred on the stem's axis, mm")
     parser.add_argument("--offset", type=_length, default=0.0, metavar="E", help="of the line of travel, mm")
-    text = "an arm: distance of its pivot from the shaft, and with a roller its length, mm: 80,65"
+    text = "an arm: distance of its pivot from the shaft, and with a round touch its length, mm: 80,65"
     parser.add_argument("--arm", type=_lengths, metavar="D[,L]", help=text)
     parser.add_argument("--leading", action="store_true", help="the arm leads (default: it trails)")
     parser.add_argument("--yoke", action="store_true", help="a second contact stands opposite")
+    text = "where a roller runs: outside, in the opening of a ring, or between two flanks (default: external)"
+    parser.add_argument("--track", choices=TRACKS, default="external", help=text)
     parser.add_argument("--units", choices=UNIT_MM, help="unit of a file that states none (R12 drawings, STL)")
     text = "place of the shaft in the file, mm (default: 0,0); write --at=-3,2 where it begins with a minus"
     parser.add_argument("--at", type=_lengths, default=(0.0, 0.0), metavar="X,Y", help=text)
@@ -75,11 +82,14 @@ def run(arguments: argparse.Namespace) -> int:
         followed = follow(
             arguments.file,
             roller=arguments.roller,
+            shoe=arguments.shoe,
             flat=arguments.flat,
+            width=arguments.width,
             offset=arguments.offset,
             arm=arguments.arm,
             leading=arguments.leading,
             yoke=arguments.yoke,
+            track=arguments.track,
             units=arguments.units,
             at=arguments.at,
             rotation=arguments.rotation,
@@ -114,8 +124,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def document(followed: Followed) -> dict[str, Any]:
-    """What was found as plain data; lengths in mm, angles in degrees."""
+    """The motion's figures as plain data; lengths in mm, angles in degrees."""
     scale, unit = (1.0, "mm") if followed.unit == "mm" else (math.degrees(1.0), "deg")
+    travel, radius = followed.contact_travel, followed.radius
     return {
         "file": followed.path.name,
         "follower": followed.follower.words,
@@ -133,41 +144,55 @@ def document(followed: Followed) -> dict[str, Any]:
             }
             for rest in followed.rests
         ],
-        "pressure_angle": _peak(followed, math.degrees(1.0) * abs(followed.pressure_angle), largest=True),
-        "radius_of_curvature": _peak(followed, followed.radius, largest=False),
+        "pressure_angle": _least(followed, -math.degrees(1.0) * abs(followed.pressure_angle)),
+        "radius_of_curvature": _least(followed, np.where(radius < 0.0, math.inf, radius)),
+        "hollow_radius": _least(followed, np.where(radius < 0.0, -radius, math.inf)),
         "breadth": None if followed.breadth is None else list(followed.breadth),
+        "play": None if followed.play is None else [scale * value for value in followed.play],
+        "contact_travel": None if travel is None else list(travel),
     }
 
 
-def _peak(followed: Followed, values: Array, *, largest: bool) -> dict[str, float]:
-    """The greatest or the least of values over the turn, and its shaft angle."""
-    place = int(values.argmax() if largest else values.argmin())
-    return {"value": float(values[place]), "at_deg": math.degrees(float(followed.theta[place]))}
+def _least(followed: Followed, values: Array) -> dict[str, float] | None:
+    """Size of the least of values over the turn, and its shaft angle; None where none is finite."""
+    place = int(values.argmin())
+    if not math.isfinite(values[place]):
+        return None
+    return {"value": abs(float(values[place])), "at_deg": math.degrees(float(followed.theta[place]))}
 
 
 def summary(followed: Followed) -> str:
-    """What was found, in lines."""
-    found = document(followed)
-    unit = found["unit"]
-    least, most = found["least"], found["greatest"]
+    """The motion's figures in lines of text."""
+    figures = document(followed)
+    unit, least, most = figures["unit"], figures["least"], figures["greatest"]
     ends = f"least at {least['at_deg']:.2f} degrees, greatest at {most['at_deg']:.2f}"
     lines = [
-        f"{escaped(found['file'])}: {found['follower']}",
-        f"  lift {found['lift']:.6g} {unit}, {ends}; base radius {found['base_radius']:.6g} mm",
+        f"{escaped(figures['file'])}: {figures['follower']}",
+        f"  lift {figures['lift']:.6g} {unit}, {ends}; base radius {figures['base_radius']:.6g} mm",
     ]
-    for dwell in found["dwells"]:
+    for dwell in figures["dwells"]:
         end = (dwell["start_deg"] + dwell["length_deg"]) % 360.0
-        height = dwell["position"] - least["position"]
+        height = round(dwell["position"] - least["position"], 7) + 0.0  # no more than rounding on a large roller
         lines.append(
             f"  dwell at {height:.6g} {unit} from {dwell['start_deg']:.1f} to {end:.1f} degrees, "
             f"flat within {dwell['flatness']:.2g} {unit}"
         )
-    angle, radius = found["pressure_angle"], found["radius_of_curvature"]
-    lines.append(
-        f"  pressure angle up to {angle['value']:.2f} degrees at {angle['at_deg']:.1f}; "
-        f"least radius of curvature {radius['value']:.4g} mm at {radius['at_deg']:.1f}"
-    )
-    if found["breadth"] is not None:
-        low, high = found["breadth"]
-        lines.append(f"  breadth from {low:.6g} to {high:.6g} mm")
+    angle = figures["pressure_angle"]
+    lines.append(f"  pressure angle up to {angle['value']:.2f} degrees at {angle['at_deg']:.1f}")
+    radii = {"least radius of curvature": "radius_of_curvature", "least radius of a hollow": "hollow_radius"}
+    for words, key in radii.items():
+        if (radius := figures[key]) is not None:
+            corner = "" if radius["value"] else ", a corner,"
+            lines.append(f"  {words} {radius['value']:.4g} mm{corner} at {radius['at_deg']:.1f} degrees")
+    for words, key, scale in (("breadth", "breadth", "mm"), ("play in the groove", "play", unit)):
+        if (pair := figures[key]) is not None:
+            lines.append(f"  {words} from {pair[0]:.6g} to {pair[1]:.6g} {scale}")
+    if (travel := figures["contact_travel"]) is not None:
+        lines.append(f"  contact on the face from {travel[0]:.6g} to {travel[1]:.6g} mm{_width(followed)}")
     return "\n".join(lines)
+
+
+def _width(followed: Followed) -> str:
+    """The least width of a face that is centred on the stem's axis; empty on an arm."""
+    low, high = followed.contact_travel or (0.0, 0.0)
+    return "" if followed.unit == "rad" else f", a centred face is {2.0 * max(abs(low), abs(high)):.6g} mm wide"

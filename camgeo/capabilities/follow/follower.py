@@ -1,80 +1,60 @@
-"""The follower that a call describes: one contact, or two opposite ones, and the keys of a recipe that describe it."""
+"""The follower that a call describes: its contacts for the judge's geometry, its words, and its keys in a recipe."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.common.errors import CallError
 from camgeo.schema.fields import MOST
-from kin.law.contacts import LEADING, TRAILING, Contact, Flat, KnifeEdge, Oscillating, Roller, Translating
+from kin.law.contacts import LEADING, TRAILING, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Guide, Touch
+    from kin.law.contacts import Guide, Side, Touch
+
+Track: TypeAlias = Literal["external", "internal", "groove"]
+TRACKS: dict[Track, str] = {"external": "", "internal": ", inside a ring", "groove": ", in a groove"}
+LENGTHS = 2  # numbers of an arm at most: distance of its pivot, and its own length
 
 
 @dataclass(frozen=True)
-class FollowerAsked:
-    """A follower in the words of a call; lengths in mm.
+class FollowerDescription:
+    """A follower: its touch and its guide, lengths in mm.
 
-    roller   radius of its roller, 0 for a knife edge; None for a flat face
-    offset   of its line of travel from the shaft, above 0 on the side from which the surface comes
-    pivot    distance of its arm's pivot from the shaft; None on a stem
-    length   of its arm to the roller's centre; None of a flat face
-    leading  whether the arm leads, where it trails else
-    yoke     whether a second contact stands opposite, in one frame with the first
+    track  external: it runs on the outside of the metal; internal: in the opening of a ring; groove: between two flanks
+    yoke   whether a second contact stands opposite, in one frame with the first
     """
 
-    roller: float | None
-    offset: float = 0.0
-    pivot: float | None = None
-    length: float | None = None
-    leading: bool = False
+    touch: Touch
+    guide: Guide
+    track: Track = "external"
     yoke: bool = False
 
-    def demand_sound(self) -> None:
-        """Raise CallError with all that does not go together."""
-        flat, arm = self.roller is None, self.pivot is not None
-        faults = []
-        for name, value in (
-            ("roller", self.roller),
-            ("offset", self.offset),
-            ("arm", self.pivot),
-            ("arm", self.length),
-        ):
-            if value is not None and not (math.isfinite(value) and abs(value) <= MOST):
-                faults.append(f"{name} is a length of at most {MOST:.10g} mm, not {value!r}")
-        if self.roller is not None and not self.roller >= 0.0:
-            faults.append(f"a roller has a radius of 0 or above, not {self.roller!r}; 0 is a knife edge")
-        if self.pivot is not None and not self.pivot > 0.0:
-            faults.append(f"an arm's pivot stands at a distance above 0 from the shaft, not {self.pivot!r}")
-        if arm and not flat and not (self.length is not None and self.length > 0.0):
-            faults.append("an arm with a roller has a length: give arm as pivot distance and length, 80,65")
-        if arm and flat and self.length is not None:
-            faults.append("an arm with a flat face has no length: give arm as the pivot's distance alone")
-        if arm and self.offset:
-            faults.append("an arm has no offset: leave one of them out")
-        if self.leading and not arm:
-            faults.append("only an arm leads: leave leading out, or give arm")
-        if self.yoke and (arm or self.offset):
-            faults.append("a yoke travels on a line through the shaft: leave arm and offset out")
-        if faults:
-            raise CallError(*faults)
+    @property
+    def flat(self) -> bool:
+        """Whether it has a flat face."""
+        return isinstance(self.touch, Flat)
 
     @property
-    def guide(self) -> Guide:
-        """Line of travel or arm."""
-        if self.pivot is None:
-            return Translating(self.offset)
-        return Oscillating(self.pivot, LEADING if self.leading else TRAILING, self.length)
+    def arm(self) -> Oscillating | None:
+        """The arm; None on a stem."""
+        return self.guide if isinstance(self.guide, Oscillating) else None
 
     @property
-    def touch(self) -> Touch:
-        """Roller, knife edge or flat face."""
-        if self.roller is None:
-            return Flat()
-        return Roller(self.roller) if self.roller else KnifeEdge()
+    def offset(self) -> float:
+        """How far from the shaft its line of travel passes, mm; 0 on an arm."""
+        return self.guide.offset if isinstance(self.guide, Translating) else 0.0
+
+    @property
+    def side(self) -> Side:
+        """Side of the contour on which the metal lies: inside (1), or outside (-1) of a ring's opening."""
+        return -1 if self.track == "internal" else 1
+
+    @property
+    def lever(self) -> float:
+        """How far from the pivot a motion in radians is mm, about: the arm's length, or the pivot's distance."""
+        return 1.0 if self.arm is None else self.arm.length or self.arm.pivot
 
     @property
     def contacts(self) -> tuple[Contact[Guide, Touch], ...]:
@@ -85,31 +65,107 @@ class FollowerAsked:
 
     @property
     def words(self) -> str:
-        """What it is called in a line of text."""
-        touch = {None: "flat face", 0.0: "knife edge"}.get(self.roller, f"roller of radius {self.roller or 0.0:.6g} mm")
+        """The follower in a line of text."""
+        radius = f" of radius {self.touch.radius:.6g} mm" if self.touch.radius else ""
+        touch = f"{self.touch.word}{radius}"
         if self.yoke:
             return f"yoke, {touch}"
-        if self.pivot is None:
-            return f"{touch} on a stem" + (f", offset {self.offset:.6g} mm" if self.offset else "")
-        long = "" if self.length is None else f" of {self.length:.6g} mm"
-        return f"{touch} on a {'leading' if self.leading else 'trailing'} arm{long}, pivot at {self.pivot:.6g} mm"
+        if self.arm is None:
+            beside = f", offset {self.offset:.6g} mm" if self.offset else ""
+            return f"{touch} on a stem{beside}{TRACKS[self.track]}"
+        length = "" if self.arm.length is None else f" of {self.arm.length:.6g} mm"
+        side = "leading" if self.arm.side == LEADING else "trailing"
+        return f"{touch} on a {side} arm{length}, pivot at {self.arm.pivot:.6g} mm{TRACKS[self.track]}"
 
-    def base_radius(self, least: float) -> float:
-        """Base radius, mm, of the cam on which it stands at a least position, mm or rad."""
-        radius = self.roller or 0.0
-        if self.pivot is None:
-            return least if self.roller is None else math.hypot(least, self.offset) - radius
-        if self.length is None:
-            return self.pivot * math.sin(least)
-        far = self.pivot**2 + self.length**2 - 2.0 * self.pivot * self.length * math.cos(least)
-        return math.sqrt(far) - radius
+    def base_radius(self, position: float) -> float:
+        """Radius, mm, of the metal's circle about the shaft on which it stands at a position, mm or rad."""
+        inward = self.side * self.touch.radius
+        if self.arm is None:
+            return position if self.flat else math.hypot(position, self.offset) - inward
+        pivot, length = self.arm.pivot, self.arm.length
+        if length is None:
+            return pivot * math.sin(position)
+        return math.sqrt(pivot**2 + length**2 - 2.0 * pivot * length * math.cos(position)) - inward
 
     @property
     def keys(self) -> str:
-        """What a recipe has below `cam.follower`, on one line."""
-        kind = {None: "kind: flat", 0.0: "kind: knife-edge"}.get(self.roller, f"kind: roller, radius: {self.roller!r}")
-        if self.pivot is None:
-            return f"{{{kind}, offset: {self.offset!r}}}" if self.offset else f"{{{kind}}}"
-        long = "" if self.length is None else f"length: {self.length!r}, "
-        side = "leading" if self.leading else "trailing"
-        return f"{{{kind}, arm: {{{long}pivot: {self.pivot!r}, side: {side}}}}}"
+        """The value of `cam.follower` in a recipe of kind disc, on one line."""
+        keys = [f"kind: {KINDS[self.touch.word]}"]
+        if self.touch.radius:
+            keys.append(f"radius: {self.touch.radius!r}")
+        if isinstance(self.touch, Flat) and self.touch.width is not None:
+            keys.append(f"width: {self.touch.width!r}")
+        if self.offset:
+            keys.append(f"offset: {self.offset!r}")
+        if self.arm is not None:
+            length = "" if self.arm.length is None else f"length: {self.arm.length!r}, "
+            side = "leading" if self.arm.side == LEADING else "trailing"
+            keys.append(f"arm: {{{length}pivot: {self.arm.pivot!r}, side: {side}}}")
+        return f"{{{', '.join(keys)}}}"
+
+
+KINDS = {Roller.word: "roller", KnifeEdge.word: "knife-edge", Shoe.word: "shoe", Flat.word: "flat"}
+
+
+def described(
+    *,
+    roller: float | None,
+    shoe: float | None,
+    flat: bool,
+    width: float | None,
+    offset: float,
+    arm: tuple[float, ...],
+    leading: bool,
+    yoke: bool,
+    track: Track,
+) -> FollowerDescription:
+    """Make the follower of a call's arguments, lengths in mm; raises CallError with all that does not go together."""
+    touches = (roller is not None) + (shoe is not None) + flat
+    if touches != 1:
+        raise CallError(
+            "a follower has a roller, of radius 0 for a knife edge, or a shoe, or is flat: give one of them"
+        )
+    lengths = {"roller": roller, "shoe": shoe, "width": width, "offset": offset} | {
+        f"arm[{i}]": value for i, value in enumerate(arm)
+    }
+    faults = [
+        f"{name.partition('[')[0]} is a length of at most {MOST:.10g} mm, not {value!r}"
+        for name, value in lengths.items()
+        if value is not None and not (math.isfinite(value) and abs(value) <= MOST)
+    ]
+    if roller is not None and roller < 0.0:
+        faults.append(f"a roller has a radius of 0 or above, not {roller!r}; 0 is a knife edge")
+    if shoe is not None and shoe <= 0.0:
+        faults.append(f"a shoe has a radius above 0, not {shoe!r}; a knife edge is a roller of radius 0")
+    if width is not None and width <= 0.0:
+        faults.append(f"a face has a width above 0, not {width!r}")
+    if width is not None and (not flat or arm):
+        faults.append("only a flat face on a line of travel has a width: leave width out, or give flat without an arm")
+    if len(arm) > LENGTHS:
+        faults.append("arm is the distance of its pivot from the shaft, and the length of an arm with a round touch")
+    if any(value <= 0.0 for value in arm):
+        faults.append(f"an arm's pivot and length are lengths above 0, not {', '.join(map(repr, arm))}")
+    if arm and flat and len(arm) == LENGTHS:
+        faults.append("an arm with a flat face has no length: give arm as the pivot's distance alone")
+    if arm and not flat and len(arm) < LENGTHS:
+        faults.append("an arm with a round touch has a length: give arm as pivot distance and length, 80,65")
+    if arm and offset:
+        faults.append("an arm has no offset: leave one of them out")
+    if leading and not arm:
+        faults.append("only an arm leads: leave leading out, or give arm")
+    if yoke and (arm or offset):
+        faults.append("a yoke travels on a line through the shaft: leave arm and offset out")
+    if track != "external" and (yoke or not roller):
+        faults.append(f"{TRACKS[track][2:]} a roller runs: give roller above 0, without yoke, or leave track out")
+    if faults:
+        raise CallError(*faults)
+    if flat:
+        touch: Touch = Flat(width=width)
+    elif shoe is not None:
+        touch = Shoe(shoe)
+    else:
+        touch = Roller(roller) if roller else KnifeEdge()
+    guide: Guide = Translating(offset)
+    if arm:
+        guide = Oscillating(arm[0], LEADING if leading else TRAILING, None if flat else arm[1])
+    return FollowerDescription(touch, guide, track, yoke)

@@ -1,4 +1,4 @@
-"""The motion of a contour from a program, as `camgeo follow` finds it from a terminal."""
+"""The motion of a contour from a program, as `camgeo follow` gives it at a terminal."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.capabilities.follow.follower import FollowerAsked
-from camgeo.capabilities.follow.outline import contour_of
+from camgeo.capabilities.follow.follower import TRACKS, described
+from camgeo.capabilities.follow.outline import outline_of
 from camgeo.common.arguments import is_a, number_of, path_of, spelled, text_of, whole_of
 from camgeo.common.errors import CallError, with_packages
+from camgeo.common.rounding import upward
+from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.schema.fields import MOST
 from kin.follower.measured import measured
@@ -22,14 +24,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.report import Report
+    from camgeo.capabilities.follow.follower import FollowerDescription, Track
+    from camgeo.capabilities.follow.outline import Outline
     from camgeo.common.units import Units
     from kin.follower.measured import MeasuredMotion
     from kin.numeric.arrays import Array
 
 READING = 0.01  # mm, to which a dwell rests and a recipe's motion keeps to the rows, where nothing is said
 STEPS = 720
-MOST_STEPS = 100_000
-LENGTHS = 2  # numbers of a place, and at most of an arm
+LEAST_STEPS, MOST_STEPS = 36, 100_000
+LENGTHS = 2  # numbers of a place
 
 
 @dataclass(frozen=True)
@@ -50,22 +54,33 @@ class Followed:
     along the line of travel from the foot of the shaft, or the angle at the pivot between the line to the shaft and the
     arm; `velocity` and `acceleration` (n,) are by radian of the shaft. `pressure_angle` (n,) is above 0 where the cam
     drives a rise, `radius` (n,) the contour's radius of curvature where it is touched, negative in a hollow, 0 at a
-    corner. `bore` is the diameter of a round hole about the shaft, None without one.
+    corner. `bore` is the diameter of a round hole about the shaft, `blank` that of a round outline of a ring or of a
+    groove's blank; None without one.
     """
 
     path: Path
-    follower: FollowerAsked
+    follower: FollowerDescription
     rotation: Literal["cw", "ccw"]
     at: tuple[float, float]
     units: float | None
     reading: float
-    bore: float | None
+    _outline: Outline = field(repr=False)
     _motion: MeasuredMotion = field(repr=False)
 
     @property
     def unit(self) -> Literal["mm", "rad"]:
         """Unit of the motion."""
         return "mm" if self._motion.unit == "mm" else "rad"
+
+    @property
+    def bore(self) -> float | None:
+        """Diameter of a round hole about the shaft; None without one."""
+        return self._outline.bore
+
+    @property
+    def blank(self) -> float | None:
+        """Diameter of a round outline of a ring or of a groove's blank; None without one."""
+        return self._outline.blank
 
     @property
     def theta(self) -> Array:
@@ -102,8 +117,19 @@ class Followed:
 
     @property
     def breadth(self) -> tuple[float, float] | None:
-        """Least and greatest distance between two opposite contacts; None of one contact."""
-        return self._motion.breadth
+        """Least and greatest distance between a yoke's faces, or its rollers' centres; None of one contact."""
+        apart = self._motion.apart
+        return (-apart[1], -apart[0]) if self.follower.yoke and apart is not None else None
+
+    @property
+    def play(self) -> tuple[float, float] | None:
+        """Least and greatest way of a roller from flank to flank of a groove, in the motion's unit; None elsewhere."""
+        return None if self.follower.yoke else self._motion.apart
+
+    @property
+    def contact_travel(self) -> tuple[float, float] | None:
+        """Least and greatest place of contact on a flat face, from the stem's axis or the pivot's foot; else None."""
+        return self._motion.travel
 
     @property
     def least(self) -> tuple[float, float]:
@@ -133,55 +159,103 @@ class Followed:
     @property
     def _reading(self) -> float:
         """The reading as one of the motion: mm, or on an arm the angle that it is at the touch."""
-        if self.unit == "mm":
-            return self.reading
-        return self.reading / (self.follower.length or self.follower.pivot or 1.0)
+        return self.reading if self.unit == "mm" else self.reading / self.follower.lever
 
     def table(self) -> str:
         """Everything over the turn as CSV: a header, then a row a step; angles in degrees."""
         arm = self.unit == "rad"
         scale, unit = (math.degrees(1.0), "deg") if arm else (1.0, "mm")
-        names = ["shaft_deg", f"position_{unit}", f"velocity_{unit}_per_rad", f"acceleration_{unit}_per_rad2"]
-        names += ["pressure_angle_deg", "radius_of_curvature_mm"]
         finite = np.where(np.isfinite(self.radius), self.radius, np.nan)
-        columns = [np.degrees(self.theta), *(scale * self._motion.rows), np.degrees(self.pressure_angle), finite]
-        rows = np.column_stack(columns) + 0.0
+        columns = {
+            "shaft_deg": np.degrees(self.theta),
+            f"position_{unit}": scale * self.position,
+            f"velocity_{unit}_per_rad": scale * self.velocity,
+            f"acceleration_{unit}_per_rad2": scale * self.acceleration,
+            "pressure_angle_deg": np.degrees(self.pressure_angle),
+            "radius_of_curvature_mm": finite,
+        }
+        second = self._motion.second
+        if second is not None:
+            name, sign = ("breadth_mm", -1.0) if self.follower.yoke else (f"play_{unit}", scale)
+            columns[name] = sign * (second - self.position)
+        rows = np.column_stack(list(columns.values())) + 0.0
         lines = [",".join("" if math.isnan(value) else f"{value:.12g}" for value in row) for row in rows.tolist()]
-        return "\n".join([",".join(names), *lines, ""])
+        return "\n".join([",".join(columns), *lines, ""])
 
     def lifts(self) -> str:
-        """The motion as a table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees."""
+        """The motion as a table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
+
+        A yoke's is over half a turn, from its position at 0, with half of what the breadth is off its middle on either
+        face.
+        """
         scale = 1.0 if self.unit == "mm" else math.degrees(1.0)
-        lift = scale * (self.position - self._motion.least[0])
-        pairs = zip(np.degrees(self.theta).tolist(), lift.tolist(), strict=True)
+        theta, lift = self.theta, scale * (self.position - self._motion.least[0])
+        if self.breadth is not None and self._motion.second is not None:
+            half = len(theta) // 2 + 1
+            middle = 0.5 * (self.position + self._motion.second)[:half]
+            theta, lift = theta[:half], middle - middle[0]
+        pairs = zip(np.degrees(theta).tolist(), (np.round(lift, 9) + 0.0).tolist(), strict=True)
         return "".join(["angle,lift\n", *(f"{angle:.12g},{value:.9f}\n" for angle, value in pairs)])
 
     def recipe(self, table: str) -> str:
-        """The recipe of a disc cam with this motion, whose lifts are in the file `table`; raises CallError for a yoke.
+        """The recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion keeps to the rows within the reading, and so does its contour to that of the file, about.
+        Its motion keeps to the rows within the reading, and so does its contour to that of the file, about. Raises
+        CallError for a yoke whose breadth varies by more than two readings or whose turn is in an odd number of steps,
+        and for a ring without a round outline.
         """
         is_a("table", table, str, "a str")
-        if self.follower.yoke:
-            raise CallError("a recipe is made of one contact: leave yoke out")
         if not table.isprintable() or not table:
             raise CallError(f"table is the name of a file of lifts, not {spelled(table)}")
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
-        bore = "" if self.bore is None else f"part: {{bore: {self.bore:.9g}}}\n"
-        about = f"The motion of {self.path.name} as a {self.follower.words} has it, within {self.reading:.6g} mm"
-        return (
-            f"about: {_quoted(about)}\n"
-            f"rotation: {self.rotation}\n"
-            "cam:\n"
-            "  kind: disc\n"
-            f"  base_radius: {self.base_radius:.9g}\n"
-            f"  follower: {self.follower.keys}\n"
-            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}\n"
-            f"{bore}"
-            "export:\n"
-            f"  tolerance: {self.reading:.6g}\n"
-            "  files: [dxf, csv, html]\n"
-        )
+        about = f"The motion of {self.path.name} under a {self.follower.words}, within {self.reading:.6g} mm"
+        cam = self._yoke() if self.follower.yoke else self._disc()
+        part = {"bore": self.bore, "outer": self.blank if self.follower.track != "external" else None}
+        keys = ", ".join(f"{key}: {value:.9g}" for key, value in part.items() if value is not None)
+        lines = [
+            f"about: {_quoted(about)}",
+            f"rotation: {self.rotation}",
+            "cam:",
+            *(f"  {key}: {value}" for key, value in cam.items()),
+            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}",
+            *([f"part: {{{keys}}}"] if keys else []),
+            "export:",
+            f"  tolerance: {self.reading:.6g}",
+            "  files: [dxf, csv, html]",
+            "",
+        ]
+        return "\n".join(lines)
+
+    def _disc(self) -> dict[str, str]:
+        """Keys of a cam of kind disc, without its motion."""
+        keys = {"kind": "disc", "base_radius": f"{self.base_radius:.9g}", "follower": self.follower.keys}
+        if self.follower.track == "internal":
+            if self.blank is None:
+                raise CallError(
+                    f"{escaped(str(self.path))}: a ring's recipe has a round outline: leave recipe and page out"
+                )
+            keys["track"] = "internal"
+        if self.follower.track == "groove" and self._motion.second is not None:
+            play = self.follower.lever * (self._motion.second - self.position)
+            clearance = max(float(np.median(play * np.cos(self.pressure_angle))), 0.0)
+            keys["track"] = f"{{groove: {{clearance: {clearance:.6g}}}}}"
+        return keys
+
+    def _yoke(self) -> dict[str, str]:
+        """Keys of a cam for a yoke, without its motion."""
+        narrow, wide = self.breadth or (0.0, 0.0)
+        if wide - narrow > 2.0 * self.reading:
+            raise CallError(
+                f"the breadth varies by {wide - narrow:.6g} mm, and a recipe's cam has one: give reading "
+                f"{upward(0.5 * (wide - narrow))} or more, or leave yoke out"
+            )
+        if len(self.theta) % 2:
+            raise CallError("a recipe of a yoke has a table over half a turn: give an even number of steps")
+        middle = 0.5 * (float(self.position[0] - self.position[len(self.theta) // 2]) + 0.5 * (narrow + wide))
+        base = f"{middle - self.follower.touch.radius:.9g}"
+        if self.follower.flat:
+            return {"kind": "constant-breadth", "base_radius": base}
+        return {"kind": "constant-diameter", "base_radius": base, "roller_radius": f"{self.follower.touch.radius!r}"}
 
 
 def _quoted(text: str) -> str:
@@ -196,11 +270,14 @@ def follow(
     file: str | PathLike[str],
     *,
     roller: float | None = None,
+    shoe: float | None = None,
     flat: bool = False,
+    width: float | None = None,
     offset: float = 0.0,
     arm: tuple[float, ...] | float | None = None,
     leading: bool = False,
     yoke: bool = False,
+    track: Track = "external",
     units: Units | None = None,
     at: tuple[float, float] = (0.0, 0.0),
     rotation: Literal["cw", "ccw"] = "cw",
@@ -209,26 +286,32 @@ def follow(
 ) -> Followed:
     """Let a follower run on the contour of a drawing or a solid, and give the motion that it makes; lengths in mm.
 
-    The follower has a `roller` of a radius, 0 for a knife edge, or is `flat`. It is led on a line of travel that passes
-    the shaft at `offset`, or on an `arm`: the distance of its pivot from the shaft, and with a roller the length. The
-    arm trails, or is `leading`. A `yoke` has a second contact opposite. The shaft stands `at` a place of the file and
-    turns by `rotation` under a follower that stands along x at shaft angle 0. `units` is that of a file that states
-    none. A dwell rests within `reading` of its level.
+    The follower has a `roller` or a curved `shoe` of a radius, a roller of 0 being a knife edge, or is `flat`, perhaps
+    of a `width` that is centred on the stem's axis. It is led on a line of travel that passes the shaft at `offset`, or
+    on an `arm`: the distance of its pivot from the shaft, and with a round touch the length. The arm trails, or is
+    `leading`. A `yoke` has a second contact opposite. By its `track` a roller runs in the opening of a ring
+    ("internal") or in a "groove", where its motion is that on the inner flank. The shaft stands `at` a place of the
+    file and turns by `rotation` under a follower that stands along x at shaft angle 0. `units` is that of a file that
+    states none. A dwell rests within `reading` of its level.
 
-    Raises CallError for what cannot be read or does not go together, and where the follower does not meet the contour.
+    Raises CallError for what cannot be read or does not go together, where the follower does not meet the contour, and
+    where the contact leaves a face of that width.
     """
     path = path_of("file", file)
     for name, value in (("flat", flat), ("leading", leading), ("yoke", yoke)):
         is_a(name, value, bool, "a bool")
-    radius = None if roller is None else number_of("roller", roller)
-    if (radius is None) is not flat:
-        raise CallError("a follower has a roller, of radius 0 for a knife edge, or is flat: give one of both")
-    lengths = _numbers("arm", () if arm is None else arm if isinstance(arm, tuple) else (arm,))
-    pivot, length = (*lengths, None, None)[:LENGTHS]
-    if len(lengths) > LENGTHS:
-        raise CallError("arm is the distance of its pivot from the shaft, and the length of an arm with a roller")
-    asked = FollowerAsked(radius, number_of("offset", offset), pivot, length, leading=leading, yoke=yoke)
-    asked.demand_sound()
+    lengths = {"roller": roller, "shoe": shoe, "width": width}
+    touch = {name: None if value is None else number_of(name, value) for name, value in lengths.items()}
+    text_of("track", track, tuple(TRACKS), "a track")
+    follower = described(
+        **touch,
+        flat=flat,
+        offset=number_of("offset", offset),
+        arm=_numbers("arm", () if arm is None else arm if isinstance(arm, tuple) else (arm,)),
+        leading=leading,
+        yoke=yoke,
+        track=track,
+    )
     if units is not None:
         text_of("units", units, tuple(UNIT_MM), "a unit")
     text_of("rotation", rotation, ("cw", "ccw"), "a rotation")
@@ -238,15 +321,42 @@ def follow(
     within, count = number_of("reading", reading), whole_of("steps", steps)
     if not 0.0 < within <= MOST:
         raise CallError(f"a reading is a length above 0, not {spelled(reading)}")
-    if not 36 <= count <= MOST_STEPS:
-        raise CallError(f"a turn is looked at in 36 to {MOST_STEPS} steps, not {spelled(steps)}")
+    if not LEAST_STEPS <= count <= MOST_STEPS:
+        raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {spelled(steps)}")
     unit = None if units is None else UNIT_MM[units]
-    contour, bore = contour_of(path, unit, (place[0], place[1]), mirrored=rotation == "ccw")
+    outline = outline_of(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
     try:
-        motion = measured(contour, asked.contacts, count)
+        motion = measured(outline.contour, follower.contacts, count, follower.side, outline.outer)
     except ContactError as error:
-        raise CallError(f"{path}: {error}") from error
-    return Followed(path, asked, rotation, (place[0], place[1]), unit, within, bore, motion)
+        raise CallError(f"{escaped(str(path))}: {error}") from error
+    _demand_on_face(escaped(str(path)), motion, width)
+    _demand_groove(escaped(str(path)), motion, follower)
+    return Followed(path, follower, rotation, (place[0], place[1]), unit, within, outline, motion)
+
+
+def _demand_on_face(name: str, motion: MeasuredMotion, width: float | None) -> None:
+    """Raise CallError where the contact leaves a face of a width that is centred on the stem's axis."""
+    if width is None or motion.travel is None:
+        return
+    low, high = motion.travel
+    needed = 2.0 * max(abs(low), abs(high))
+    if needed > width:
+        raise CallError(
+            f"{name}: the contact leaves the face: it runs from {low:.6g} to {high:.6g} mm along it; give width "
+            f"{upward(needed)} or more, or leave it out"
+        )
+
+
+def _demand_groove(name: str, motion: MeasuredMotion, follower: FollowerDescription) -> None:
+    """Raise CallError where a roller has more play between two flanks, or overlaps them by more, than its diameter."""
+    if follower.track != "groove" or motion.apart is None:
+        return
+    low, high = (follower.lever * value for value in motion.apart)
+    if max(-low, high) > 2.0 * follower.touch.radius:
+        raise CallError(
+            f"{name}: no groove for this roller, whose play between the two outermost contours round the shaft would "
+            f"be {low:.6g} to {high:.6g} mm: leave track out, or give another roller"
+        )
 
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:

@@ -1,13 +1,13 @@
-"""The contour that a follower runs on, about the shaft, in mm and as if that turned clockwise."""
+"""The contours of a file on which a follower runs, about the shaft, in mm and as if that turned clockwise."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from kin.judge.surfaces import goes_round
+from kin.contour.about import circle_about, goes_round, tracks
+from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of, suffixes
@@ -18,20 +18,36 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from camgeo.capabilities.follow.follower import Track
     from kin.contour.contour import Contour
     from kin.read.nesting import Chain
 
-ROUND = 1e-6  # of its diameter: within this a chain is a circle
 MOST_NAMED = 3  # holes that a message offers for the shaft
+DEEPEST = {"external": 1, "internal": 1, "groove": 3}  # a groove's bore lies within two flanks and the blank
 
 
-def contour_of(
-    path: Path, units: float | None, at: tuple[float, float], *, mirrored: bool
-) -> tuple[Contour, float | None]:
-    """Read the outermost closed contour of a file that goes round the shaft, which stands at a place in mm.
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """What a follower runs on.
 
-    Also give the diameter of a round hole about the shaft, None without one. `units`, mm, is that of a file that states
-    none. Raises CallError for what is no such file.
+    contour  the metal's contour, the opening of a ring, or the inner flank of a groove
+    outer    outer flank of a groove; None of any other track
+    bore     diameter of a round hole about the shaft, mm; None without one
+    blank    diameter of a round outline of a ring or of a groove's blank, mm; None without one
+    """
+
+    contour: Contour
+    outer: Contour | None = None
+    bore: float | None = None
+    blank: float | None = None
+
+
+def outline_of(path: Path, units: float | None, at: tuple[float, float], track: Track, *, mirrored: bool) -> Outline:
+    """Read the contours of a file about the shaft, which stands at a place in mm.
+
+    `units`, mm, is that of a file that states none. A follower runs on the outermost closed contour round the shaft
+    that is no circle about it, in a ring on the innermost one, in a groove between the two outermost. Raises CallError
+    for a file that has none, or cannot be read.
     """
     name = escaped(str(path))
     kinds = [suffix for suffix, kind in suffixes().items() if FORMATS[kind].contents in {"drawing", "solid"}]
@@ -42,33 +58,29 @@ def contour_of(
     record = format_of(path)
     if large := oversize(path, record.name):
         raise CallError(f"{name}: {large}")
+    read = _drawn if record.contents == "drawing" else _cut
     try:
-        chains = _drawn(path, units) if record.contents == "drawing" else _solid(path, units, states=record.units)
+        chains = read(path, units, track)
     except ReadError as error:
         raise CallError(f"{name}: {error.message}") from error
     moved = [chain.contour.moved(-at[0], -at[1]) for chain in chains]
-    round_shaft = next((contour for contour in moved if goes_round(contour)), None)
-    if round_shaft is None:
-        x, y = at
-        raise CallError(f"{name}: no closed contour goes round the shaft at {x:.9g}, {y:.9g} mm{_remedy(chains)}")
-    bores = (width for contour in moved[1:] if (width := _width(contour)) is not None and _is_about(contour, width))
-    return round_shaft.mirrored() if mirrored else round_shaft, next(bores, None)
+    contours = tracks(moved)
+    where = f"the shaft at {at[0]:.9g}, {at[1]:.9g} mm"
+    if not contours:
+        raise CallError(f"{name}: no closed contour goes round {where}{_remedy(chains)}")
+    if track == "groove" and len(contours) == 1:
+        raise CallError(f"{name}: one closed contour goes round {where}, and a groove has two flanks: leave track out")
+    outer, inner = (contours[0], contours[1]) if track == "groove" else (None, contours[-1])
+    contour = contours[0] if track == "external" else inner
+    circles = [(circle_about(other), abs(other.area)) for other in moved if goes_round(other) and other is not contour]
+    bores = [width for width, area in circles if width is not None and area < abs(contour.area)]
+    blanks = [width for width, area in circles if width is not None and area > abs(contour.area)]
+    turned = [other if other is None or not mirrored else other.mirrored() for other in (contour, outer)]
+    return Outline(turned[0] or contour, turned[1], max(bores, default=None), max(blanks, default=None))
 
 
-def _width(contour: Contour) -> float | None:
-    """Diameter of a circle, mm; None of any other contour."""
-    box, length = contour.box, contour.length
-    wide, high = box.x_max - box.x_min, box.y_max - box.y_min
-    return wide if max(abs(wide - high), abs(length - math.pi * wide)) <= ROUND * wide else None
-
-
-def _is_about(contour: Contour, width: float) -> bool:
-    box = contour.box
-    return max(abs(box.x_max + box.x_min), abs(box.y_max + box.y_min)) <= ROUND * width
-
-
-def _drawn(path: Path, units: float | None) -> Sequence[Chain]:
-    drawing = read_drawing(path)
+def _drawn(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+    drawing = read_drawing(path, deepest=DEEPEST[track])
     if drawing.units_mm is None:
         if units is None:
             raise CallError(f"{escaped(str(path))}: the drawing states no unit: give units")
@@ -77,10 +89,15 @@ def _drawn(path: Path, units: float | None) -> Sequence[Chain]:
     return drawing.chains
 
 
-def _solid(path: Path, units: float | None, *, states: bool) -> Sequence[Chain]:
-    if states:
+def _cut(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+    """Chains of a solid's section: that of the plain disc, or of a groove the one below the top face."""
+    if format_of(path).units:
         _demand_same(path, units, None)
-    return read_solid(path, (), units).chains
+    solid = read_solid(path, (), units, DEEPEST[track])
+    if track != "groove" or len(solid.faces) < 2:
+        return solid.chains
+    height = 0.5 * (solid.faces[-1] + solid.faces[-2])
+    return read_solid(path, (height,), units, DEEPEST[track]).section(height).chains
 
 
 def _demand_same(path: Path, units: float | None, stated: float | None) -> None:
@@ -91,9 +108,7 @@ def _demand_same(path: Path, units: float | None, stated: float | None) -> None:
 
 def _remedy(chains: Sequence[Chain]) -> str:
     """Offer the middles of round holes for the shaft."""
-    found = []
-    for chain in chains[1:]:
-        if _width(chain.contour) is not None:
-            box = chain.contour.box
-            found.append(f"{0.5 * (box.x_min + box.x_max):.9g},{0.5 * (box.y_min + box.y_max):.9g}")
-    return f"; give at, such as the middle of a hole: {' or '.join(found[:MOST_NAMED])}" if found else "; give at"
+    boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
+    middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]
+    places = [f"{x:.6g},{y:.6g}" for hole, x, y in middles if circle_about(hole, x, y) is not None]
+    return f"; give at, such as the middle of a hole: {' or '.join(places[:MOST_NAMED])}" if places else "; give at"
