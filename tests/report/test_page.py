@@ -25,6 +25,7 @@ from camgeo.cli.main import main
 from camgeo.cli.watch import watch
 from camgeo.curve.ring import Ring, disc
 from camgeo.measures.file_result import FileResult
+from camgeo.measures.forces import preload_section
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load, load_text
 from camgeo.report.document import ROUNDING
@@ -668,16 +669,42 @@ def test_limits_of_forces_and_peaks_are_lines_too() -> None:
     assert radii == pytest.approx({"limit of pitch-radius": 20.0, "limit of radius-of-curvature": 24.0})
 
 
-def test_the_edges_of_a_face_and_the_tolerance_of_a_file_are_lines() -> None:
+def test_the_edges_of_a_face_are_lines() -> None:
     recipe = load(RECIPES / "disc-flat.yaml")
     shown = {plot.title: plot for plot in content(recipe, designed(recipe), []).plots}
     assert [line for line, _ in shown["Contact on the face"].limits] == [17.0, -17.0]
     assert shown["Radius of curvature"].limits == ((0.0, ""), (10.0, "at least 10"))
-    error = curves.off(recipe, "a.dxf, inner", (np.zeros(STEPS), np.ones(STEPS) * 1e-4), 0.002)
-    assert error.limits == ((2.0, "tolerance 2"), (-2.0, ""))
-    assert error.holds == (2.0, -2.0)
-    assert error.axis == "error"
 
+
+def test_the_limits_of_a_preload_are_lines() -> None:
+    """Of a yoke in N along its travel, which is each normal; of arms in N m, in pounds for a recipe in inches."""
+    preload = "preload: {interference: 0.02 mm, stiffness: [4.5e+7, 4.5e+7]}"
+    motion = "motion: [{rise: 8, over: 70, law: cycloidal}, {dwell: 40}, {return: 8, over: 70, law: cycloidal}]"
+    bounds = "limits: {preload-force-least: {at_least: LEAST}, preload-force-greatest: {at_most: MOST}}\n"
+    yoke = f"cam: {{kind: constant-breadth, base_radius: 40, {motion}, {preload}}}\n{bounds}"
+    arms = (
+        "units: inch\ncam: {kind: disc, base_radius: 34 mm, follower: {kind: roller, radius: 8 mm, arm: {length: 65 mm,"
+        " pivot: 80 mm}}, conjugate: {radius: 9 mm, length: 60 mm, angle: 90},"
+        f" {motion.removesuffix(']')}, {{dwell: 180}}], {preload}}}\n{bounds}"
+    )
+    shown = []
+    for text, least, most in ((yoke, "400", "600"), (arms, "20 Nm", "200 lbf*in")):
+        recipe = load_text(text.replace("LEAST", least).replace("MOST", most), "cam.yaml")
+        plots = content(recipe, designed(recipe), []).plots
+        shown.append({plot.title: plot for plot in plots if plot.title.startswith("Preload")})
+    (alone,) = shown[0].values()
+    assert [row.name for row in alone.series] == ["along the travel, flat face A and flat face B"]
+    assert alone.series[0].values == pytest.approx(450.0)
+    assert (alone.unit, alone.limits) == ("N", ((400.0, "at least 400"), (600.0, "limit 600")))
+    moment, forces = shown[1]["Preload"], shown[1]["Preload of the contacts"]
+    assert (moment.unit, forces.unit) == ("lbf in", "lbf")
+    assert [value for value, _ in moment.limits] == pytest.approx([177.015, 200.0], abs=1e-3)
+    assert forces.limits == ()
+    section = preload_section(recipe, designed(recipe))
+    assert section is not None
+    ends = (section["force"]["min"] / 0.1129848, section["force"]["max"] / 0.1129848)
+    assert (moment.series[0].values.min(), moment.series[0].values.max()) == pytest.approx(ends, rel=1e-3)
+    assert [row.name for row in forces.series] == ["disc 1", "disc 2"]
 
 def test_what_is_the_same_is_plotted_once() -> None:
     wave, more = np.sin(SHAFT), np.sin(SHAFT) + 1e-3

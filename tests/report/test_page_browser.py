@@ -228,6 +228,42 @@ def test_a_force_begins_at_0_and_nothing_is_0_without_digits(browser: Browser, t
     assert page_.problems == []
 
 
+def test_the_error_goes_round_each_flank(browser: Browser, tmp_path: Path) -> None:
+    """Each file's error of each surface is plotted between its tolerances, and is chosen round that surface."""
+    path = tmp_path / "groove.yaml"
+    path.write_text(
+        "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8}, track: {groove: {depth: 5}},"
+        " motion: [{rise: 10, over: 180, law: cycloidal}, {return: 10, over: 180, law: cycloidal}]}\n"
+        "part: {thickness: 10, outer: 130}\nexport: {tolerance: 0.002, files: [dxf]}\nverify: {angles: 36}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    page_ = opened(browser, made, tmp_path)
+    names = ["groove.dxf, inner", "groove.dxf, outer"]
+    assert page_.ask("[...document.getElementById('error-file').options].map((option) => option.value)") == names
+    texts = "[...plot.querySelectorAll('svg text')].map((text) => text.textContent)"
+    shown = page_.ask(
+        "Object.fromEntries([...document.querySelectorAll('.plot')].map((plot) =>"
+        f" [plot.querySelector('b').textContent, {texts}]))"
+    )
+    assert all("tolerance 2" in shown[f"Error of {name}"] for name in names)
+    for name, radius in zip(names, (30.0, 46.0), strict=True):  # at 0 degrees: the base circle, and the roller beyond
+        note, place, band = page_.ask(f"""(() => {{
+          const chosen = document.getElementById('error-file');
+          chosen.value = {name!r};
+          chosen.dispatchEvent(new Event('change'));
+          const [place, band] = ['.place', '.band'].map((kind) => document.querySelector('#ring ' + kind));
+          const at = [place.getAttribute('cx'), place.getAttribute('cy')].map(Number);
+          return [document.getElementById('error-note').textContent, at, band.getAttribute('d')];
+        }})()""")
+        assert note.startswith(f"{name}, up to ")
+        assert "its tolerance of 2 µm (dashed)" in note
+        assert math.hypot(*place) == pytest.approx(radius, abs=0.01)
+        x, y = (float(number) for number in re.findall(r"-?[0-9.]+", band)[:2])
+        assert math.hypot(x, y) == pytest.approx(radius, abs=6.0)
+    assert page_.problems == []
+
+
 @pytest.mark.slow
 def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: Path) -> None:
     page_ = opened(browser, of("as-figure-9-2a"), tmp_path)

@@ -65,7 +65,16 @@ def test_two_faces_stand_against_their_discs():
 def test_the_error_of_each_disc_and_the_backlash_of_both():
     outcome, content = shown(recipe_of("stem"))
     plots = {plot.title: plot for plot in content.plots}
-    assert {"Error of pair-1.dxf, disc 1", "Error of pair-2.dxf, disc 2"} <= set(plots)
+    errors = [(error.name, error.surface, error.tolerance) for error in content.errors]
+    assert errors == [("pair-1.dxf", "disc 1", 0.002), ("pair-2.dxf", "disc 2", 0.002)]
+    for error, disc in zip(content.errors, outcome.report["files"], strict=True):
+        contour, drawn = content.contours[error.surface], ring_of(bodies(content)[error.surface], 0)
+        assert np.hypot(*np.diff(contour.point, axis=0).T).max() < 1.0
+        for k in (0, 200, 500):  # round the contour: what is drawn lies along the normal
+            away = drawn - contour.point[k]
+            nearest = away[np.hypot(*away.T) < 5.0]
+            assert np.abs(nearest @ contour.normal[k]).min() < 0.02
+        assert 0.5 * disc["measured_error"] < max(error.high.max(), -error.low.min()) <= disc["measured_error"] + 1e-6
     plot = plots["Backlash, pair-1.dxf and pair-2.dxf"]
     (play,) = outcome.report["files"][1]["play"]
     (series,) = plot.series

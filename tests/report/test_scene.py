@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from support.cases import few
-from support.pages import of
+from support.pages import of, unpacked
 from support.places import SHIPPED
 
 import camgeo
@@ -28,7 +28,7 @@ def test_it_is_plain_data(path: Path) -> None:
     scene = camgeo.design(path).scene()
     again = json.loads(json.dumps(scene, allow_nan=False))
     assert again == json.loads(json.dumps(dict(scene)))
-    assert {"drawing", "bodies", "plots", "marks", "checks", "remarks", "contour", "rests", "note"} <= set(scene)
+    assert {"drawing", "bodies", "plots", "marks", "checks", "remarks", "contours", "rests", "note"} <= set(scene)
     assert scene["drawing"].count('class="body ') == len(scene["bodies"])
 
 
@@ -68,6 +68,23 @@ def test_marks_lie_on_the_contour_where_checks_fail(rotation: str) -> None:
         place = (x, y if rotation == "cw" else -y)
         assert (mark["x"], mark["y"]) == pytest.approx(place, abs=0.2)  # half a step of the page
         assert mark["text"]
+
+
+def test_marks_of_a_groove_lie_on_the_flank_that_fails() -> None:
+    scene = camgeo.design(
+        camgeo.load(
+            "cam: {kind: disc, base_radius: 10, follower: {kind: roller, radius: 12}, track: {groove: {depth: 5}}, "
+            "motion: [{rise: 15, over: 40, law: cycloidal}, {return: 15, over: 40, law: cycloidal}, {dwell: 280}]}\n"
+            "part: {thickness: 10, outer: 150}\n"
+        )
+    ).scene()
+    failed = [check for check in scene["checks"] if not check["ok"] and check["at_deg"] is not None]
+    marks = [mark for mark in scene["marks"] if mark["kind"] == "failed"]
+    assert [mark["name"] for mark in marks] == [check["name"] for check in failed]
+    assert {check["surface"] for check in failed} == {"inner", "outer"}
+    for check, mark in zip(failed, marks, strict=True):
+        rows = [unpacked(row, scene["steps"])[: scene["steps"]] for row in scene["contours"][check["surface"]][:2]]
+        assert np.hypot(rows[0] - mark["x"], rows[1] - mark["y"]).min() < 1e-3
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -34,12 +34,14 @@ PUSHED = "above 0 where a disc pushes its own contact outwards"
 
 @dataclass(frozen=True, eq=False)
 class FileError:
-    """How far a file lies outside the exact contour in each step: least and greatest (STEPS,), negative inside.
+    """How far a file lies outside an exact contour in each step: least and greatest (STEPS,), negative inside.
 
-    Files that show the same are one, under their names together; `tolerance` is theirs.
+    `surface` is the contour's, empty of a cam that has one. Files that show the same are one, under their names
+    together; `tolerance` is theirs.
     """
 
     name: str
+    surface: str
     low: Array
     high: Array
     tolerance: float
@@ -47,7 +49,15 @@ class FileError:
     def like(self, other: FileError) -> bool:
         """Whether another file's error is the same, to what a picture shows."""
         alike = curves.equal(self.low, other.low) and curves.equal(self.high, other.high)
-        return self.tolerance == other.tolerance and alike
+        return (self.surface, self.tolerance) == (other.surface, other.tolerance) and alike
+
+
+@dataclass(frozen=True, eq=False)
+class Traced:
+    """An exact contour in the cam's axes at the middle of each step, where errors are looked at: (STEPS, 2) each."""
+
+    point: Array
+    normal: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,16 +65,14 @@ class Content:
     """What a page shows; lengths in the recipe's unit, the drawing as the shaft turns.
 
     `relative` (STEPS + 1,) is the angle between cam and frame over the shaft's, rad; without a linkage they are one.
-    `point` and `normal` (STEPS, 2) are of the exact contour in the cam's axes, at the middle of each step, where
-    `errors` are looked at.
+    `contours` are those of the surfaces by their names, `errors` those of the files.
     """
 
     scene: Scene
     plots: tuple[curves.Plot, ...]
     rests: tuple[curves.Rest, ...]
     relative: Array
-    point: Array
-    normal: Array
+    contours: Mapping[str, Traced]
     errors: tuple[FileError, ...]
 
 
@@ -81,27 +89,21 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         plots += capability.plots(recipe, design)
     plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
-    measured = [(file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items()]
-    # round the contour errors are drawn of a cam that has one, of others over the turn alone
-    plots += [
-        curves.off(recipe, f"{file.name}, {surface}", error, file.tolerance)
-        for file, surface, error in measured
-        if surface
-    ]
+    measured = ((file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items())
     errors = _together(
-        FileError(file.name, low / recipe.mm, high / recipe.mm, file.tolerance / recipe.mm)
+        FileError(file.name, surface, low / recipe.mm, high / recipe.mm, file.tolerance / recipe.mm)
         for file, surface, (low, high) in measured
-        if not surface
     )
-    exact = next(iter(exacts.values()))
-    scene = scene.scaled(1.0 / recipe.mm)
-    middle = slice(exact.per // 2, None, exact.per)
-    point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]
+    scene, flip = scene.scaled(1.0 / recipe.mm), np.array([1.0, 1.0])
     if recipe.rotation == "ccw":
-        flip = np.array([1.0, -1.0])
-        scene, point, normal = scene.mirrored(), point * flip, normal * flip
+        scene, flip = scene.mirrored(), np.array([1.0, -1.0])
+    middle = slice(per // 2, None, per)
+    contours = {
+        name: Traced(exact.point[middle] * flip / recipe.mm, exact.normal[middle] * flip)
+        for name, exact in exacts.items()
+    }
     rests = tuple(curves.rests(recipe, design))
-    return Content(scene, tuple(curves.once(plots)), rests, relative, point, normal, errors)
+    return Content(scene, tuple(curves.once(plots)), rests, relative, contours, errors)
 
 
 def _together(errors: Iterable[FileError]) -> tuple[FileError, ...]:

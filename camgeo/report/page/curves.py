@@ -10,7 +10,17 @@ import numpy as np
 from camgeo.common.units import INCH
 from camgeo.curve.support import is_sharp
 from camgeo.measures.units import in_pounds
-from camgeo.recipe.figures import BACKLASH, FIGURES, ON_RETURN, ON_RISE, PITCH_RADIUS, PRESSURE_ANGLE, RADIUS
+from camgeo.recipe.figures import (
+    BACKLASH,
+    FIGURES,
+    ON_RETURN,
+    ON_RISE,
+    PITCH_RADIUS,
+    PRELOAD_GREATEST,
+    PRELOAD_LEAST,
+    PRESSURE_ANGLE,
+    RADIUS,
+)
 from camgeo.report.page.followers import SHAFT
 from camgeo.schema.fields import Kind
 from kin.numeric.angles import TURN
@@ -83,7 +93,7 @@ def _distinct(series: Sequence[Series]) -> tuple[Series, ...]:
             kept.append([row])
         else:
             same.append(row)
-    return tuple(replace(rows[0], name=" and ".join(row.name for row in rows)) for rows in kept)
+    return tuple(replace(rows[0], name=joined([row.name for row in rows])) for rows in kept)
 
 
 def _alike(plot: Plot, other: Plot) -> bool:
@@ -234,19 +244,32 @@ def shown_in(recipe: Recipe, si: str) -> tuple[float, str]:
 
 
 def preload(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return the plot of the normal forces by which a preload presses both contacts on the cam; none without one."""
+    """Return plots of a preload's force along the travel, with its limits, and along the normals of both contacts.
+
+    They are one on a stem; on an arm the former is a moment. None without a preload, or where it has no stiffness.
+    """
     given = design.exact.preload
     if given is None or given.stiffness is None:
         return []
-    from camgeo.measures.forces import FollowerTurn, elastic
+    from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
 
     turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
     force = elastic(turn, given, rows).preload
+    factor, unit = shown_in(recipe, turn.unit)
+    travel = (Series("along the travel", factor * (PER_MM if turn.swings else 1.0) * force),)
+    lines = limits(recipe, {PRELOAD_LEAST: (1.0,), PRELOAD_GREATEST: (1.0,)}, travel, factor)
+    per_newton, newtons = shown_in(recipe, "N")
     normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
-    note = "along the normal of each contact, without load"
-    factor, unit = shown_in(recipe, "N")
-    series = tuple(Series(name, factor * values) for name, values in normal)
-    return [Plot("Preload", unit, series, note=note, axis="force", holds=(0.0,))]
+    each = tuple(Series(name, per_newton * values) for name, values in normal)
+    note = "of each contact along its normal, without load"
+    if not turn.swings:
+        if lines:
+            note += "; limits are of the force along the travel"
+        return [Plot("Preload", unit, (*travel, *each), limits=lines, note=note, axis="force", holds=(0.0,))]
+    return [
+        Plot("Preload", unit, travel, limits=lines, note="about the pivot, without load", axis="moment", holds=(0.0,)),
+        Plot("Preload of the contacts", newtons, each, note=note, axis="force", holds=(0.0,)),
+    ]
 
 
 def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = None) -> Plot:
@@ -302,18 +325,6 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
     series = (Series("radius of curvature", values),)
     bounds = limits(recipe, {RADIUS: (1.0,)}, series, 1.0 / recipe.mm)
     return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""), *bounds), note=margin, axis="radius")
-
-
-def off(recipe: Recipe, name: str, error: tuple[Array, Array], tolerance: float) -> Plot:
-    """Return the plot of how far a file's contour lies outside the exact one: least and greatest in each step, mm.
-
-    Lines show the file's tolerance, mm, to either side.
-    """
-    rows, (unit, scale) = zip(("least", "greatest"), error, strict=True), small_unit(recipe)
-    series = tuple(Series(word, scale * closed(row)) for word, row in rows)
-    note, most = "distance outside the exact contour, negative inside", scale * tolerance
-    lines = ((most, f"tolerance {short(most)}"), (-most, ""))
-    return Plot(f"Error of {name}", unit, series, limits=lines, note=note, axis="error", holds=(most, -most))
 
 
 def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot]:

@@ -462,9 +462,15 @@ function playScene(data, begin = null) {
   const chosen = find("error-file");
   find("errors").hidden = !data.errors.length;
   if (data.errors.length) {
-    const [px0, py0, nx, ny] = data.contour.map((row) => unpacked(row) || Array(N).fill(row.c));
-    const y0 = py0.map((y) => -y);
-    const [lowX, highX, lowY, highY] = [Math.min(...px0), Math.max(...px0), Math.min(...y0), Math.max(...y0)];
+    const full = (row) => unpacked(row) || Array(N).fill(row.c);
+    const contours = {}; // by the name of the surface
+    for (const [name, rows] of Object.entries(data.contours)) {
+      const [x, up, nx, ny] = rows.map(full);
+      contours[name] = { x, y: up.map((y) => -y), nx, ny };
+    }
+    const all = Object.values(contours);
+    const [xs, ys] = [all.flatMap(({ x }) => x), all.flatMap(({ y }) => y)];
+    const [lowX, highX, lowY, highY] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const extent = Math.max(highX - lowX, highY - lowY);
     const pad = 0.16 * extent;
     const view = [lowX - pad, lowY - pad, highX - lowX + 2 * pad, highY - lowY + 2 * pad];
@@ -473,24 +479,26 @@ function playScene(data, begin = null) {
     const limits = [1, -1].map((side) => [side, made("path", { class: "limit" }, svg)]);
     const band = made("path", { class: "band" }, svg);
     const place = made("circle", { class: "place", r: 0.012 * extent }, svg);
-    const point = (i, off) => `${(px0[i] + nx[i] * off).toPrecision(7)} ${(y0[i] - ny[i] * off).toPrecision(7)}`;
-    const along = (off) => `M${px0.map((_, i) => point(i, off)).join("L")}Z`;
-    exact.setAttribute("d", along(0));
+    let round = all[0]; // the contour of the error that is chosen
+    const point = (i, off) =>
+      `${(round.x[i] + round.nx[i] * off).toPrecision(7)} ${(round.y[i] - round.ny[i] * off).toPrecision(7)}`;
+    const along = (off) => `M${round.x.map((_, i) => point(i, off)).join("L")}Z`;
     for (const { file } of data.errors) chosen.append(new Option(file, file));
-    const rows = data.errors.map(({ low, high }) =>
-      [low, high].map((row) => unpacked(row) || Array(N).fill(row.c)));
+    const rows = data.errors.map(({ low, high }) => [low, high].map(full));
     const redraw = () => {
       const [low, high] = rows[Math.max(chosen.selectedIndex, 0)];
-      const { file, tolerance } = data.errors[Math.max(chosen.selectedIndex, 0)];
+      const { file, surface, tolerance } = data.errors[Math.max(chosen.selectedIndex, 0)];
+      round = contours[surface];
+      exact.setAttribute("d", along(0));
       const worst = Math.max(...low.concat(high).filter((v) => v !== null).map(Math.abs));
       const natural = (0.1 * extent) / Math.max(worst, tolerance);
       const wanted = natural * 10 ** ((Number(find("magnify").value) - 50) / 50);
       const power = 10 ** Math.floor(Math.log10(wanted));
       const by = Math.round((wanted / power) * 10) * power / 10;
       const outline = (run) => {
-        const round = run.length === N ? [...run, 0] : run;
-        const there = round.map((i) => point(i, by * high[i]));
-        const back = round.map((i) => point(i, by * low[i])).reverse();
+        const steps = run.length === N ? [...run, 0] : run;
+        const there = steps.map((i) => point(i, by * high[i]));
+        const back = steps.map((i) => point(i, by * low[i])).reverse();
         return `M${there.concat(back).join("L")}Z`;
       };
       band.setAttribute("d", runs(low).map(outline).join(""));
@@ -500,14 +508,16 @@ function playScene(data, begin = null) {
       find("error-note").textContent =
         `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${Number(by.toPrecision(3))} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
+      follow((degrees / 360) * N);
+    };
+    const follow = (x) => {
+      const i = Math.floor(data.linked ? (((relative(x) % 360) + 360) % 360) / 360 * N : x) % N;
+      place.setAttribute("cx", round.x[i]);
+      place.setAttribute("cy", round.y[i]);
     };
     chosen.addEventListener("change", redraw, until);
     find("magnify").addEventListener("input", redraw, until);
-    followers.push((x) => {
-      const i = Math.floor(data.linked ? (((relative(x) % 360) + 360) % 360) / 360 * N : x) % N;
-      place.setAttribute("cx", px0[i]);
-      place.setAttribute("cy", y0[i]);
-    });
+    followers.push(follow);
     redraw();
   }
 

@@ -89,7 +89,6 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
     """
     view = svg.View.of(content.scene)
     extent = max(view.width, view.height) / view.scale
-    at = [*content.point.T, *content.normal.T]
     return {
         "name": recipe.name,
         "note": content.scene.note,
@@ -104,10 +103,14 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
         "rests": [[rest.start, rest.length, rest.name] for rest in content.rests],
         "relative": packed(np.degrees(content.relative)),
         "linked": any(plot.over == "relative" for plot in content.plots),
-        "contour": [packed(row) for row in at],
+        "contours": {
+            name: [packed(row) for row in (*traced.point.T, *traced.normal.T)]
+            for name, traced in content.contours.items()
+        },
         "errors": [
             {
-                "file": error.name,
+                "file": ", ".join(filter(None, (error.name, error.surface))),
+                "surface": error.surface,
                 "low": packed(error.low),
                 "high": packed(error.high),
                 "tolerance": float(f"{error.tolerance:.6g}"),
@@ -118,14 +121,15 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
 
 
 def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return where on the contour checks of the design fail and remarks are made, of a cam of one surface."""
+    """Return where on a contour checks of the design fail and remarks are made; those of no surface on the first."""
     found = [(check, "failed") for check in report["checks"] if not check["ok"] and "file" not in check]
     found += [(remark, "remark") for remark in report["remarks"]]
     marks = []
     for entry, kind in found:
-        if entry["at_deg"] is None or entry.get("surface"):
+        if entry["at_deg"] is None:
             continue
-        x, y = content.point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
+        first = next(iter(content.contours))
+        x, y = content.contours[entry.get("surface", first)].point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
         text = entry.get("sentence") or headline(entry)
         marks.append({"name": entry["name"], "kind": kind, "at_deg": entry["at_deg"], "x": x, "y": y, "text": text})
     return marks
