@@ -706,6 +706,7 @@ def test_the_limits_of_a_preload_are_lines() -> None:
     assert (moment.series[0].values.min(), moment.series[0].values.max()) == pytest.approx(ends, rel=1e-3)
     assert [row.name for row in forces.series] == ["disc 1", "disc 2"]
 
+
 def test_what_is_the_same_is_plotted_once() -> None:
     wave, more = np.sin(SHAFT), np.sin(SHAFT) + 1e-3
     plots = [

@@ -42,6 +42,7 @@ CYLINDERS = {
     "overlap": "overlap",
     "separation": "LSA, cam deg",
 }
+LENGTHS = {"from", "to", "lift"}  # other numbers of these tables are degrees, but for cylinders
 # the place of a check is a button where a page can turn the shaft there
 TURNING = re.compile(r"<button[^>]*>(.*?)</button>", re.DOTALL)
 
@@ -67,10 +68,12 @@ def _section(title: str, body: str) -> str:
 def _table(entries: Sequence[dict[str, Any]], heads: dict[str, str]) -> str:
     known = [key for key in heads if any(key in entry for entry in entries)]
     cells = "".join(f'<th scope="col">{escape(heads[key])}</th>' for key in known)
-    rows = ("".join(f'<td class="number">{_cell(entry.get(key))}</td>' for key in known) for entry in entries)
+    rows = ("".join(f'<td class="number">{_cell(key, entry.get(key))}</td>' for key in known) for entry in entries)
     body = "".join(f"<tr>{row}</tr>" for row in rows)
     return f'<div class="wide"><table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
-def _cell(value: object) -> str:
-    return tables.NONE if value is None else f"{value:.6g}" if isinstance(value, float) else escape(str(value))
+def _cell(key: str, value: str | float | None) -> str:
+    if value is None or isinstance(value, str) or key == "cylinder":
+        return tables.NONE if value is None else escape(str(value))
+    return tables.number(value) if key in LENGTHS else tables.degrees(value)

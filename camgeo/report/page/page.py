@@ -129,7 +129,11 @@ def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
         if entry["at_deg"] is None:
             continue
         first = next(iter(content.contours))
-        x, y = content.contours[entry.get("surface", first)].point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
+        x, y = (
+            content.contours[entry.get("surface", first)]
+            .point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS]
+            .tolist()
+        )
         text = entry.get("sentence") or headline(entry)
         marks.append({"name": entry["name"], "kind": kind, "at_deg": entry["at_deg"], "x": x, "y": y, "text": text})
     return marks

@@ -229,6 +229,11 @@ def number(value: float | None) -> str:
     return NONE if value is None else _hinted(f"{value:.6g}", value)
 
 
+def degrees(value: float) -> str:
+    """Return an angle, degrees, to a hundredth, the exact one as a hint."""
+    return _hinted(f"{value:.2f}", value)
+
+
 def _error(value: float | None, file: dict[str, Any]) -> str:
     """Return a measured error of a file; what only rounding made is called that."""
     return NONE if value is None else _hinted(measured(value, limit=file.get("tolerance")), value)

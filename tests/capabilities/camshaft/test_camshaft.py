@@ -81,7 +81,7 @@ def engine(tmp_path_factory: pytest.TempPathFactory) -> camgeo.Report:
         for j, valve in enumerate(("intake", "exhaust"))
     )
     body = "  shaft: {diameter: 24, to: 200}\n"
-    path = shaft(folder, lobes, ENGINE, files="[{csv: {as: events}}, {csv: {as: motion}}, svg]", body=body)
+    path = shaft(folder, lobes, ENGINE, files="[{csv: {as: events}}, {csv: {as: motion}}, svg, html]", body=body)
     return camgeo.export(path, folder / "out")
 
 
@@ -410,6 +410,25 @@ def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> 
     assert "every check holds" in text
     assert "<button" not in text
     assert re.search(r"position, roller", text)
+
+
+def test_events_of_the_page_are_to_a_hundredth_of_a_degree(engine: camgeo.Report) -> None:
+    """All cells of a column have as many decimals; the exact number is a hint."""
+    assert engine.path is not None
+    text = (engine.path / "shaft.html").read_text()
+    lobes, cylinders = (re.findall(r"<tr>(.*?)</tr>", table) for table in re.findall(r"<table>(.*?)</table>", text))
+    columns = {}
+    for head, *rows in (lobes, cylinders):
+        cells = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
+        columns |= dict(zip(re.findall(r"<th[^>]*>(.*?)</th>", head), zip(*cells, strict=True), strict=True))
+    for name, key in (("opens", "opens_deg"), ("duration", "duration_deg"), ("closes, crank", "closes_crank_deg")):
+        exact = [lobe[key] for lobe in dict(engine)["camshaft"]["lobes"]]
+        assert columns[name] == tuple(f'<span title="{value!r}">{value:.2f}</span>' for value in exact)
+    assert set(columns["IVO BTDC"]) == {
+        f'<span title="{row["intake_opens"]!r}">-9.75</span>' for row in dict(engine)["camshaft"]["cylinders"]
+    }
+    assert columns["to z"][:2] == ("14", "34")
+    assert columns["cylinder"] == ("1", "3", "4", "2")
 
 
 OF_A_LOBE = ("phase", "contour", "motion")
