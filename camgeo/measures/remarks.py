@@ -49,6 +49,7 @@ _SAME = 1e-6
 
 RemarkName = Literal[
     "acceleration-jump",
+    "cam-card",
     "coarse-tolerance",
     "dwell-shorter",
     "large-cutter",

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
+from camgeo.motions.lobes import lobe_field, sides_of
 from camgeo.motions.segments import read_segments, segment_table, segments_schema
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, join
 from kin.numeric.records import dataclass, field, replace
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.motions.contour_motion import Drawn
+    from camgeo.motions.lobes import SideGiven
     from camgeo.motions.segments import MotionSegment
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
@@ -254,24 +256,18 @@ class PointsAsked(MotionAsked):
 
 @dataclass(frozen=True)
 class LobeAsked(MotionAsked):
-    """The lobe polynomial 2-p-q-r-s: its lift, half its event, and the powers.
-
-    `ramp` is the height and the velocity, by rad, of the lash ramps beyond; the nose stands at `nose`.
-    """
+    """The lobe of a valve train: its lift, mm or rad, its two sides, and the shaft angle of its nose, rad."""
 
     lift: float
-    half: float
-    powers: tuple[float, ...]
+    sides: tuple[SideGiven, SideGiven]
     nose: float = 0.0
-    ramp: tuple[float, float] | None = None
     scale: float = field(default=1.0, compare=False)
     source: ClassVar[str] = ".lobe"
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
-        from kin.law.sources.lobe import Ramp, lobe
+        from camgeo.motions.lobes import lobe_motion
 
-        ramp, shape = None if self.ramp is None else Ramp(*self.ramp), (self.lift, self.half, self.powers)
-        return lobe(*shape, total, nose=self.nose, ramp=ramp, around=around, field=f"{field}.lobe")
+        return lobe_motion(self.lift, self.sides, total, nose=self.nose, around=around, field=f"{field}.lobe")
 
 
 def _demand_zero(value: float, within: float, scale: float, field: str, where: str = "") -> None:
@@ -337,14 +333,6 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         default="the heading's, else the recipe's",
         choices=("mm", "inch", "thou"),
     )
-    nose = Field(
-        "nose",
-        Kind.ANGLE,
-        "shaft angle of the nose of a motion over a whole turn",
-        default="0",
-        at_least=0,
-        at_most=360,
-    )
     points = Form("a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points)
     fields = (
         Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
@@ -377,27 +365,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
             choices=("refuse", "keep"),
         ),
         Field("points", Kind.OWN, "points for a spline to go through, with a dwell between equal ones", form=points),
-        mapping(
-            "lobe",
-            "the lobe polynomial of valve trains",
-            Field("lift", stroke, "greatest displacement, its ramp included", required=True, above=0, at_most=most),
-            Field(
-                "half",
-                Kind.ANGLE,
-                "angle from the foot, or from the ramp's end, to the nose",
-                required=True,
-                above=0,
-                at_most=180,
-            ),
-            Field("powers", Kind.NUMBERS, "2 and four more powers, such as [2, 8, 14, 20, 26]", required=True),
-            nose,
-            mapping(
-                "ramp",
-                "lash ramps beyond `half` on both sides",
-                Field("height", stroke, "displacement at which the lobe begins", required=True, above=0, at_most=most),
-                Field("velocity", stroke, "up to there, a degree of the cam", required=True, above=0, at_most=most),
-            ),
-        ),
+        lobe_field(stroke, most),
     )
     alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
     if not whole_turn:
@@ -435,10 +403,9 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
     if "points" in values:
         return PointsAsked(values["points"], scale)
     if "lobe" in values:
-        given = dict(values["lobe"])
-        if (ramp := given.pop("ramp", None)) is not None:
-            given["ramp"] = ramp["height"], ramp["velocity"] / math.radians(1.0)
-        return LobeAsked(**given, scale=scale)
+        lobe = values["lobe"]
+        sides = sides_of(lobe, join(path, "lobe"), reader)
+        return None if sides is None else LobeAsked(lobe["lift"], sides, lobe.get("nose", 0.0), scale=scale)
     if "contour" in values:
         return _contour(reader, values, join(path, "contour"), scale)
     return _table(stroke, reader, values, join(path, "table"))

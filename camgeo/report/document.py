@@ -84,7 +84,7 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         "checks": [_check(recipe, check) for check in findings.checks],
         "remarks": [_remark(recipe, remark) for remark in findings.remarks],
         "joints": [entry for joint in findings.joints for entry in _jumps(findings, joint)],
-        **({} if findings.table is None else {"table": _kept(findings, findings.table)}),
+        **_kept(findings),
         "files": [_file(recipe, file) for file in findings.files]
         + [{"path": name, "stale": True} for name in findings.kept],
         **linkage,
@@ -149,9 +149,12 @@ def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
     ]
 
 
-def _kept(findings: Findings, kept: Kept) -> dict[str, Any]:
-    scale, unit = findings.displacements
-    return {"distance": kept.distance * scale, "unit": unit, "line": kept.line or None}
+def _kept(findings: Findings) -> dict[str, Any]:
+    """How the motion keeps the rows of its table; nothing where it is made of none."""
+    kept, (scale, unit) = findings.table, findings.displacements
+    if kept is None or kept.distance is None:
+        return {}
+    return {"table": {"distance": kept.distance * scale, "unit": unit, "line": kept.line or None}}
 
 
 def _file(recipe: Order, file: FileResult) -> dict[str, Any]:

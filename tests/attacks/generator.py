@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, ground, measured, recipes, shafts, tables, wider
+from attacks import calls, files, ground, measured, recipes, shafts, tables, valves, wider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,6 +39,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     wider.budgeted,  # needs: budget
     wider.on_a_shaft,
     shafts.flush,
+    valves.carded,
     measured.probed,  # needs: made
     ground.ground,
     ground.tabled_for_a_grinder,

@@ -63,6 +63,7 @@ MOTIONS = [
     "{formula: 2*sin(t)**4}",
     "{points: [[0, 0], [90, 6], [120, 6], [250, 0]]}",
     "{lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}",
+    "{lobe: {lift: 8, duration: [{at_lift: 1.27, degrees: 226}, {at_lift: 0.15, degrees: 274}]}}",
     "{repeat: 3, segments: [{rise: 3, over: 50, law: cycloidal}, {return: 3, over: 50, law: cycloidal}, {dwell: 20}]}",
     "[{rise: 5, over: 120, law: {polynomial: [0, 0, 3, -2]}}, {return: 5, over: 120, law: cubic}, {dwell: 120}]",
 ]
@@ -202,8 +203,10 @@ def on_a_shaft(rng: Random, number: int) -> Attack:
         turned = rng.choice(["", "", ", direction: 90"])
         rows.append(f"    - {{recipe: cam.yaml, {place}, z: {z:.9g}, length: {long}{turned}}}\n")
         z += long + gap
-    about = f"{rng.randrange(60, 140)}, exhaust: {rng.randrange(60, 140)}, lift: {rng.choice([1, 1, 0.1, 0.5, 0, 50])}"
-    given = f"  engine: {{order: {order}, intake: {about}}}\n" if engine else ""
+    centres = [f"intake: {rng.randrange(60, 140)}, exhaust: {rng.randrange(60, 140)}"]
+    centres += [f"separation: {rng.choice([110, 400])}, advance: {rng.randrange(-9, 9)}", "intake: 110, advance: 4"]
+    about = f"{rng.choice(centres)}, lift: {rng.choice([1, 1, 0.1, 0.5, 0, 50])}"
+    given = f"  engine: {{order: {order}, {about}}}\n" if engine else ""
     forms = ["timing", "bars", "shaft", *(["cam-wheel", "crank-wheel"] if engine or rng.random() < 0.1 else [])]
     forms += ["arcs"] if rng.random() < 0.05 else []
     files = [f"{{svg: {{as: {form}}}}}" for form in rng.sample(forms, rng.randrange(1, 4))]

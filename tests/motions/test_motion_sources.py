@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
+import camgeo
 from camgeo.cli.main import main
 from camgeo.motions.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.output import pipeline
@@ -591,3 +592,81 @@ def test_a_table_of_more_rows_than_any_motion_needs(tmp_path, monkeypatch):
             load(recipe)
         (tmp_path / "lift.csv").write_bytes(end.join(rows[::3]).encode())
         load(recipe)
+
+
+# --- cam cards --------------------------------------------------------------------------------------------------------
+
+FLAT = "kind: disc, base_radius: 30, follower: {kind: flat}"
+CARD = "duration: [{at_lift: 1.27 mm, degrees: 228}, {at_lift: 0.15, degrees: 270}]"
+
+
+def test_a_card_is_met_by_the_figure_and_told_in_a_remark(tmp_path):
+    read = recipe(f"{{lobe: {{lift: 9.2, {CARD}}}}}", tmp_path, head=FLAT)
+    report = dict(camgeo.check(read))
+    (told,) = [remark for remark in report["remarks"] if remark["name"] == "cam-card"]
+    assert re.fullmatch(r"the card is met by .* over [\d.]+ degrees of the cam on either side", told["sentence"])
+    assert "table" not in report
+    inch = recipe(f"{{lobe: {{lift: 9.2/25.4, {CARD.replace('0.15', '0.15/25.4')}}}}}", tmp_path, FLAT, units="inch")
+    assert tappet(inch) == pytest.approx(tappet(read), abs=1e-9)
+
+
+def tappet(read):
+    """Lifts at every five degrees."""
+    return camgeo.design(read).motion(np.radians(np.arange(0.0, 360.0, 5.0)))
+
+
+def test_sides_take_what_they_lack_from_the_lobe(tmp_path):
+    shape = "lift: 9.2, half: 66, powers: [2, 8, 14, 20, 26], ramp: {height: 0.2, velocity: 0.02}"
+    even = recipe(f"{{lobe: {{{shape}}}}}", tmp_path, head=FLAT)
+    same = recipe(f"{{lobe: {{{shape}, opening: {{half: 66}}, closing: {{}}}}}}", tmp_path, head=FLAT)
+    uneven = recipe(f"{{lobe: {{{shape}, closing: {{half: 70}}}}}}", tmp_path, head=FLAT)
+    assert tappet(same) == pytest.approx(tappet(even), abs=0)
+    assert tappet(uneven)[37:] == pytest.approx(tappet(even)[37:], abs=0)
+    assert (tappet(uneven)[1:14] > tappet(even)[1:14]).all()
+
+
+@pytest.mark.parametrize(
+    ("lobe", "message", "remedy"),
+    [
+        (
+            "lift: 9",
+            "cam.motion.lobe: needs powers or duration; give half and powers, or duration: [{at_lift: 1.27 mm, ",
+            "lift: 9, duration: [{at_lift: 1.27 mm, degrees: 228}]",
+        ),
+        (
+            "lift: 9, powers: [2, 8, 14, 20, 26]",
+            "cam.motion.lobe: powers need half; give half, an angle above 0 up to 180 in degrees",
+            "lift: 9, powers: [2, 8, 14, 20, 26], half: 66",
+        ),
+        (
+            f"lift: 9, half: 66, powers: [2, 8, 14, 20, 26], {CARD}",
+            "cam.motion.lobe.duration: cannot be combined with powers; give exactly one of them",
+            f"lift: 9, {CARD}",
+        ),
+        (
+            f"lift: 9, closing: {{{CARD}}}",
+            "cam.motion.lobe: needs powers or duration",
+            f"lift: 9, {CARD}",
+        ),
+        (
+            "lift: 9, duration: {at_lift: 12, degrees: 228}",
+            "cam.motion.lobe.duration[0].at_lift: a lift of a card lies between 0 and the lift of the lobe",
+            "lift: 9, duration: {at_lift: 1.2, degrees: 228}",
+        ),
+        (
+            f"lift: 9.2, {CARD.replace('270}', '250}, {at_lift: 5, degrees: 140}')}",
+            "cam.motion.lobe.duration: no lobe of the family is above these lifts for so long; the nearest has ",
+            "",
+        ),
+    ],
+)
+def test_faults_of_a_card_and_what_mends_them(lobe, message, remedy, tmp_path):
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe(f"{{lobe: {{{lobe}}}}}", tmp_path, head=FLAT))
+    assert message in str(caught.value)
+    if not remedy:
+        nearest = re.search(r"has ([\d.]+), ([\d.]+), ([\d.]+) degrees", str(caught.value)).groups()
+        remedy = lobe
+        for written, told in zip(("228", "250", "140"), nearest, strict=True):
+            remedy = remedy.replace(written, told)
+    pipeline.check(recipe(f"{{lobe: {{{remedy}}}}}", tmp_path, head=FLAT))

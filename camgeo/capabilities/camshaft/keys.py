@@ -177,8 +177,10 @@ ENGINE = Table(
         Field(
             "order", Kind.NUMBERS, "firing order", required=True, unit=Kind.INTEGER, at_least=1, at_most=MOST_CYLINDERS
         ),
-        _angle("intake", "centre of the intake lobes, crank degrees after dead centre", 0, 360, required=True),
-        _angle("exhaust", "centre of the exhaust lobes, crank degrees before dead centre", 0, 360, required=True),
+        _angle("intake", "centre of the intake lobes, crank degrees after dead centre", 0, 360),
+        _angle("exhaust", "centre of the exhaust lobes, crank degrees before dead centre", 0, 360),
+        _angle("separation", "mean of both centres, cam degrees between a cylinder's lobes, in their place", 0, 360),
+        _angle("advance", "crank degrees by which both stand earlier than that", -180, 180, default="0"),
         length("lift", "lift of the tappet at which events are told", default="1.27 mm"),
         Field(
             "firing",
@@ -189,7 +191,8 @@ ENGINE = Table(
             at_least=0,
             at_most=720,
         ),
-    )
+    ),
+    alternatives=(("intake", ("exhaust",)), ("separation", ())),
 )
 CAMSHAFT = Field(
     "camshaft",
@@ -314,6 +317,8 @@ def _check(values: Values, reader: Reader) -> None:
         if firing is not None and len(firing) != len(order):
             remedy = f"give {len(order)}, one for each cylinder of the order"
             reader.fault_at(f"{path}.firing", f"{len(firing)} angles for {len(order)} cylinders", None, remedy)
+        if "advance" in engine and "separation" not in engine:
+            reader.fault_at(f"{path}.advance", "needs the lobes' separation", None, "leave it out")
     for i, lobe in enumerate(camshaft["lobes"]):
         path = f"camshaft.lobes[{i}].cylinder"
         if "cylinder" in lobe and engine is None:
@@ -411,7 +416,10 @@ def _engine(values: Values | None) -> Engine | None:
         return None
     order = values["order"]
     firing = values.get("firing") or [2.0 * TURN * k / len(order) for k in range(len(order))]
-    return Engine(values["intake"], values["exhaust"], dict(zip(order, firing, strict=True)), values.get("lift", LIFT))
+    advance = values.get("advance", 0.0)
+    intake = values["intake"] if "intake" in values else values["separation"] - advance
+    exhaust = values["exhaust"] if "exhaust" in values else values["separation"] + advance
+    return Engine(intake, exhaust, dict(zip(order, firing, strict=True)), values.get("lift", LIFT))
 
 
 def _cam(document: Document, name: str, field: str) -> Recipe:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import comb
+from math import comb, fsum
 from typing import TYPE_CHECKING
 
 from kin.numeric.elementary import cos, sin
@@ -117,10 +117,19 @@ class Flank:
                     at_0 *= Fraction(other, other - k)
                     at_1 *= Fraction(other - 1, other - k)
             full[k] = (rate - above) * at_0 - rate * at_1
+        held = [i for i, value in enumerate(full) if value]
         quotient = [
-            sum((full[i] * comb(m - i + 4, 4) for i in range(m + 1)), Fraction(0)) for m in range(powers[-1] - 4)
+            sum((full[i] * comb(m - i + 4, 4) for i in held if i <= m), Fraction(0)) for m in range(powers[-1] - 4)
         ]
         return Flank(tuple(map(float, quotient))), tuple(float(full[k]) for k in powers)
+
+    @staticmethod
+    def mixed(flanks: Sequence[Flank], weights: Sequence[float]) -> Flank:
+        """The sum of flanks, each times its weight."""
+        longest = max(len(flank.coefficients) for flank in flanks)
+        padded = [(*flank.coefficients, *(0.0,) * (longest - len(flank.coefficients))) for flank in flanks]
+        columns = zip(*padded, strict=True)
+        return Flank(tuple(fsum(w * c for w, c in zip(weights, column, strict=True)) for column in columns))
 
     def __call__(self, v: Series, /) -> Series:
         """Give the displacement, 1 at the nose."""

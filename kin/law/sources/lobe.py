@@ -1,4 +1,4 @@
-"""The lobe polynomial 2-p-q-r-s of valve trains, and its lash ramps."""
+"""The lobe of valve trains: a polynomial 2-p-q-r-s, or a mixture of such, on either side of its nose, and ramps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FROM_REST = 0.4  # of a ramp's height, over which it comes to its velocity
 _NOTHING = 1e-12  # rad: a part so short is rounding
-_GREATEST_POWER = 100
+GREATEST_POWER = 100
 
 
 class Ramp(NamedTuple):
@@ -42,6 +42,31 @@ class Ramp(NamedTuple):
         return sum(self.parts)
 
 
+class LobeSide(NamedTuple):
+    """One side of a lobe, from its foot, or from its ramp's end, to the nose over `half` rad.
+
+    Without a ramp `flank` rises to 1 and is taken `scale` times, mm or rad. With one it is what the lobe has above the
+    ramp's straight line, and `scale` is 1.
+    """
+
+    half: float
+    flank: Flank
+    scale: float = 1.0
+    ramp: Ramp | None = None
+
+    @staticmethod
+    def of(lift: float, half: float, powers: Sequence[int], ramp: Ramp | None) -> LobeSide:
+        """Make it of five powers; nothing is checked."""
+        if ramp is None:
+            return LobeSide(half, Flank.of(powers)[0], lift)
+        return LobeSide(half, Flank.of(powers, lift, ramp.height, ramp.velocity * half)[0], 1.0, ramp)
+
+    @property
+    def reach(self) -> float:
+        """Angle from rest to the nose, rad."""
+        return self.half + (0.0 if self.ramp is None else self.ramp.over)
+
+
 def lobe(
     lift: float,
     half: float,
@@ -55,40 +80,66 @@ def lobe(
 ) -> Motion:
     """Make S = lift (1 + C2 u**2 + Cp u**p + ... + Cs u**s), u = |theta - nose|/half, rest beyond `half` rad.
 
-    Where the motion does not repeat (`around` as for `Motion`), the nose stands in the middle. `powers` are
-    (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L. Norton, Cam Design
-    and Manufacturing Handbook, chapter on valve trains). With a ramp the lobe meets it at its height with its velocity,
-    S'' to S'''' vanish there, and the ramp lies beyond `half`. IntentError for what is none.
+    `powers` are (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L.
+    Norton, Cam Design and Manufacturing Handbook, chapter on valve trains). With a ramp the lobe meets it at its height
+    with its velocity, S'' to S'''' vanish there, and the ramp lies beyond `half`. The rest is as of `lobe_of`.
     """
-    if not (math.isfinite(lift) and lift > 0):
-        raise IntentError(f"the lift of a lobe must be above 0, not {lift:.6g}", f"{field}.lift")
+    side = side_of(lift, half, powers, ramp, total=total, field=field)
+    return lobe_of(side, side, total, nose=nose, around=around, field=field)
+
+
+def side_of(
+    lift: float, half: float, powers: Sequence[float], ramp: Ramp | None, *, total: float, field: str
+) -> LobeSide:
+    """Make the side of a lobe by its powers; IntentError, with a field below `field`, for what is none."""
+    demand_lift(lift, field)
     if not (math.isfinite(half) and 0 < half < total / 2):
         raise IntentError(
             f"half the event lies between 0 and {math.degrees(total / 2):.6g} degrees, not {math.degrees(half):.6g}",
             f"{field}.half",
         )
     rising = all(int(k) == k for k in powers) and all(a < b for a, b in pairwise(powers))
-    if len(powers) != 5 or powers[0] != 2 or not rising or powers[-1] > _GREATEST_POWER:
+    if len(powers) != 5 or powers[0] != 2 or not rising or powers[-1] > GREATEST_POWER:
         shown = ", ".join(f"{k:g}" for k in powers)
         raise IntentError(
-            f"the powers of a lobe are 2 and four more whole numbers that rise to {_GREATEST_POWER} at most, "
+            f"the powers of a lobe are 2 and four more whole numbers that rise to {GREATEST_POWER} at most, "
             f"such as [2, 8, 14, 20, 26], not [{shown}]",
             f"{field}.powers",
         )
+    if ramp is not None:
+        demand_ramp(lift, ramp, field)
+        _demand_left(half, ramp, total, field)
+    return LobeSide.of(lift, half, [int(k) for k in powers], ramp)
+
+
+def lobe_of(
+    opening: LobeSide,
+    closing: LobeSide,
+    total: float = 2 * math.pi,
+    *,
+    nose: float = 0.0,
+    around: int | None = 1,
+    field: str = "motion.lobe",
+) -> Motion:
+    """Join the two sides of a lobe at its nose, and rest beyond them.
+
+    Where the motion does not repeat (`around` as for `Motion`), the nose stands in the middle, and IntentError is
+    raised for one that is given.
+    """
     if around != 1 and nose != 0.0:
         raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
-    if ramp is not None:
-        _demand_room(lift, half, ramp, total, field)
-    stretches = _stretches(lift, half, ramp, [int(k) for k in powers])
-    middle, reach = nose if around == 1 else total / 2, stretches[-1].end
-    if around != 1 or (middle > reach and middle + reach < total):
-        knots = [0.0, *(middle + part.begin for part in stretches), middle + reach, total]
+    falling = [part.mirrored() for part in reversed(_rising(closing))]
+    stretches = [*_rising(opening), *falling]
+    middle = nose if around == 1 else total / 2
+    before, after = opening.reach, closing.reach
+    if around != 1 or (middle > before and middle + after < total):
+        knots = [0.0, *(middle + part.begin for part in stretches), middle + after, total]
         return joined(knots, [Constant(0.0), *(part.moved(middle) for part in stretches), Constant(0.0)], around)
     # what begins before the turn, or after it, is moved by a turn; what its end cuts stands at both ends
     found: list[tuple[float, float, Stretch]] = []
     for turns in (-1.0, 0.0, 1.0):
         shift = middle + turns * total
-        rest = _Stretch(reach, total - reach, Constant(0.0))
+        rest = _Stretch(after, total - before, Constant(0.0))
         for part in (*stretches, rest):
             low, high = max(part.begin + shift, 0.0), min(part.end + shift, total)
             if high - low > _NOTHING:
@@ -118,30 +169,37 @@ class _Stretch(NamedTuple):
         return self._replace(begin=-self.end, end=-self.begin, width=-self.width)
 
 
-def _stretches(lift: float, half: float, ramp: Ramp | None, powers: Sequence[int]) -> list[_Stretch]:
-    """The parts of a lobe from rest to rest."""
+def _rising(side: LobeSide) -> list[_Stretch]:
+    """The parts of a side from rest to the nose, which stands at 0."""
+    half, ramp = side.half, side.ramp
     if ramp is None:
-        rising = [_Stretch(-half, 0.0, Flank.of(powers)[0], lift, half)]
-    else:
-        slope, height = ramp.velocity * half, ramp.height
-        flank, _ = Flank.of(powers, lift, height, slope)
-        first, second = ramp.parts
-        begin, rest = -half - second, FROM_REST * height
-        steady = Power((rest, height - rest))
-        rising = [
-            _Stretch(begin - first, begin, FromRest(), rest, first),
-            _Stretch(begin, -half, steady, 1.0, second),
-            _Stretch(-half, 0.0, RampedFlank(height, slope, flank), 1.0, half),
-        ]
-    return [*rising, *(part.mirrored() for part in rising[::-1])]
+        return [_Stretch(-half, 0.0, side.flank, side.scale, half)]
+    first, second = ramp.parts
+    begin, rest = -half - second, FROM_REST * ramp.height
+    steady = Power((rest, ramp.height - rest))
+    return [
+        _Stretch(begin - first, begin, FromRest(), rest, first),
+        _Stretch(begin, -half, steady, 1.0, second),
+        _Stretch(-half, 0.0, RampedFlank(ramp.height, ramp.velocity * half, side.flank), 1.0, half),
+    ]
 
 
-def _demand_room(lift: float, half: float, ramp: Ramp, total: float, field: str) -> None:
-    """Raise IntentError for a ramp that is none, as high as the lobe, or longer than what is left of the turn."""
+def demand_lift(lift: float, field: str) -> None:
+    """Raise IntentError for a lift that is none."""
+    if not (math.isfinite(lift) and lift > 0):
+        raise IntentError(f"the lift of a lobe must be above 0, not {lift:.6g}", f"{field}.lift")
+
+
+def demand_ramp(lift: float, ramp: Ramp, field: str) -> None:
+    """Raise IntentError for a ramp that is none, or as high as the lobe."""
     if not (math.isfinite(ramp.height) and 0 < ramp.height < lift):
         raise IntentError("the ramp's height must lie between 0 and the lift", f"{field}.ramp.height")
     if not (math.isfinite(ramp.velocity) and ramp.velocity > 0):
         raise IntentError("the ramp's velocity must be above 0", f"{field}.ramp.velocity")
+
+
+def _demand_left(half: float, ramp: Ramp, total: float, field: str) -> None:
+    """Raise IntentError for a ramp longer than what is left of the turn."""
     left = total / 2 - half
     if not ramp.over < left:
         least = math.radians(ramp.over / left * ramp.velocity)

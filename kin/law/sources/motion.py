@@ -38,16 +38,19 @@ class Rest(NamedTuple):
 
 
 class TableRemark(NamedTuple):
-    """What is to be remarked on a table: a name, and a sentence in the table's own units."""
+    """What is to be remarked on a table or a cam card: a name, and a sentence in the table's own units."""
 
-    name: Literal["table-angles", "table-distance", "table-noise", "table-row"]
+    name: Literal["cam-card", "table-angles", "table-distance", "table-noise", "table-row"]
     sentence: str
 
 
 class Kept(NamedTuple):
-    """Greatest distance of a motion from a row of its table, mm or rad, the row's line, and remarks on the table."""
+    """Greatest distance of a motion from a row of its table, mm or rad, the row's line, and remarks.
 
-    distance: float
+    Of what is no table, such as a cam card, there are remarks alone.
+    """
+
+    distance: float | None
     line: int
     remarks: tuple[TableRemark, ...]
 

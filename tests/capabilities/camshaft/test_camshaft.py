@@ -881,3 +881,32 @@ def test_a_slip_in_the_word_camshaft_is_named(word: str, tmp_path: Path) -> None
     path.write_text("cma: {kind: disc}\n", encoding="utf-8")
     with pytest.raises(RecipeErrors, match=r"cma: unknown key; did you mean cam\?"):
         load_order(path)
+
+
+def test_separation_and_advance_are_the_centres_that_they_make(tmp_path: Path) -> None:
+    lobes = "recipe: intake.yaml, cylinder: 1, valve: intake, z: 25\n"
+    lobes += "recipe: exhaust.yaml, cylinder: 1, valve: exhaust, z: 50"
+    files = "[{csv: {as: events}}]"
+    told = []
+    for centres in ("separation: 110, advance: 4", "intake: 106, exhaust: 114"):
+        path = shaft(tmp_path, lobes, f"  engine: {{order: [1], {centres}}}\n", files=files)
+        told.append(dict(camgeo.export(path, tmp_path / "out"))["camshaft"])
+    assert told[0] == told[1]
+    assert told[0]["cylinders"][0]["separation"] == pytest.approx(110.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("engine", "message"),
+    [
+        ("order: [1]", "camshaft.engine: needs intake or separation; give exactly one of them"),
+        ("order: [1], intake: 106, exhaust: 114, separation: 110", "separation: cannot be combined with intake"),
+        ("order: [1], separation: 110, exhaust: 114", "exhaust: cannot be combined with separation; leave it out"),
+        ("order: [1], intake: 106", "camshaft.engine.exhaust: missing, needed with intake"),
+        ("order: [1], intake: 106, exhaust: 114, advance: 4", "advance: needs the lobes' separation; leave it out"),
+    ],
+)
+def test_centres_are_given_one_way(engine: str, message: str, tmp_path: Path) -> None:
+    path = shaft(tmp_path, "recipe: intake.yaml, cylinder: 1, valve: intake, z: 25", f"  engine: {{{engine}}}\n")
+    with pytest.raises(RecipeErrors) as caught:
+        load_order(path)
+    assert message in str(caught.value)

@@ -1,0 +1,204 @@
+"""The lobe of a valve train in a recipe: by its powers, or by its cam card, and its two sides."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+from camgeo.schema.fields import Field, Form, Kind, Table, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping, join
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
+    from kin.law.sources.cam_card import Asked
+    from kin.law.sources.lobe import LobeSide
+    from kin.law.sources.motion import Motion
+
+MOST_DURATIONS = 3
+_BOTH, _ALONE = 4.0, 2.0  # degrees of the crank by degrees of the cam from the nose, of both sides together or one
+_SIDES = ("opening", "closing")
+
+
+@dataclass(frozen=True)
+class SideGiven:
+    """One side of a lobe as a recipe gives it, lengths in mm and angles in radians.
+
+    `half` and `powers`, or `durations`, pairs of a lift and an angle of the crank, which is `crank` times that of the
+    cam from the nose; `half` may stand with them. `ramp` is height and velocity by rad. `field` is that of its own keys
+    below the lobe's, empty of keys that both sides share.
+    """
+
+    half: float | None = None
+    powers: tuple[float, ...] | None = None
+    durations: tuple[tuple[float, float], ...] = ()
+    crank: float = _BOTH
+    ramp: tuple[float, float] | None = None
+    field: str = ""
+
+
+def lobe_motion(
+    lift: float, sides: tuple[SideGiven, SideGiven], total: float, *, nose: float, around: int | None, field: str
+) -> Motion:
+    """Make the motion of a lobe over `total` rad; raises IntentError for what is none."""
+    from kin.law.programme import IntentError
+    from kin.law.sources.cam_card import sides_of_card
+    from kin.law.sources.lobe import demand_lift, lobe_of
+    from kin.law.sources.motion import Kept, TableRemark
+    from kin.numeric.records import replace
+
+    demand_lift(lift, field)
+    opening, closing = (_asked(lift, side, total, field) for side in sides)
+    if opening.known is not None and closing.known is not None:
+        return lobe_of(opening.known, closing.known, total, nose=nose, around=around, field=field)
+    if around != 1 and nose != 0.0:
+        raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
+    first, second = sides_of_card(lift, opening, closing, 0.5 * total)
+    motion = lobe_of(first.side, second.side, total, nose=nose, around=around, field=field)
+    told = {name: _told(*mixture) for name, mixture in zip(_SIDES, (first, second), strict=True) if mixture.members}
+    if first == second:
+        told = {"either": told["opening"]}
+    sentence = "; ".join(f"{words} on the {name} side" for name, words in told.items())
+    return replace(motion, kept=Kept(None, 0, (TableRemark("cam-card", sentence.replace("the either", "either")),)))
+
+
+def _asked(lift: float, side: SideGiven, total: float, field: str) -> Asked:
+    """A side as kin takes it: known by its powers, or what its card says."""
+    from kin.law.sources.cam_card import Asked, Crossing
+    from kin.law.sources.lobe import Ramp, demand_ramp, side_of
+
+    ramp = None if side.ramp is None else Ramp(*side.ramp)
+    field += side.field
+    if side.powers is not None and side.half is not None:
+        return Asked(known=side_of(lift, side.half, side.powers, ramp, total=total, field=field))
+    if ramp is not None:
+        demand_ramp(lift, ramp, field)
+    crossings = tuple(Crossing(at, crank / side.crank) for at, crank in side.durations)
+    return Asked(crossings, side.half, ramp, crank=side.crank, field=field)
+
+
+def _told(members: tuple[tuple[tuple[int, ...], float], ...], side: LobeSide) -> str:
+    """The mixture of a side in words."""
+    shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in members)
+    return f"the card is met by {shares} over {math.degrees(side.half):.6g} degrees of the cam"
+
+
+# --- in a recipe ------------------------------------------------------------------------------------------------------
+
+
+def lobe_field(stroke: Kind, most: float) -> Field:
+    """Make the field of a lobe whose lifts are lengths or angles, of up to `most`."""
+    nose = Field(
+        "nose",
+        Kind.ANGLE,
+        "shaft angle of the nose of a motion over a whole turn",
+        default="0",
+        at_least=0,
+        at_most=360,
+    )
+    lift = Field("lift", stroke, "greatest displacement, its ramp included", required=True, above=0, at_most=most)
+    alone = "what its side has of its own, a duration from the crossing to the nose"
+    both = _side_fields(stroke, most)
+    sides = tuple(mapping(name, alone, *both) for name in _SIDES)
+    return mapping("lobe", "the lobe of valve trains, by its powers or its cam card", lift, *both, nose, *sides)
+
+
+def _side_fields(stroke: Kind, most: float) -> tuple[Field, ...]:
+    crossing = Table(
+        (
+            Field("at_lift", stroke, "a lift, from the lowest place", required=True, above=0, at_most=most),
+            Field(
+                "degrees",
+                Kind.ANGLE,
+                "crank degrees for which the lobe is above it",
+                required=True,
+                above=0,
+                at_most=720,
+            ),
+        )
+    )
+    durations = Form(
+        "a list of durations",
+        "up to three durations such as [{at_lift: 1.27 mm, degrees: 228}]",
+        partial(_read_durations, crossing),
+        partial(_durations_schema, crossing),
+    )
+    return (
+        Field(
+            "half",
+            Kind.ANGLE,
+            "angle from the foot, or from the ramp's end, to the nose",
+            default="by the durations",
+            above=0,
+            at_most=180,
+        ),
+        Field("powers", Kind.NUMBERS, "2 and four more powers, such as [2, 8, 14, 20, 26]", default="by the durations"),
+        Field("duration", Kind.OWN, "what a cam card says, in place of powers", table=crossing, form=durations),
+        mapping(
+            "ramp",
+            "lash ramps beyond `half` on both sides",
+            Field("height", stroke, "displacement at which the lobe begins", required=True, above=0, at_most=most),
+            Field("velocity", stroke, "up to there, a degree of the cam", required=True, above=0, at_most=most),
+        ),
+    )
+
+
+def _durations_schema(table: Table, _: Field) -> Schema:
+    alone = table_schema(table)
+    return {"anyOf": [alone, {"type": "array", "items": alone, "minItems": 1, "maxItems": MOST_DURATIONS}]}
+
+
+def _read_durations(
+    table: Table, reader: Reader, field: Field, node: Node, path: str
+) -> tuple[tuple[float, float], ...] | None:
+    """Read lifts and the angles of the crank for which a lobe is above them."""
+    row = Field("", Kind.TABLE, field.about, table=table)
+    if isinstance(node, Mapping):
+        rows = [reader.mapping(row, node, path)]
+    else:
+        items = reader.items(field, node, path, MOST_DURATIONS)
+        rows = [reader.mapping(row, item, join(path, i)) for i, item in enumerate(items)]
+    whole = [(values["at_lift"], values["degrees"]) for values in rows if values is not None and len(values) == 2]
+    return tuple(whole) if rows and len(whole) == len(rows) else None
+
+
+def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideGiven, SideGiven] | None:
+    """The two sides of a lobe that has been read; None where one is faulty, and the fault is noted."""
+    sides = []
+    for name in _SIDES:
+        own, place = values.get(name, {}), join(path, name) if name in values else path
+        # powers and durations stand in place of one another: a side's own take the place of either
+        shared = {key: values[key] for key in ("half", "powers", "duration", "ramp") if key in values}
+        if "powers" in own or "duration" in own:
+            shared = {
+                key: value for key, value in shared.items() if key == "ramp" or (key == "half" and "powers" in own)
+            }
+        side = {**shared, **own}
+        if "powers" in side and "duration" in side:
+            where = join(place, "duration") if "duration" in own else join(path, "duration")
+            reader.fault_at(where, "cannot be combined with powers", None, "give exactly one of them")
+            return None
+        if "powers" not in side and "duration" not in side:
+            remedy = "give half and powers, or duration: [{at_lift: 1.27 mm, degrees: 228}]"
+            reader.fault_at(place, "needs powers or duration", None, remedy)
+            return None
+        if "powers" in side and "half" not in side:
+            reader.fault_at(place, "powers need half", None, "give half, an angle above 0 up to 180 in degrees")
+            return None
+        ramp = side.get("ramp")
+        sides.append(
+            SideGiven(
+                side.get("half"),
+                side.get("powers"),
+                side.get("duration", ()),
+                _ALONE if "duration" in own else _BOTH,
+                None if ramp is None else (ramp["height"], ramp["velocity"] / math.radians(1.0)),
+                f".{name}" if name in values else "",
+            )
+        )
+    opening, closing = sides
+    return opening, closing

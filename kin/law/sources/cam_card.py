@@ -1,0 +1,510 @@
+"""Lobes by their cam cards: the lift, and for how long a lobe is above stated lifts.
+
+The powers 2-p-q-r-s of the lobe polynomial are whole numbers, so that no single member of the family meets what a card
+says. A mixture of members over one angle, with weights of 0 or more that sum to 1, is a lobe polynomial too: each rises
+from its foot to its nose without a turn (of S' five terms change their sign four times at most, Descartes, and its
+fourfold zero at the foot takes all four), and so does the mixture. Lift and slopes are linear in the weights, so that
+the mixture of least peak acceleration is a linear programme for each angle.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache, lru_cache
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.sources.functions import Flank
+from kin.law.sources.lobe import LobeSide, Ramp
+from kin.numeric.linear_programme import minimise
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kin.numeric.arrays import Array, Indices
+
+MOST_CROSSINGS = 3
+_POWERS = (4, 6, 8, 10, 14, 20, 26, 34, 44, 60, 80, 100)  # of the members that are mixed: four of them, after 2
+_ALL = (2, *_POWERS)
+_EXPONENTS = np.array(_ALL, dtype=float)
+_LOOKS = 129  # places from the nose to the foot at which the acceleration is bounded
+_HALVES = 32  # angles of a side that are tried, evenly in their logarithm, before the best is refined
+_CUTS = 12  # rounds in which places with a greater acceleration are added to a programme
+_EXACT = 1e-10  # of the lift: rows of a programme that are missed by less are met, and then corrected
+_ACTIVE = 0.98  # of the peak: places with less of it are left to be found anew by the next programme
+_SHORTEST = 1e-3  # of the longest side: none is shorter
+_REFINED = 10  # steps of a golden section
+_DEGREES = 0.01  # of the crank, to which the nearest card is told
+_NEAREST = 10  # halvings of the greatest difference of a card
+_FARTHEST = 720.0  # degrees of the crank
+_CLOSE = 1e-4  # of a peak: places with no greater acceleration than so are no new ones
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_LEAST_WEIGHT = 1e-12  # of a mixture: less is rounding
+
+
+class Crossing(NamedTuple):
+    """What a card says: a lift, mm or rad, and the angle at which it is crossed, rad of the cam from the nose."""
+
+    lift: float
+    angle: float
+
+
+class Asked(NamedTuple):
+    """One side of a lobe as a card gives it; `half` rad where that is given too, or the side itself where it is known.
+
+    `crank` is degrees of the crank by degrees of the cam from the nose: 4 where a duration is that of both sides, 2 of
+    one. `field` is that of the crossings.
+    """
+
+    crossings: tuple[Crossing, ...] = ()
+    half: float | None = None
+    ramp: Ramp | None = None
+    known: LobeSide | None = None
+    crank: float = 4.0
+    field: str = "motion.lobe"
+
+
+class Mixture(NamedTuple):
+    """A side that meets a card: its members' powers with their weights, the greatest first, and the side."""
+
+    members: tuple[tuple[tuple[int, ...], float], ...]
+    side: LobeSide
+
+
+@cache
+def _members() -> tuple[tuple[int, ...], ...]:
+    return tuple((2, *four) for four in combinations(_POWERS, 4))
+
+
+@cache
+def _lagrange() -> tuple[Array, Array]:
+    """Lagrange's polynomials over the powers of each member at 0 and at 1, each at the place of its power, (n, 13)."""
+    places = {power: k for k, power in enumerate(_ALL)}
+    at_0, at_1 = np.zeros((2, len(_members()), len(_ALL)))
+    for i, powers in enumerate(_members()):
+        for k in powers:
+            others = [other for other in powers if other != k]
+            at_0[i, places[k]] = math.prod(other / (other - k) for other in others)
+            at_1[i, places[k]] = math.prod((other - 1) / (other - k) for other in others)
+    return at_0, at_1
+
+
+@cache
+def _bends() -> tuple[Array, Array]:
+    """Second derivatives by u of Lagrange's polynomials at 0 and at 1 of each member, at all places, (k, n)."""
+    u = np.linspace(0.0, 1.0, _LOOKS)[:-1]
+    powers = _EXPONENTS * (_EXPONENTS - 1.0) * u[:, None] ** (_EXPONENTS - 2.0)
+    at_0, at_1 = _lagrange()
+    return powers @ at_0.T, powers @ at_1.T
+
+
+class _Family(NamedTuple):
+    """The members over one angle, of a lift: which they are, and their shares of Lagrange's polynomials at 0 and 1."""
+
+    lift: float
+    half: float
+    chosen: Indices
+    shares: tuple[float, float]
+
+    def lifts(self, angle: float) -> Array:
+        """Each member's lift at an angle from the nose, shares of the whole one, (n,)."""
+        at_0, at_1 = _lagrange()
+        powers, (first, second) = (angle / self.half) ** _EXPONENTS, self.shares
+        return 1.0 + (first * (at_0 @ powers) + second * (at_1 @ powers))[self.chosen]
+
+    def accelerations(self, places: slice = slice(None)) -> Array:
+        """Each member's S'' at places from the nose to the foot, of the lift by rad^2, (k, n)."""
+        at_0, at_1 = _bends()
+        first, second = (share / self.half**2 for share in self.shares)
+        return (first * at_0[places] + second * at_1[places])[:, self.chosen]
+
+
+def _family(lift: float, half: float, ramp: Ramp | None) -> _Family:
+    """Members that fall from the nose; beside a steep ramp some do not."""
+    at_0, at_1 = _lagrange()
+    foot, slope = (0.0, 0.0) if ramp is None else (ramp.height / lift, ramp.velocity * half / lift)
+    shares = (foot - 1.0 + slope, -slope)
+    return _Family(lift, half, np.flatnonzero(shares[0] * at_0[:, 0] + shares[1] * at_1[:, 0] < 0.0), shares)
+
+
+class _Programme(NamedTuple):
+    """Sides over their angles: mixtures that meet their crossings, and have one acceleration at the nose.
+
+    `within` degrees of the crank a crossing may be off. `nose` is the acceleration there of a side that is known, by
+    rad^2, of the lift.
+    """
+
+    families: tuple[_Family, ...]
+    asked: tuple[Asked, ...]
+    nose: float | None
+    within: float = 0.0
+
+    def missed(self) -> tuple[float, list[Array]]:
+        """By how much the rows are missed at best, 0 where they can be met, and the weights of each side that do."""
+        rows, right = self._rows()
+        found = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
+        return found.missed, self._weights(found.x)
+
+    def least_nose(self, sign: float) -> float:
+        """Least acceleration at the nose, by rad^2, of the lift, times `sign`; infinite where rows cannot be met."""
+        rows, right = self._rows()
+        cost = np.zeros(rows.shape[1])
+        cost[: len(self.families[0].chosen)] = sign * self.families[0].accelerations(slice(1))[0]
+        return minimise(cost, rows, right, _EXACT).value
+
+    def least_peak(self, cuts: list[int]) -> tuple[float, list[Array]]:
+        """Least peak of |S''|, of the lift by rad^2, and the weights of each side; infinite where rows cannot be met.
+
+        `cuts` are the places, of those that are looked at, at which it is bounded from the first; those are added at
+        which it turned out greater.
+        """
+        rows, right = self._rows()
+        bends = self._accelerations(rows.shape[1])
+        size = np.abs(bends).max(axis=1)
+        for _ in range(_CUTS):
+            count = len(cuts)
+            lower = bends[cuts] / size[cuts][:, None]
+            whole = np.block(
+                [
+                    [rows, np.zeros((len(rows), 1 + count))],
+                    [lower, -size.min() / size[cuts][:, None], np.eye(count)],
+                ]
+            )
+            cost = np.zeros(whole.shape[1])
+            cost[rows.shape[1]] = 1.0
+            found = minimise(cost, whole, np.concatenate([right, np.zeros(count)]), _EXACT)
+            if not math.isfinite(found.value):
+                return math.inf, []
+            peaks = bends @ found.x[: rows.shape[1]]
+            highest = [int(i) for i in peaks.argsort()[-4:]]
+            new = [i for i in highest if peaks[i] > found.value * size.min() * (1.0 + _CLOSE) and i not in cuts]
+            if not new:
+                break
+            cuts += new
+        level = found.value * size.min()
+        cuts[:] = [i for i in cuts if peaks[i] > _ACTIVE * level]
+        return float(peaks.max()), self._weights(self._exact(found.x, rows, right))
+
+    @staticmethod
+    def _exact(x: Array, rows: Array, right: Array) -> Array:
+        """The columns of the members, corrected so that what rounding has left of the rows is met too."""
+        used = np.flatnonzero(x[: rows.shape[1]] > _LEAST_WEIGHT)
+        x = x[: rows.shape[1]].copy()
+        more, *_ = np.linalg.lstsq(rows[:, used], right - rows @ x, rcond=None)
+        x[used] += more
+        return x
+
+    def _accelerations(self, columns: int) -> Array:
+        """S'' and -S'' of each column at every place that is looked at, side by side, of the lift by rad^2."""
+        start, blocks = 0, []
+        for family in self.families:
+            block = np.zeros((_LOOKS - 1, columns))
+            block[:, start : start + len(family.chosen)] = family.accelerations()
+            start += len(family.chosen)
+            blocks += [block, -block]
+        return np.vstack(blocks)
+
+    def _rows(self) -> tuple[Array, Array]:
+        """Rows and right sides: weights that sum to 1, crossings, one acceleration at the nose."""
+        size = sum(len(family.chosen) for family in self.families)
+        slack = 0 if self.within == 0.0 else 2 * sum(len(asked.crossings) for asked in self.asked)
+        rows: list[Array] = []
+        right: list[float] = []
+        start, used = 0, size
+        for family, asked in zip(self.families, self.asked, strict=True):
+            here = slice(start, start + len(family.chosen))
+            start = here.stop
+            row = np.zeros(size + slack)
+            row[here] = 1.0
+            rows.append(row)
+            right.append(1.0)
+            for lift, angle in asked.crossings:
+                off = math.radians(self.within / asked.crank)
+                ways = ((0.0, 0.0),) if off == 0.0 else ((-off, -1.0), (off, 1.0))
+                for shift, sign in ways:
+                    row = np.zeros(size + slack)
+                    row[here] = family.lifts(min(max(angle + shift, 0.0), family.half))
+                    if sign:
+                        row[used] = sign
+                        used += 1
+                    rows.append(row)
+                    right.append(lift / family.lift)
+        noses = [(family.accelerations(slice(1))[0] * family.half**2, family.half) for family in self.families]
+        if self.nose is not None or len(self.families) > 1:
+            row = np.zeros(size + slack)
+            row[: len(noses[0][0])] = noses[0][0]
+            level = self.nose
+            if level is None:
+                (_, half), (second, other) = noses
+                row[size - len(second) : size] = -second * (half / other) ** 2
+            biggest = float(np.abs(row).max())
+            rows.append(row / biggest)
+            right.append(0.0 if level is None else level * noses[0][1] ** 2 / biggest)
+        return np.array(rows), np.array(right)
+
+    def _weights(self, x: Array) -> list[Array]:
+        ends = np.cumsum([0, *(len(family.chosen) for family in self.families)])
+        return [x[a:b] for a, b in pairwise(ends.tolist())]
+
+
+@lru_cache(maxsize=16)
+def sides_of_card(lift: float, opening: Asked, closing: Asked, most: float) -> tuple[Mixture, Mixture]:
+    """The sides of a lobe whose crossings are those of its card, with the least peak acceleration there is.
+
+    `most` rad is the longest a side may be, its ramp included. Sides that are alike are mirrored; of others one that is
+    known keeps its acceleration at the nose, and the other takes it. Crossings are met to 1e-9 degrees, and the peak is
+    the least to about a thousandth. Raises IntentError where no mixture meets the card, with the nearest: that whose
+    greatest difference is the least.
+    """
+    sides = [opening] if opening == closing else [asked for asked in (opening, closing) if asked.known is None]
+    known = next((asked.known for asked in (opening, closing) if asked.known is not None), None)
+    for asked in sides:
+        _demand_order(lift, asked, most)
+    nose = None if known is None else _at_nose(known) / lift
+    solved = _solved(lift, sides, nose, most)
+    if solved is None:
+        raise _no_card(lift, sides, nose, most)
+    made = [_mixture(family, asked, weights) for asked, (family, weights) in zip(sides, solved, strict=True)]
+    if opening == closing:
+        return made[0], made[0]
+    others = iter(made)
+    first, second = (
+        Mixture((), asked.known) if asked.known is not None else next(others) for asked in (opening, closing)
+    )
+    return first, second
+
+
+def _solved(lift: float, sides: Sequence[Asked], nose: float | None, most: float) -> list[tuple[_Family, Array]] | None:
+    """The mixtures of least peak acceleration that meet the sides' crossings; None where none do.
+
+    Each side has the angle that is best of it alone; where the sides then have no acceleration at the nose in common,
+    that which is best with one that they can have.
+    """
+
+    def tried(level: float | None) -> list[tuple[_Family, Array]] | None:
+        halves = [_search(lift, asked, level, most) for asked in sides]
+        programme = _programme(lift, sides, halves, nose)
+        peak, weights = programme.least_peak(_first_cuts(len(sides)))
+        return list(zip(programme.families, weights, strict=True)) if math.isfinite(peak) else None
+
+    found = tried(nose)
+    if found is None and len(sides) > 1 and (level := _common_nose(lift, sides, most, 0.0)) is not None:
+        return tried(level)
+    return found
+
+
+def _demand_order(lift: float, asked: Asked, most: float) -> None:
+    """Raise IntentError for crossings that no lobe has."""
+    foot = 0.0 if asked.ramp is None else asked.ramp.height
+    left = most - (0.0 if asked.ramp is None else asked.ramp.over)
+    if left <= 0.0:
+        raise IntentError(
+            "the ramp leaves nothing of the turn; give it a greater velocity", f"{asked.field}.ramp.velocity"
+        )
+    before: Crossing | None = None
+    for i, crossing in sorted(enumerate(asked.crossings), key=lambda item: item[1]):
+        field = f"{asked.field}.duration[{i}]"
+        if not foot < crossing.lift < lift:
+            above = "the ramp's height" if foot else "0"
+            raise IntentError(f"a lift of a card lies between {above} and the lift of the lobe", f"{field}.at_lift")
+        if before is not None and not (before.lift < crossing.lift and before.angle > crossing.angle):
+            raise IntentError("a card has shorter durations at greater lifts", f"{field}.degrees")
+        if not crossing.angle < (left if asked.half is None else min(asked.half, left)):
+            longest = "`half` and the turn leave" if asked.half is not None else "the turn leaves"
+            raise IntentError(f"longer than {longest}, with the ramp", f"{field}.degrees")
+        before = crossing
+    if asked.half is not None and not asked.half < left:
+        raise IntentError("`half` and the ramp are longer than the turn leaves", f"{asked.field}.half")
+
+
+def _at_nose(side: LobeSide) -> float:
+    """Acceleration at the nose of a side that is known, by rad^2."""
+    from kin.numeric.elementary import Jet
+
+    _, _, bend = side.flank(Jet.variable(np.array([1.0]), 2)).derivatives()
+    return side.scale * float(bend[0]) / side.half**2
+
+
+def _programme(
+    lift: float, sides: Sequence[Asked], halves: Sequence[float], nose: float | None, within: float = 0.0
+) -> _Programme:
+    families = tuple(_family(lift, half, asked.ramp) for asked, half in zip(sides, halves, strict=True))
+    return _Programme(families, tuple(sides), nose, within)
+
+
+def _first_cuts(sides: int) -> list[int]:
+    """A few places of each side and sign, of those that are looked at."""
+    return list(range(0, 2 * sides * (_LOOKS - 1), _LOOKS // 8))
+
+
+def _search(lift: float, asked: Asked, nose: float | None, most: float, within: float | None = None) -> float:
+    """The angle of a side that has the least peak acceleration; `within` degrees of the crank, one that meets its rows.
+
+    Of a side that none meets it is the one that misses by the least.
+    """
+    cuts = _first_cuts(1)
+
+    def merit(half: float) -> tuple[float, float]:
+        programme = _programme(lift, [asked], [half], nose, within or 0.0)
+        if within is None:
+            peak, _ = programme.least_peak(cuts)
+            return (0.0, peak) if math.isfinite(peak) else (programme.missed()[0], peak)
+        return programme.missed()[0], 0.0
+
+    return _best(_angles(asked, most, within or 0.0), merit)
+
+
+def _common_nose(lift: float, sides: Sequence[Asked], most: float, within: float) -> float | None:
+    """An acceleration at the nose, by rad^2, of the lift, that two sides can have, each over an angle of its own.
+
+    It is the middle of what both reach; None where they have none in common.
+    """
+    least, greatest = -math.inf, math.inf
+    for asked in sides:
+        reach: list[float] = []
+        for half in _angles(asked, most, within):
+            programme = _programme(lift, [asked], [half], None, within)
+            reach += (value for sign in (1.0, -1.0) if math.isfinite(value := sign * programme.least_nose(sign)))
+        if not reach:
+            return None
+        least, greatest = max(least, min(reach)), min(greatest, max(reach))
+    return 0.5 * (least + greatest) if least <= greatest else None
+
+
+def _angles(asked: Asked, most: float, within: float) -> list[float]:
+    """Angles of a side to be tried first, from the least to the greatest."""
+    if asked.half is not None:
+        return [asked.half]
+    left = most - (0.0 if asked.ramp is None else asked.ramp.over)
+    least = max(crossing.angle for crossing in asked.crossings) - math.radians(within / asked.crank)
+    least = max(least, _SHORTEST * left)
+    # evenly in the logarithm of what lies beyond the last crossing
+    low, high = math.log(2e-3 * least), math.log((left - least) * (1.0 - 1e-9))
+    return [least + math.exp(low + (high - low) * k / (_HALVES - 1)) for k in range(_HALVES)]
+
+
+def _best(angles: Sequence[float], merit: Callable[[float], tuple[float, float]]) -> float:
+    """The angle of least merit: the best that is tried, refined by a golden section between its neighbours."""
+    if len(angles) == 1:
+        return angles[0]
+    found = [merit(angle) for angle in angles]
+    i = min(range(len(angles)), key=found.__getitem__)
+    if found[i] == (0.0, 0.0):
+        return angles[i]
+    low, high = angles[max(i - 1, 0)], angles[min(i + 1, len(angles) - 1)]
+    best = found[i], angles[i]
+    inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
+    values = [merit(x) for x in inner]
+    for _ in range(_REFINED):
+        best = min(best, *zip(values, inner, strict=True))
+        if values[0] <= values[1]:
+            high = inner[1]
+            inner = [high - _GOLDEN * (high - low), inner[0]]
+            values = [merit(inner[0]), values[0]]
+        else:
+            low = inner[0]
+            inner = [inner[1], low + _GOLDEN * (high - low)]
+            values = [values[1], merit(inner[1])]
+    return min(best, *zip(values, inner, strict=True))[1]
+
+
+def _mixture(family: _Family, asked: Asked, weights: Array) -> Mixture:
+    """The side of a mixture; its weights are worked out again of the members as they are made."""
+    used = np.flatnonzero(weights > _LEAST_WEIGHT)
+    members = [_members()[family.chosen[i]] for i in used]
+    share = weights[used] / math.fsum(weights[used].tolist())
+    sides = [LobeSide.of(family.lift, family.half, powers, asked.ramp) for powers in members]
+    order = np.argsort(-share, kind="stable")
+    flank = Flank.mixed([side.flank for side in sides], share.tolist())
+    side = sides[0]._replace(flank=flank)
+    return Mixture(tuple((members[i], float(share[i])) for i in order), side)
+
+
+def _no_card(lift: float, sides: Sequence[Asked], nose: float | None, most: float) -> IntentError:
+    """The error of a card that none meets, with the nearest one: the least greatest difference in degrees."""
+    low, high = 0.0, 1.0
+    while not _met(lift, sides, nose, most, high) and high < _FARTHEST:
+        low, high = high, 2.0 * high
+    for _ in range(_NEAREST):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _met(lift, sides, nose, most, middle) else (middle, high)
+    near = _nearest(lift, sides, nose, most, high)
+    field = f"{next(asked for asked in sides if asked.crossings).field}.duration"
+    if near is None:
+        return IntentError("no lobe of the family is above these lifts for so long; give fewer durations", field)
+    told = "; ".join(", ".join(f"{_crank(asked, crossing):.2f}" for crossing in asked.crossings) for asked in near)
+    off = max(
+        abs(_crank(asked, crossing) - _crank(asked, meant))
+        for asked, own in zip(near, sides, strict=True)
+        for crossing, meant in zip(asked.crossings, own.crossings, strict=True)
+    )
+    return IntentError(
+        f"no lobe of the family is above these lifts for so long; the nearest has {told} degrees in their order, "
+        f"{off:.3g} off: give those",
+        field,
+    )
+
+
+def _crank(asked: Asked, crossing: Crossing) -> float:
+    return asked.crank * math.degrees(crossing.angle)
+
+
+def _met(lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float) -> bool:
+    """Whether mixtures meet all crossings within so many degrees of the crank."""
+    return _weights_within(lift, sides, nose, most, within) is not None
+
+
+def _weights_within(
+    lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float
+) -> list[tuple[_Family, Array]] | None:
+    """Mixtures that meet all crossings within so many degrees of the crank; None where there are none."""
+    if len(sides) > 1:
+        nose = _common_nose(lift, sides, most, within)
+        if nose is None:
+            return None
+    mixtures = []
+    for asked in sides:
+        programme = _programme(lift, [asked], [_search(lift, asked, nose, most, within)], nose, within)
+        missed, (weights,) = programme.missed()
+        if missed > 0.0:
+            return None
+        mixtures.append((programme.families[0], weights))
+    return mixtures
+
+
+def _nearest(lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float) -> list[Asked] | None:
+    """The card of a mixture that is off by no more than about `within` degrees of the crank, in round numbers; or None.
+
+    What is nearest lies on the border of all that can be met. So much of every other member is added that the card in
+    round numbers lies within it.
+    """
+    mixtures = _weights_within(lift, sides, nose, most, within)
+    if mixtures is None:
+        return None
+    for share in (2.0**-k for k in range(_NEAREST, 1, -1)):
+        near = []
+        for asked, (family, own) in zip(sides, mixtures, strict=True):
+            mixed = (1.0 - share) * own + share / len(own)
+            angles = [_angle_at(family, mixed, crossing.lift) for crossing in asked.crossings]
+            crank = [round(asked.crank * math.degrees(angle) / _DEGREES) * _DEGREES for angle in angles]
+            crossings = tuple(
+                Crossing(crossing.lift, math.radians(degrees / asked.crank))
+                for crossing, degrees in zip(asked.crossings, crank, strict=True)
+            )
+            near.append(asked._replace(crossings=crossings))
+        if _solved(lift, near, nose, most) is not None:
+            return near
+    return None
+
+
+def _angle_at(family: _Family, weights: Array, lift: float) -> float:
+    """Angle from the nose at which a mixture crosses a lift, rad."""
+    low, high = 0.0, family.half
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        above = float(family.lifts(middle) @ weights) * family.lift > lift
+        low, high = (middle, high) if above else (low, middle)
+    return 0.5 * (low + high)

@@ -1,0 +1,192 @@
+"""Cam cards: what they say is met, by mixtures of the family alone, and by the least peak acceleration there is."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.cases import examples
+from support.heavy import optimize
+
+from kin.law.programme import IntentError
+from kin.law.sources.cam_card import Asked, Crossing, sides_of_card
+from kin.law.sources.lobe import LobeSide, Ramp, coefficients, lobe, lobe_of
+
+LIFT = 9.2
+CARD = ((1.27, 228.0), (0.15, 270.0), (5.08, 140.0))
+HALF_TURN = math.pi
+
+
+def asked(card, crank=4.0, **more):
+    return Asked(tuple(Crossing(lift, math.radians(degrees / crank)) for lift, degrees in card), crank=crank, **more)
+
+
+def solved(card, lift=LIFT, **more):
+    side = asked(card, **more)
+    return sides_of_card(lift, side, side, HALF_TURN)[0]
+
+
+def crank_degrees(motion, lift, way=1.0):
+    """Crank degrees from the nose to a crossing, by halving, on one side."""
+    low, high = 0.0, math.pi
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        place = np.array([middle if way > 0 else 2 * math.pi - middle])
+        low, high = (middle, high) if motion.derivatives(place, 0)[0, 0] > lift else (low, middle)
+    return math.degrees(2.0 * low)
+
+
+def peak(motion, half):
+    return float(np.abs(motion.derivatives(np.linspace(0.0, half, 20_001), 2)[2]).max())
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_the_durations_of_a_card_are_met(count):
+    mixture = solved(CARD[:count])
+    motion = lobe_of(mixture.side, mixture.side)
+    for lift, degrees in CARD[:count]:
+        for way in (1.0, -1.0):
+            assert 2.0 * crank_degrees(motion, lift, way) == pytest.approx(degrees, abs=1e-9)
+    assert motion.range == pytest.approx((0.0, LIFT), abs=1e-12)
+    assert motion.joints == ()
+
+
+def test_the_lobe_is_a_mixture_of_the_family():
+    mixture = solved(CARD)
+    weights = [weight for _, weight in mixture.members]
+    assert min(weights) > 0.0
+    assert math.fsum(weights) == pytest.approx(1.0, abs=1e-13)
+    motion, u = lobe_of(mixture.side, mixture.side), np.linspace(0.0, 1.0, 40)
+    terms = [weight * c * u**k for powers, weight in mixture.members for c, k in zip(coefficients(powers), powers)]  # noqa: B905 - both have five
+    plain = LIFT * (1.0 + np.sum(terms, axis=0))
+    assert motion.derivatives(u * mixture.side.half, 0)[0] == pytest.approx(plain, abs=1e-12)
+
+
+def test_it_falls_from_its_nose_without_a_turn():
+    mixture = solved(CARD)
+    rates = lobe_of(mixture.side, mixture.side).derivatives(np.linspace(1e-3, mixture.side.half - 1e-3, 5000), 1)[1]
+    assert (rates < 0.0).all()
+
+
+@settings(max_examples=examples(12), deadline=None)
+@given(
+    st.sampled_from([(2, 8, 14, 20, 26), (2, 6, 10, 14, 18), (2, 10, 20, 34, 60), (2, 4, 8, 26, 44)]),
+    st.floats(50.0, 85.0),
+    st.floats(3.0, 12.0),
+    st.integers(1, 3),
+)
+def test_a_card_of_a_member_is_met_with_no_greater_peak(powers, half, lift, count):
+    """Whatever the card of one member says can be met: its own peak is a bound of the least."""
+    single = lobe(lift, math.radians(half), powers)
+    shares = (0.14, 0.5, 0.02)[:count]
+    card = [(share * lift, 2.0 * crank_degrees(single, share * lift)) for share in shares]
+    mixture = solved(card, lift)
+    motion = lobe_of(mixture.side, mixture.side)
+    for at, degrees in card:
+        assert 2.0 * crank_degrees(motion, at) == pytest.approx(degrees, abs=1e-9)
+    assert peak(motion, mixture.side.half) <= peak(single, math.radians(half)) * (1.0 + 2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_no_angle_has_a_lower_peak_by_another_solver(count):
+    """The mixtures of all members at 160 angles by scipy, the acceleration bounded at 400 places."""
+    pytest.importorskip("scipy")
+    from kin.law.sources.cam_card import _members
+
+    u = np.linspace(0.0, 1.0, 400)
+    powers = np.array(_members(), dtype=float)
+    factors = np.array([coefficients(member) for member in _members()])
+    bends = np.einsum("nk,unk->un", factors * powers * (powers - 1), u[:, None, None] ** (powers - 2))
+    least = math.inf
+    for half in np.radians(np.linspace(CARD[min(count, 2) - 1][1] / 4 + 0.5, 110.0, 160)):
+        rows = [1.0 + (factors * (math.radians(d / 4) / half) ** powers).sum(axis=1) for _, d in CARD[:count]]
+        equal = np.column_stack([np.vstack([np.ones(len(factors)), *rows]), np.zeros(count + 1)])
+        right = [1.0, *(lift / LIFT for lift, _ in CARD[:count])]
+        size = np.abs(bends).max()
+        upper = np.vstack([np.column_stack([sign * bends / size, -np.ones(len(u))]) for sign in (1.0, -1.0)])
+        cost = np.append(np.zeros(len(factors)), 1.0)
+        found = optimize.linprog(cost, A_ub=upper, b_ub=np.zeros(len(upper)), A_eq=equal, b_eq=right)
+        if found.status == 0:
+            least = min(least, found.fun * size * LIFT / half**2)
+    mixture = solved(CARD[:count])
+    assert peak(lobe_of(mixture.side, mixture.side), mixture.side.half) <= least * 1.001
+
+
+@pytest.mark.parametrize("card", [((1.27, 228.0), (0.15, 250.0), (5.08, 140.0)), ((1.27, 228.0), (5.08, 60.0))])
+def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
+    with pytest.raises(IntentError, match=r"the nearest has .* off: give those") as caught:
+        solved(card)
+    text = re.search(r"nearest has (.*) degrees in their order, ([\d.]+) off", caught.value.message)
+    nearest = tuple((lift, float(told)) for (lift, _), told in zip(card, text[1].split(", "), strict=True))
+    off = max(abs(a - b) for (_, a), (_, b) in zip(card, nearest, strict=True))
+    assert off == pytest.approx(float(text[2]), rel=0.01)
+    assert caught.value.field == "motion.lobe.duration"
+    mixture = solved(nearest)
+    motion = lobe_of(mixture.side, mixture.side)
+    for lift, degrees in nearest:
+        assert 2.0 * crank_degrees(motion, lift) == pytest.approx(degrees, abs=1e-9)
+    # nothing is much nearer: a card half as far off, towards the one that was asked for, is refused
+    half_way = tuple(
+        (lift, degrees + 0.5 * (a - degrees)) for (lift, a), (_, degrees) in zip(card, nearest, strict=True)
+    )
+    with pytest.raises(IntentError, match="no lobe of the family"):
+        solved(half_way)
+
+
+def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
+    opening = asked(((1.27, 112.0), (0.15, 134.0)), 2.0, ramp=Ramp(0.1, 0.01 * math.degrees(1.0)))
+    closing = asked(((1.27, 118.0), (0.2, 138.0)), 2.0)
+    first, second = sides_of_card(LIFT, opening, closing, HALF_TURN)
+    motion = lobe_of(first.side, second.side)
+    for card, way in ((opening, -1.0), (closing, 1.0)):
+        for lift, angle in card.crossings:
+            assert crank_degrees(motion, lift, way) == pytest.approx(2.0 * math.degrees(angle), abs=1e-9)
+    assert all(order > 2 for joint in motion.joints for order, *_ in joint.jumps)
+
+
+def test_a_side_by_its_powers_keeps_its_acceleration_at_the_nose():
+    known = LobeSide.of(LIFT, math.radians(66), (2, 8, 14, 20, 26), None)
+    first, second = sides_of_card(LIFT, Asked(known=known), asked(((1.27, 118.0),), 2.0), HALF_TURN)
+    motion = lobe_of(first.side, second.side, nose=math.pi)
+    before, after = (motion.derivatives(math.pi, 2, side)[2, 0] for side in (-1, 1))
+    assert before == pytest.approx(after, rel=1e-9)
+    assert first.side == known
+
+
+def test_sides_whose_noses_do_not_agree_are_refused_with_ones_that_do():
+    with pytest.raises(IntentError, match=r"nearest has ([\d.]+); ([\d.]+) degrees") as caught:
+        sides_of_card(LIFT, asked(((1.27, 110.0),), 2.0), asked(((1.27, 60.0),), 2.0), HALF_TURN)
+    first, second = map(float, re.search(r"has ([\d.]+); ([\d.]+)", caught.value.message).groups())
+    sides_of_card(LIFT, asked(((1.27, first),), 2.0), asked(((1.27, second),), 2.0), HALF_TURN)
+
+
+@pytest.mark.parametrize(
+    ("card", "more", "message", "field"),
+    [
+        (((9.2, 10.0),), {}, "a lift of a card lies between 0 and the lift of the lobe", ".duration[0].at_lift"),
+        (
+            ((0.1, 250.0),),
+            {"ramp": Ramp(0.2, 1.0)},
+            "a lift of a card lies between the ramp's height and the lift of the lobe",
+            ".duration[0].at_lift",
+        ),
+        (((1.0, 200.0), (2.0, 210.0)), {}, "a card has shorter durations at greater lifts", ".duration[1].degrees"),
+        (((1.0, 200.0), (1.0, 190.0)), {}, "a card has shorter durations at greater lifts", ".duration[0].degrees"),
+        (((1.0, 720.0),), {}, "longer than the turn leaves, with the ramp", ".duration[0].degrees"),
+        (
+            ((1.0, 250.0),),
+            {"half": 1.0},
+            "longer than `half` and the turn leave, with the ramp",
+            ".duration[0].degrees",
+        ),
+        (((1.0, 250.0),), {"ramp": Ramp(0.5, 0.01)}, "the ramp leaves nothing of the turn; give it", ".ramp.velocity"),
+    ],
+)
+def test_what_is_no_card_is_refused(card, more, message, field):
+    with pytest.raises(IntentError) as caught:
+        solved(card, **more)
+    assert message in caught.value.message
+    assert caught.value.field == f"motion.lobe{field}"
