@@ -7,6 +7,7 @@ lift over the angle from the nose. Its lobes are three arcs under a flat tappet:
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -72,7 +73,7 @@ def test_the_events_are_the_published_ones(tmp_path: Path) -> None:
         "export: {files: [{csv: {as: events}}]}\n",
         encoding="utf-8",
     )
-    report = dict(camgeo.export(tmp_path / "shaft.yaml", tmp_path))
+    report: dict[str, Any] = dict(camgeo.export(tmp_path / "shaft.yaml", tmp_path))
     (cylinder,) = report["camshaft"]["cylinders"]
     # the page has 217.87 degrees for the exhaust, 0.28 fewer, and says that both lobes are alike
     for name, published in EVENTS.items():
