@@ -10,7 +10,17 @@ from scipy.optimize import lsq_linear
 from support.cases import examples
 
 from kin.law.sources import least_jerk
-from kin.law.sources.least_jerk import Bounds, CrowdedError, Floor, Space, Touch, curve_through, least, missed_by, pulls
+from kin.law.sources.least_jerk import (
+    Bounds,
+    CrowdedError,
+    LowerLimit,
+    Space,
+    Touch,
+    curve_through,
+    least,
+    missed_by,
+    pulls,
+)
 
 TURN = 2 * math.pi
 
@@ -120,8 +130,8 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
 @pytest.mark.parametrize("count", [3_000, 120_000])
 def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):
     knots = []
-    third = least_jerk._third
-    monkeypatch.setattr(least_jerk, "_third", lambda space, x, s: knots.append(len(x)) or third(space, x, s))
+    third = least_jerk._spline
+    monkeypatch.setattr(least_jerk, "_spline", lambda space, x, s: knots.append(len(x)) or third(space, x, s))
     monkeypatch.setattr(least_jerk, "_MOST_WORK", 0.02 * least_jerk._MOST_WORK)
     noise = np.random.default_rng(1).uniform(0.0, 10.0, count)
     with pytest.raises(CrowdedError):
@@ -147,7 +157,7 @@ def test_a_function_above_a_floor_touches_it_and_costs_more():
     x = np.arange(24) * TURN / 24
     s = np.where(np.abs(x - math.pi) < 1.0, 5.0, 0.0)
     space, limits = Space(0.0, TURN), bounds(x, s, 0.001)
-    free, held = least(space, limits), least(space, limits, floor=Floor(0.0, 1e-9))
+    free, held = least(space, limits), least(space, limits, limit=LowerLimit(0.0, 1e-9))
     assert free.curve.lowest()[1] < -0.3
     assert held.curve.lowest()[1] >= -1e-9
     assert held.square > free.square

@@ -230,6 +230,25 @@ def test_a_dwell_at_the_last_level_fills_the_rest_of_a_turn():
     assert math.degrees(motion.rests[-1].end) == pytest.approx(360, abs=1.5)
 
 
+def test_a_sharp_end_of_the_rows_before_a_filled_rest_is_told_by_their_lines():
+    """The rows that fill the rest have no line; a motion that does not end level is sharp at them."""
+    theta = np.radians(np.arange(60.0, 181.0, 2.0))
+    rows = Samples(theta, np.round(20 + 15 * np.sin(1.5 * theta - 1.5), 1), np.arange(61) + 1)
+    kept = from_table(rows, 0.05, rest="dwell", suspects="keep").kept
+    told = [remark.sentence for remark in kept.remarks if remark.name == "table-row"]
+    assert [re.match(r"line (\d+): the row stands out", sentence)[1] for sentence in told] == ["1"]
+
+
+def test_equal_rows_at_an_end_that_are_no_dwell_leave_the_end_itself():
+    """A slow start of few digits: the motion reaches from end to end though its first run of equal rows is none."""
+    theta = np.radians(np.arange(0.0, 181.0, 15.0))
+    s = np.array([0, 0, 0, 2, 3, 5, 7, 8, 8, 8, 8, 8, 8], dtype=float)
+    motion = from_table(Samples(theta, s, np.arange(13) + 1), 0.5, math.pi, around=None)
+    assert motion.motion.knots[[0, -1]].tolist() == [0.0, math.pi]
+    assert np.abs(motion.derivatives(theta, 0)[0] - s).max() <= 0.5
+    assert motion.derivatives([0.0, math.pi], 1)[1].tolist() == [0.0, 0.0]
+
+
 # --- what is no motion -------------------------------------------------------------------------------------------
 
 

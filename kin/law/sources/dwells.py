@@ -18,7 +18,7 @@ from kin.law.sources.ring import SAME_ANGLE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.sources.least_jerk import Bounds, Floor, Least
+    from kin.law.sources.least_jerk import Bounds, Least, LowerLimit
     from kin.law.sources.tabled import Tabled
 
 _LEAST_ROWS = 3
@@ -59,8 +59,8 @@ class Stretch(NamedTuple):
     least: Least
 
 
-def runs(rows: Tabled, floor: float | None) -> list[Run]:
-    """Runs of three rows and more that are equal as written, over 10 degrees and more; the least ones lie on the floor.
+def runs(rows: Tabled, least_level: float | None) -> list[Run]:
+    """Runs of three rows and more that are equal as written, over 10 degrees and more; the lowest at the least level.
 
     A motion that rests at its ends has a run at each of them, however short.
     """
@@ -82,9 +82,9 @@ def runs(rows: Tabled, floor: float | None) -> list[Run]:
         if b - a + 1 >= _LEAST_ROWS and end - begin >= _LEAST_ANGLE - SAME_ANGLE:
             found.append(Run(begin, end, level, (end - begin) / int(b - a)))
     found = sorted(sorted(found, key=lambda run: run.begin - run.end)[:_MOST_RUNS])
-    if floor is not None and found:
+    if least_level is not None and found:
         lowest = min(run.level for run in found)
-        found = [run._replace(level=floor) if run.level == lowest == s.min() else run for run in found]
+        found = [run._replace(level=least_level) if run.level == lowest == s.min() else run for run in found]
     if rows.space.rest:
         if not found or found[0].begin > rows.space.begin:
             found.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))
@@ -94,7 +94,7 @@ def runs(rows: Tabled, floor: float | None) -> list[Run]:
 
 
 def stretches(
-    rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, floor: Floor | None
+    rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[list[Run], list[Stretch]]:
     """Those runs that are dwells, with their ends moved in, and the motions between them.
 
@@ -103,16 +103,26 @@ def stretches(
     kept = list(dwells)
     while kept:
         following = [*kept[1:], kept[0].later(rows.period)] if rows.period else kept[1:]
-        found: list[Stretch] = []
+        between: list[Stretch] = []
         for i, after in enumerate(following):
-            stretch, spoilt = _stretch(rows, (kept[i], after), plain, bounds, floor)
+            stretch, spoilt = _stretch(rows, (kept[i], after), plain, bounds, limit)
             if stretch is None:
-                kept.pop((i + spoilt) % len(kept))
+                _leave_out(kept, (i + spoilt) % len(kept), rows.period)
                 break
-            found.append(stretch)
+            between.append(stretch)
         else:
-            return _moved(kept, found, rows.period), found
+            return _moved(kept, between, rows.period), between
     return [], []
+
+
+def _leave_out(kept: list[Run], which: int, period: float) -> None:
+    """Drop a run that is no dwell; at an end where a motion rests the end itself is left of it."""
+    run = kept[which]
+    if not period and which in {0, len(kept) - 1}:
+        end = run.end if which else run.begin
+        kept[which] = run._replace(begin=end, end=end)
+    else:
+        kept.pop(which)
 
 
 def _moved(kept: Sequence[Run], found: Sequence[Stretch], period: float) -> list[Run]:
@@ -129,7 +139,7 @@ def _moved(kept: Sequence[Run], found: Sequence[Stretch], period: float) -> list
 
 
 def _stretch(
-    rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, floor: Floor | None
+    rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[Stretch | None, int]:
     """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is."""
     before, after = pair
@@ -143,7 +153,7 @@ def _stretch(
         begin, end = before.end - moved[0], after.begin + moved[1]
         space = Space(begin, end, (before.level, after.level))
         try:
-            found = least(space, rows.between(bounds, space), touch, floor)
+            found = least(space, rows.between(bounds, space), touch, limit)
         except UnsolvedError:
             found = None
         if found is not None:

@@ -15,10 +15,13 @@ where a multiplier comes to 0. The integral grows each time, so no set of bounds
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.law.sources.ring import SAME_ANGLE
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
@@ -35,10 +38,9 @@ _GROWS = 1e-12  # of the integral: a growth above rounding
 # scatter by 400 readings take 4.3e10, a hundred thousand that are but rounded 2.3e8
 _MOST_WORK = 5e10
 _FEW = 1000  # bounds that are looked at together; of more these are the first, and then those that are missed
-_DIPS, _HELD = 60, 0.1  # times at most that a function is held up at dips, and to what share of the depth it may have
+_DIPS, _HELD = 60, 0.1  # times at most that a function is held up at dips, and to what share of the tolerance
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
-_WRAPPED = 5  # knots: fewer than that stand over a period more than once
-_BACK = np.array([2, 1, 0])  # B-splines on a piece, counted back from the one that begins there
+_BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the one that begins there
 _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 
 
@@ -57,6 +59,11 @@ class Space(NamedTuple):
     end: float
     rest: tuple[float, float] | None = None
 
+    @property
+    def period(self) -> float:
+        """Angle after which the functions repeat, 0 where they do not."""
+        return 0.0 if self.rest else self.end - self.begin
+
 
 class Bounds(NamedTuple):
     """Rising angles (n,), least and greatest value at each, the unit in which a miss is measured, and the row it is of.
@@ -74,9 +81,23 @@ class Bounds(NamedTuple):
         """Some of the bounds."""
         return Bounds(self.x[which], self.lo[which], self.hi[which], self.unit[which], self.row[which])
 
-    def with_more(self, more: Bounds) -> Bounds:
-        """These and others, by their angles."""
-        return joined_bounds([self, more]).at(np.argsort(np.concatenate([self.x, more.x]), kind="stable"))
+    def with_more(self, more: Bounds, period: float) -> Bounds:
+        """These and others, by their angles; one at the angle of one of these narrows that one."""
+        at, away = self.nearest(more.x, period)
+        same = away <= SAME_ANGLE
+        lo, hi, unit, at = self.lo.copy(), self.hi.copy(), self.unit.copy(), at[same]
+        lo[at], hi[at] = np.maximum(lo[at], more.lo[same]), np.minimum(hi[at], more.hi[same])
+        unit[at] = np.minimum(unit[at], more.unit[same])
+        both = joined_bounds([self._replace(lo=lo, hi=hi, unit=unit), more.at(np.flatnonzero(~same))])
+        return both.at(np.argsort(both.x, kind="stable"))
+
+    def nearest(self, x: Array, period: float) -> tuple[Indices, Array]:
+        """Places of the bounds nearest to angles x (m,), and how far away they are."""
+        away = np.abs(x[:, None] - self.x)
+        if period:
+            away = np.minimum(away, period - away)
+        at = away.argmin(axis=1)
+        return at, away[np.arange(len(x)), at]
 
     def touching(self, start: Touch | None) -> Touch | None:
         """Places of those bounds that are of the rows of a touch."""
@@ -96,11 +117,11 @@ def joined_bounds(parts: Sequence[Bounds]) -> Bounds:
     return Bounds(x, lo, hi, unit, np.concatenate([part.row for part in parts]))
 
 
-class Floor(NamedTuple):
-    """A level that a function is nowhere below by more than `depth`."""
+class LowerLimit(NamedTuple):
+    """A level that a function is nowhere below by more than a tolerance."""
 
     level: float
-    depth: float
+    tolerance: float
 
 
 class Touch(NamedTuple):
@@ -125,12 +146,10 @@ class Curve(NamedTuple):
         """The function, or a derivative of it, at x (n,)."""
         if self.period:
             x = self.starts[0] + np.mod(x - self.starts[0], self.period)
-        piece = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
+        piece = np.maximum(np.searchsorted(self.starts, x, side="right") - 1, 0)
         width = self.widths[piece]
-        u, value = (x - self.starts[piece]) / width, np.zeros(len(x))
-        for row in self._rows(order)[::-1]:
-            value = value * u + row[piece]
-        return value / width**order
+        value = _polynomial(self._rows(order)[:, piece], (x - self.starts[piece]) / width)
+        return value / width**order if order else value
 
     def _rows(self, order: int) -> Array:
         rows = self.coefficients
@@ -157,143 +176,158 @@ class Curve(NamedTuple):
             x = begin + np.mod(x - begin, self.period)
         x = np.unique(np.concatenate([[begin, end], x[(x > begin) & (x < end)]]))
         half, middle = 0.5 * np.diff(x), 0.5 * (x[1:] + x[:-1])
-        return sum(float(w * (self(middle + u * half, 3) ** 2) @ half) for u, w in zip(*_GAUSS, strict=True))
+        places, weights = _GAUSS
+        jerk = self((middle + places[:, None] * half).ravel(), 3).reshape(len(places), -1)
+        return float(weights @ jerk**2 @ half)
 
     def lowest(self) -> tuple[float, float]:
         """Where the function is least, and its value there."""
-        place, _ = self.dips(np.inf)
-        i = int(np.argmin(self(place)))
-        return float(place[i]), float(self(place[i : i + 1])[0])
+        place = np.concatenate([self.starts, self.dips(np.inf)[0]])
+        value = self(place)
+        i = int(np.argmin(value))
+        return float(place[i]), float(value[i])
 
-    def dips(self, floor: float) -> tuple[Array, Array]:
-        """Local minima below a floor: where, and how deep they lie, (m,) each."""
-        x = (self.starts + _SHARES[:, None] * self.widths).ravel(order="F")
-        x = np.append(x, self.starts[-1] + self.widths[-1])
-        slope = self._slopes()
-        at = np.flatnonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
-        low, high = x[at].copy(), x[at + 1].copy()
-        place = 0.5 * (low + high)
+    def dips(self, level: float) -> tuple[Array, Array]:
+        """Local minima below a level, but those at a knot: where, and how deep they lie, (m,) each."""
+        slope = _polynomial(self._rows(1)[:, None], _SHARES[:, None])
+        i, piece = np.nonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
+        low, high = _SHARES[i], _SHARES[i + 1]
+        rows, bends, u = self._rows(1)[:, piece], self._rows(2)[:, piece], 0.5 * (low + high)
         for _ in range(_NEWTON):
-            slope, bend = self(place, 1), self(place, 2)
-            low, high = np.where(slope < 0.0, place, low), np.where(slope < 0.0, high, place)
-            step = place - np.divide(slope, bend, out=np.zeros_like(slope), where=bend > 0.0)
-            place = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-        deep = floor - self(place)
-        return place[deep > 0.0], deep[deep > 0.0]
+            slopes, bend = _polynomial(rows, u), _polynomial(bends, u)
+            falling = slopes < 0.0
+            low, high = np.where(falling, u, low), np.where(falling, high, u)
+            step = u - np.divide(slopes, bend, out=np.zeros_like(u), where=bend > 0.0)
+            u = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+        depth = level - _polynomial(self.coefficients[:, piece], u)
+        deep = depth > 0.0
+        return (self.starts[piece] + u * self.widths[piece])[deep], depth[deep]
 
-    def _slopes(self) -> Array:
-        """The slope at the shares of all pieces, one after another, and at the end."""
-        rows = self._rows(1)
-        u, slope = np.append(_SHARES, 1.0)[:, None], np.zeros((len(_SHARES) + 1, len(self.widths)))
-        for row in rows[::-1]:
-            slope = slope * u + row
-        slope /= self.widths
-        return np.append(slope[:-1].ravel(order="F"), slope[-1, -1])
+
+def _polynomial(rows: Array, u: Array) -> Array:
+    """Polynomials with coefficients of rising powers in their rows, at u."""
+    value: Array = rows[-1]
+    for row in rows[-2::-1]:
+        value = value * u + row
+    return value
 
 
 # places on a piece between which a minimum is looked for, close to its ends too, where it may rest; and steps to it
-_SHARES = np.array([0.0, 1e-3, 0.01, 0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 0.97, 0.995, 0.9995])
+_SHARES = np.array([0.0, 1e-3, 0.01, 0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 0.97, 0.995, 0.9995, 1.0])
 _NEWTON = 8
-_MOVES, _CLOSE = 14, 1e-3  # times that bounds at the floor move to where they are called for; later only close ones
-_BETWEEN = 2.0 / 3.0  # from a bound at the floor to the dip beside it: dips move by about half of that, and back
+_MOVES, _CLOSE = 14, 1e-3  # times that bounds at the limit move to where they are called for; later only close ones
+_BETWEEN = 2.0 / 3.0  # from a bound at the limit to the dip beside it: dips move by about half of that, and back
 
 
-class _Third(NamedTuple):
-    """The third derivative of a spline through values, as quadratic B-splines over its knots.
+class _Spline(NamedTuple):
+    """The spline of least integral of S'''^2 through values, by the quadratic B-splines of its third derivative.
 
-    Over a piece of width h it is b0 (1 - u)^2 + 2 b1 u (1 - u) + b2 u^2.
+    Over a piece of width h that is b0 (1 - u)^2 + 2 b1 u (1 - u) + b2 u^2.
     """
 
+    period: float  # 0 between two rests
     starts: Array  # of the pieces
     widths: Array
     values: Array  # at the ends of all pieces, one more than there are pieces
     near: Array  # one over the steps from knot to knot, 0 for none
     far: Array  # one over those from a knot to the next but one
     mu: Array  # coefficients
-    rhs: Array
     bernstein: tuple[Array, Array, Array]
+    square: float  # integral of S'''^2
+
+    def pull(self) -> Array:
+        """Multipliers of the values (k,)."""
+        pull = _fall(_fall(_fall(2.0 * self.mu) * self.far) * self.near)
+        if not self.period:
+            return pull[3:-3]
+        count = len(self.widths)
+        for place in range(count, len(pull)):
+            pull[place % count] += pull[place]
+        return pull[:count]
+
+    def curve(self) -> Curve:
+        """Its polynomials."""
+        width, (b0, b1, b2) = self.widths, self.bernstein
+        c = np.zeros((6, len(width)))
+        c[0] = self.values[:-1]
+        cube = width**3
+        c[3], c[4], c[5] = b0 * cube / 6.0, (b1 - b0) * cube / 12.0, (b0 - 2.0 * b1 + b2) * cube / 60.0
+        # what velocity and acceleration add over each piece, seen from its start and from its end
+        gain = self.values[1:] - c[0]
+        ahead = (gain - c[3] - c[4] - c[5]) / width
+        behind = (gain - c[3] - 3.0 * c[4] - 6.0 * c[5]) / width
+        bend = np.zeros(len(width))
+        bend[1:] = 2.0 * (ahead[1:] - behind[:-1]) / (width[1:] + width[:-1])
+        if self.period:
+            bend[0] = 2.0 * (ahead[0] - behind[-1]) / (width[0] + width[-1])
+        c[1], c[2] = (ahead - 0.5 * bend * width) * width, 0.5 * bend * width**2
+        if not self.period:
+            c[1, 0] = 0.0
+        return Curve(self.starts, width, c, self.period)
 
 
-def _third(space: Space, x: Array, s: Array) -> _Third:
+def _fall(values: Array) -> Array:
+    """From each value to the next, the first one from 0 and the last one to it, with the sign turned: one more."""
+    fall = np.empty(len(values) + 1)
+    fall[0], fall[-1] = -values[0], values[-1]
+    np.subtract(values[:-1], values[1:], out=fall[1:-1])
+    return fall
+
+
+@lru_cache(maxsize=256)
+def _places(count: int, *, periodic: bool) -> tuple[Indices, Indices]:
+    """Of so many knots: the three B-splines on each piece (3, m), and where their nine products go in the matrix."""
+    size = count if periodic else count + 3
+    taken = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
+    return taken, (taken[_ROW] * size + taken[_COLUMN]).ravel()
+
+
+def _spline(space: Space, x: Array, s: Array) -> _Spline:
     """Solve for the third derivative of the spline through s (k,) at x (k,)."""
     k = len(x)
     if space.rest is None:  # B-spline i stands over the knots i to i + 3
-        place = np.arange(k + 4) % k if k < _WRAPPED else np.r_[0:k, 0:4]
-        period = space.end - space.begin
-        t = x[place]
-        t[k:] += period * (1 + (np.arange(4) // k))
-        f = s[place]
-        starts, widths, values = t[:k], t[1 : k + 1] - t[:k], f[: k + 1]
-        before, after = np.roll(widths, 1), np.roll(widths, -1)
-        taken, size = (np.arange(k) - _BACK[:, None]) % k, k
-        t, f = t[:-1], f[:-1]
+        place = np.arange(k + 3)
+        t, values = x[place % k] + space.period * (place // k), s[place % k]
+        near, far = 1.0 / (t[1:] - t[:-1]), 1.0 / (t[2:] - t[:-2])
+        first, last, before = 0, k, np.concatenate([far[k - 1 : k], far[: k - 1]])
     else:
-        first, last = space.rest
         t = np.concatenate([[space.begin] * 3, x, [space.end] * 3])
-        f = np.concatenate([[first] * 3, s, [last] * 3])
-        starts, widths, values = t[2:-3], t[3:-2] - t[2:-3], f[2:-2]
-        before, after = np.append(0.0, widths[:-1]), np.append(widths[1:], 0.0)
-        taken, size = np.arange(k + 1) + 2 - _BACK[:, None], k + 3
-    step, wide = t[1:] - t[:-1], t[2:] - t[:-2]
-    near, far = (np.divide(1.0, width, out=np.zeros_like(width), where=width > 0.0) for width in (step, wide))
-    slope = (f[1:] - f[:-1]) * near
-    bend = (slope[1:] - slope[:-1]) * far
-    rhs = 2.0 * (bend[1:] - bend[:-1])
+        values = np.concatenate([[space.rest[0]] * 3, s, [space.rest[1]] * 3])
+        near, far = np.zeros(k + 5), np.zeros(k + 4)
+        near[2:-2], far[1:-1] = 1.0 / (t[3:-2] - t[2:-3]), 1.0 / (t[3:-1] - t[1:-3])
+        first, last, before = 2, k + 3, far[1:-2]
+    bend = _rise(_rise(values) * near) * far
+    rhs = 2.0 * _rise(bend)
+    widths = t[first + 1 : last + 1] - t[first:last]
     # on a piece the three B-splines are a (1 - u)^2, c u^2, and what is left of 1
-    a, c = widths / (before + widths), widths / (widths + after)
+    a, c = widths * before, widths * far[first:last]
     aa, cc, ac = a * a / 5.0, c * c / 5.0, a * c / 30.0
     ab, cb = a / 3.0 - aa - ac, c / 3.0 - cc - ac
     products = widths * np.array([aa, ab, ac, ab, 1.0 - 2.0 * (a + c) / 3.0 + aa + cc + 2.0 * ac, cb, ac, cb, cc])
-    flat = taken[_ROW] * size + taken[_COLUMN]
-    gram = np.bincount(flat.ravel(), products.ravel(), size * size).reshape(size, size)
+    taken, flat = _places(k, periodic=space.rest is None)
+    gram = np.bincount(flat, products.ravel(), len(rhs) ** 2).reshape(len(rhs), -1)
     mu = np.linalg.solve(gram, rhs).astype(np.float64, copy=False)
     low, middle, high = mu[taken]
-    return _Third(
-        starts, widths, values, near, far, mu, rhs, (middle + a * (low - middle), middle, middle + c * (high - middle))
+    bernstein = middle + a * (low - middle), middle, middle + c * (high - middle)
+    return _Spline(
+        space.period, t[first:last], widths, values[first : last + 1], near, far, mu, bernstein, float(mu @ rhs)
     )
+
+
+def _rise(values: Array) -> Array:
+    """From each value to the next."""
+    return values[1:] - values[:-1]
 
 
 def pulls(space: Space, x: Array, s: Array) -> tuple[Array, float]:
     """Multipliers of values s (k,) at x (k,), and the integral of S'''^2 of the spline through them."""
-    d, k = _third(space, x, s), len(x)
-    bend = np.zeros(len(d.far))
-    bend[1:] += 2.0 * d.mu
-    bend[:-1] -= 2.0 * d.mu
-    bend *= d.far
-    slope = np.zeros(len(d.near))
-    slope[1:] += bend
-    slope[:-1] -= bend
-    slope *= d.near
-    pull = np.zeros(len(d.near) + 1)
-    pull[1:] += slope
-    pull[:-1] -= slope
-    square = float(d.mu @ d.rhs)
-    if space.rest is not None:
-        return pull[3:-3], square
-    return np.bincount(np.arange(k + 3) % k, pull, k).astype(np.float64, copy=False), square
+    spline = _spline(space, x, s)
+    return spline.pull(), spline.square
 
 
 def curve_through(space: Space, x: Array, s: Array) -> Curve:
     """Spline of least integral of S'''^2 through values s (k,) at rising x (k,)."""
-    d = _third(space, x, s)
-    width, (b0, b1, b2) = d.widths, d.bernstein
-    c = np.zeros((6, len(width)))
-    c[0] = d.values[:-1]
-    cube = width**3
-    c[3], c[4], c[5] = b0 * cube / 6.0, (b1 - b0) * cube / 12.0, (b0 - 2.0 * b1 + b2) * cube / 60.0
-    # what velocity and acceleration add over each piece, seen from its start and from its end
-    gain = d.values[1:] - c[0]
-    ahead = (gain - c[3] - c[4] - c[5]) / width
-    behind = (gain - c[3] - 3.0 * c[4] - 6.0 * c[5]) / width
-    bend = np.zeros(len(width))
-    if space.rest is None:
-        bend = 2.0 * (ahead - np.roll(behind, 1)) / (width + np.roll(width, 1))
-    else:
-        bend[1:] = 2.0 * (ahead[1:] - behind[:-1]) / (width[1:] + width[:-1])
-    c[1], c[2] = (ahead - 0.5 * bend * width) * width, 0.5 * bend * width**2
-    if space.rest is not None:
-        c[1, 0] = 0.0
-    return Curve(d.starts, width, c, 0.0 if space.rest else space.end - space.begin)
+    return _spline(space, x, s).curve()
 
 
 class Least(NamedTuple):
@@ -317,74 +351,91 @@ class Least(NamedTuple):
         return Touch(self.row[real], self.upper[real])
 
 
-def least(space: Space, bounds: Bounds, start: Touch | None = None, floor: Floor | None = None) -> Least | None:
-    """The function of least mean square jerk within bounds and above a floor, looked for from the rows of `start`.
+def least(
+    space: Space,
+    bounds: Bounds,
+    start: Touch | None = None,
+    limit: LowerLimit | None = None,
+    *,
+    ample: float = math.inf,
+) -> Least | None:
+    """The function of least mean square jerk within bounds and above a limit, looked for from the rows of `start`.
 
-    None where a constant keeps all the bounds of a function with a period. Raises UnsolvedError where rounding stands
-    in the way, and CrowdedError where the bounds touched are too many for it to end in seconds.
+    None where a constant keeps all the bounds of a function with a period. A search whose integral passes `ample` ends
+    there, with a function of a lesser integral than that looked for, which misses bounds. Raises UnsolvedError where
+    rounding stands in the way, and CrowdedError where the bounds touched are too many for it to end in seconds.
     """
-    begun = bounds.touching(start)
+    touch = bounds.touching(start)
     for turn in range(_DIPS):
-        found = _of_many(space, bounds, begun)
-        if found is None or floor is None:
-            return found
-        x, deep = found.curve.dips(floor.level)
-        x = x[deep > floor.depth]
-        if not len(x):
-            return found
+        nearest = _of_many(space, bounds, touch, ample)
+        if nearest is None or limit is None or nearest.square > ample:
+            return nearest
+        dips, depths = nearest.curve.dips(limit.level)
+        dips = dips[depths > limit.tolerance]
+        if not len(dips):
+            return nearest
         share = 1.0 if turn < _MOVES else _CLOSE
-        bounds = _held_up(space, bounds, found, x, floor=floor, share=share)
-        kept = np.isin(found.x, bounds.x)
-        begun = Touch(np.searchsorted(bounds.x, found.x[kept]), found.upper[kept])
+        bounds, touch = _held_up(space, bounds, nearest, dips, limit=limit, share=share)
     raise UnsolvedError
 
 
-def _held_up(space: Space, bounds: Bounds, found: Least, dips: Array, *, floor: Floor, share: float) -> Bounds:
-    """Bounds with one at the floor at each dip; where one holds the function up beside it, that moves towards the dip.
+def _held_up(
+    space: Space, bounds: Bounds, nearest: Least, dips: Array, *, limit: LowerLimit, share: float
+) -> tuple[Bounds, Touch]:
+    """Bounds with one at the limit at each dip; where one holds the function up beside it, that moves towards the dip.
 
     Beside it is nearer than `share` of the way to the next touch. With 1 none is left that holds the function nowhere:
-    knots that come close to each other leave no digits.
+    knots that come close to each other leave no digits. Also returns what is touched, with the bounds at the dips.
     """
-    if not space.rest:
-        dips = bounds.x[0] + np.mod(dips - bounds.x[0], space.end - space.begin)
-    x, hi = dips.copy(), np.full(len(dips), np.inf)
-    held = np.flatnonzero(found.row < 0)
+    if space.period:
+        dips = bounds.x[0] + np.mod(dips - bounds.x[0], space.period)
+    x, hi, upper = dips.copy(), np.full(len(dips), np.inf), np.zeros(len(dips), dtype=bool)
+    held = np.flatnonzero(nearest.row < 0)
     moved = np.zeros(len(bounds.x), dtype=bool)
     if len(held):
-        near = held[np.argmin(np.abs(dips[:, None] - found.x[held]), axis=1)]
-        away = np.abs(dips[:, None] - np.where(np.arange(len(found.x)) == near[:, None], np.inf, found.x))
-        beside = np.abs(dips - found.x[near]) < share * away.min(axis=1)
-        old = np.searchsorted(bounds.x, found.x[near[beside]])
-        x[beside] += (1.0 - _BETWEEN) * (found.x[near[beside]] - dips[beside])
-        hi[beside], moved[old] = bounds.hi[old], True
-    idle = (bounds.row < 0) & np.isinf(bounds.hi) & ~np.isin(bounds.x, found.x) & (share == 1.0)
+        near = held[np.argmin(np.abs(dips[:, None] - nearest.x[held]), axis=1)]
+        away = np.abs(dips[:, None] - np.where(np.arange(len(nearest.x)) == near[:, None], np.inf, nearest.x))
+        beside = np.abs(dips - nearest.x[near]) < share * away.min(axis=1)
+        near = near[beside]
+        old = np.searchsorted(bounds.x, nearest.x[near])
+        x[beside] += (1.0 - _BETWEEN) * (nearest.x[near] - dips[beside])
+        hi[beside], upper[beside], moved[old] = bounds.hi[old], nearest.upper[near], True
+    idle = (bounds.row < 0) & np.isinf(bounds.hi) & ~np.isin(bounds.x, nearest.x) & (share == 1.0)
     rest = bounds.at(np.flatnonzero(~moved & ~idle))
-    unit = np.full(len(x), _HELD * floor.depth / _MISSED)
-    return rest.with_more(Bounds(x, np.full(len(x), floor.level), hi, unit, np.full(len(x), -1)))
+    unit = np.full(len(x), _HELD * limit.tolerance / _MISSED)
+    more = Bounds(x, np.full(len(x), limit.level), hi, unit, np.full(len(x), -1))
+    bounds = rest.with_more(more, space.period)
+    new, _ = bounds.nearest(x, space.period)
+    kept = np.isin(nearest.x, rest.x) & ~np.isin(nearest.x, bounds.x[new])
+    which = np.concatenate([np.searchsorted(bounds.x, nearest.x[kept]), new])
+    order = np.argsort(which)
+    return bounds, Touch(which[order], np.concatenate([nearest.upper[kept], upper])[order])
 
 
-def _of_many(space: Space, bounds: Bounds, start: Touch | None) -> Least | None:
-    """The same without a floor; `start` has places among the bounds. Of many bounds few are looked at together."""
+def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) -> Least | None:
+    """The same without a limit; `start` has places among the bounds. Of many bounds few are looked at together."""
     n = len(bounds.x)
     chosen = np.arange(n) if n <= _FEW else np.arange(0, n, -(-n // _FEW))
     if start is not None:
         chosen = np.union1d(chosen, start.which)
     work = 0.0
     while True:
-        begun = None if start is None else Touch(np.searchsorted(chosen, start.which), start.upper)
+        touch = None if start is None else Touch(np.searchsorted(chosen, start.which), start.upper)
         search = _Search(space, bounds.at(chosen), work)
-        found, work = search.run(begun), search.work
-        if found is None:
+        nearest, work = search.run(touch, ample), search.work
+        if nearest is None:
             missed = np.array([np.argmax(bounds.lo), np.argmin(bounds.hi)])
             if bounds.lo[missed[0]] <= bounds.hi[missed[1]]:
                 return None
+        elif len(chosen) == n or nearest.square > ample:
+            return nearest
         else:
-            miss, _ = missed_by(found.curve, bounds)
+            miss, _ = missed_by(nearest.curve, bounds)
             miss[chosen] = -1.0
             missed = _worst(miss)
             if not len(missed):
-                return found
-            start = Touch(chosen[np.searchsorted(bounds.x[chosen], found.x)], found.upper)
+                return nearest
+            start = Touch(chosen[np.searchsorted(bounds.x[chosen], nearest.x)], nearest.upper)
         chosen = np.union1d(chosen, missed)
 
 
@@ -397,16 +448,22 @@ def missed_by(curve: Curve, bounds: Bounds) -> tuple[Array, NDArray[np.bool_]]:
 
 def _worst(miss: Array) -> Indices:
     """The worst of each run of bounds that are missed, by their places."""
-    out = miss > _MISSED
-    begins = np.flatnonzero(out & ~np.concatenate([[False], out[:-1]]))
-    if not len(begins):
-        return begins
-    run = np.cumsum(np.isin(np.arange(len(miss)), begins, assume_unique=True)) - 1
-    places = np.flatnonzero(out)
-    order = places[np.lexsort((-miss[places], run[places]))]
-    _, first = np.unique(run[order], return_index=True)
-    worst: Indices = order[first]
+    out = np.flatnonzero(miss > _MISSED)
+    if not len(out):
+        return out
+    run = np.zeros(len(out), dtype=np.intp)
+    np.cumsum(out[1:] - out[:-1] > 1, out=run[1:])
+    order = np.lexsort((-miss[out], run))
+    worst: Indices = out[order[np.searchsorted(run, np.arange(run[-1] + 1))]]
     return worst
+
+
+class _State(NamedTuple):
+    """A set of bounds that are touched, the spline through them, and its multipliers, which have their signs."""
+
+    touch: Touch
+    spline: _Spline
+    pull: Array
 
 
 class _Search:
@@ -417,31 +474,37 @@ class _Search:
         self.least = 2 if space.rest is None else 0  # bounds that are touched, of a function that is no constant
         self._before: set[bytes] = set()
 
-    def run(self, start: Touch | None) -> Least | None:
-        """Add bounds that are missed until there are none."""
+    def run(self, start: Touch | None, ample: float) -> Least | None:
+        """Add bounds that are missed until there are none, or the integral passes `ample`."""
         state = None if start is None else self._cleaned(start)
-        state = state or self._begun()
+        state = state or self._first()
         while state is not None:
-            touch, pull, square = state
-            x, values = self.bounds.x[touch.which], self._values(touch)
-            self._count(touch)
-            curve = curve_through(self.space, x, values)
+            touch, spline, pull = state
+            curve = spline.curve()
             miss, above = missed_by(curve, self.bounds)
             miss[touch.which] = -1.0
             added = _worst(miss)
-            if not len(added):
-                return Least(self.bounds.row[touch.which], touch.upper, pull, square, x, values, curve)
-            upper = above.copy()
-            upper[touch.which] = touch.upper
-            which = np.union1d(touch.which, added)
-            state = self._cleaned(Touch(which, upper[which]))
-            if state is None or not state[2] > square * (1.0 + _GROWS):
+            last = Least(
+                self.bounds.row[touch.which],
+                touch.upper,
+                pull,
+                spline.square,
+                self.bounds.x[touch.which],
+                self._values(touch),
+                curve,
+            )
+            if not len(added) or spline.square > ample:
+                return last
+            above[touch.which] = touch.upper
+            which = np.sort(np.concatenate([touch.which, added]))
+            state = self._cleaned(Touch(which, above[which]))
+            if state is None or not state.spline.square > spline.square * (1.0 + _GROWS):
                 worst = np.array([np.argmax(miss)])
-                state = self._climbed(touch, pull, added, upper) or self._climbed(touch, pull, worst, upper)
-            if state is None or self._seen(state[0]):
+                state = self._climbed(last, touch, added, above) or self._climbed(last, touch, worst, above)
+            if state is None or self._seen(state.touch):
                 if miss.max() > _STALLED:
                     raise UnsolvedError
-                return Least(self.bounds.row[touch.which], touch.upper, pull, square, x, values, curve)
+                return last
         return None
 
     def _seen(self, touch: Touch) -> bool:
@@ -454,53 +517,45 @@ class _Search:
     def _values(self, touch: Touch) -> Array:
         return np.where(touch.upper, self.bounds.hi[touch.which], self.bounds.lo[touch.which])
 
-    def _count(self, touch: Touch) -> None:
-        """Add a solve to the work before it is done: one of many thousand knots would take all memory."""
+    def _solved(self, touch: Touch) -> _State:
+        """The work is counted before it is done: a solve of many thousand knots would take all memory."""
         self.work += float(len(touch.which)) ** 3
         if self.work > _MOST_WORK:
             raise CrowdedError
+        spline = _spline(self.space, self.bounds.x[touch.which], self._values(touch))
+        return _State(touch, spline, spline.pull())
 
-    def _solved(self, touch: Touch) -> tuple[Array, float]:
-        self._count(touch)
-        return pulls(self.space, self.bounds.x[touch.which], self._values(touch))
-
-    def _begun(self) -> tuple[Touch, Array, float] | None:
+    def _first(self) -> _State | None:
         """The least that any function does: none, or from the greatest lower bound to the least upper one."""
-        lo, hi = self.bounds.lo, self.bounds.hi
         if self.space.rest is not None:
-            touch = Touch(np.empty(0, dtype=np.intp), np.empty(0, dtype=bool))
-            return touch, *self._solved(touch)
-        i, j = int(np.argmax(lo)), int(np.argmin(hi))
-        if lo[i] <= hi[j]:
+            return self._solved(Touch(np.empty(0, dtype=np.intp), np.empty(0, dtype=bool)))
+        i, j = int(np.argmax(self.bounds.lo)), int(np.argmin(self.bounds.hi))
+        if self.bounds.lo[i] <= self.bounds.hi[j]:
             return None
         which = np.array(sorted((i, j)), dtype=np.intp)
-        touch = Touch(which, which == j)
-        return touch, *self._solved(touch)
+        return self._solved(Touch(which, which == j))
 
-    def _cleaned(self, touch: Touch) -> tuple[Touch, Array, float] | None:
+    def _cleaned(self, touch: Touch) -> _State | None:
         """Only those bounds of a set whose multipliers have their signs; None where too few are left."""
         while len(touch.which) >= self.least:
-            pull, square = self._solved(touch)
-            right = np.where(touch.upper, -pull, pull) > 0.0
+            state = self._solved(touch)
+            right = np.where(touch.upper, -state.pull, state.pull) > 0.0
             if right.all():
-                return touch, pull, square
+                return state
             touch = Touch(touch.which[right], touch.upper[right])
         return None
 
-    def _climbed(
-        self, touch: Touch, pull: Array, added: Indices, upper: NDArray[np.bool_]
-    ) -> tuple[Touch, Array, float] | None:
+    def _climbed(self, last: Least, touch: Touch, added: Indices, upper: NDArray[np.bool_]) -> _State | None:
         """From multipliers with their signs towards those of more bounds, letting go of those that come to 0."""
         size = np.zeros(len(self.bounds.x))
-        size[touch.which] = np.abs(pull)
-        which = np.union1d(touch.which, added)
+        size[touch.which] = np.abs(last.pull)
+        which = np.sort(np.concatenate([touch.which, added]))
         while len(which) >= self.least:
-            part = Touch(which, upper[which])
-            solved, square = self._solved(part)
-            wanted, now = np.where(part.upper, -solved, solved), size[which]
+            state = self._solved(Touch(which, upper[which]))
+            wanted, now = np.where(state.touch.upper, -state.pull, state.pull), size[which]
             wrong = wanted <= 0.0
             if not wrong.any():
-                return (part, solved, square) if np.isin(added, which).any() else None
+                return state if np.isin(added, which).any() else None
             useless = wrong & (now <= 0.0)
             if useless.any():
                 which = which[~useless]

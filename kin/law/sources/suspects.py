@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from kin.law.sources.least_jerk import Least
     from kin.law.sources.tabled import Tabled
-    from kin.numeric.arrays import Array
 
 _FALLS = 2.0  # times less the mean square is without a row that is told of
 _SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
@@ -28,6 +27,7 @@ _MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3  # rows of the greatest multipliers
 _TOGETHER = 2  # rows from one of a pair to the other at most
 _LADDER = 4.0  # from one reading to the next
 _TENFOLD = 10.0
+_ROUNDING = 1.0 + 1e-9
 _COARSEST = 0.02  # of the stroke
 
 
@@ -43,18 +43,33 @@ class Suspect(NamedTuple):
 def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
     """The motion within the rows' readings, and how many times as great readings let its mean square fall tenfold.
 
-    Climbed down from great readings, at each of which the motion of the one before tells where to begin.
+    The mean square falls from reading to reading: between two where it is less than tenfold there is no such step.
     """
     most = _COARSEST * rows.stroke / float(rows.reading.max())
     count = max(0, math.floor(math.log(most, _LADDER))) if most > 1.0 else 0
-    found, touch, squares = None, None, []
-    for k in range(count, -1, -1):
-        found = least(rows.space, rows.bounds(_LADDER**k), touch)
-        touch = None if found is None else found.touch
-        squares.append(0.0 if found is None else found.square)
-    squares.reverse()
-    steps = [k for k in range(1, len(squares)) if 0.0 < _TENFOLD * squares[k] <= squares[k - 1]]
-    return found, _LADDER ** steps[-1] if steps else None
+    steps: dict[int, Least | None] = {}
+
+    def square(k: int, near: int) -> float:
+        if k not in steps:
+            start = steps.get(near)
+            steps[k] = least(rows.space, rows.bounds(_LADDER**k), None if start is None else start.touch)
+        step = steps[k]
+        return 0.0 if step is None else step.square
+
+    def tenfold(low: int, high: int) -> int:
+        """The greatest reading up to `high` that is such a step; `low` for none above it."""
+        if square(low, middle := (low + high) // 2) < _TENFOLD * square(high, high):
+            return low
+        if high - low == 1:
+            return high if square(high, high) else low
+        square(middle, high)
+        step = tenfold(middle, high)
+        return step if step > middle else tenfold(low, middle)
+
+    square(count, count)
+    square(count // 2, count)  # on the way, from which fewer steps lead down where rows scatter
+    step = tenfold(0, count) if count else 0
+    return steps[0], _LADDER**step if step else None
 
 
 def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
@@ -66,29 +81,35 @@ def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
     for places in _likely(rows, plain):
         if best is not None and best.certain and len({*rows.lines[list(places)].tolist()}) > len(best.rows):
             break
-        without = _without(rows, plain, places)
+        sure = _sure(rows, places)
+        sure = max(sure, _SURE) if noisy else sure
+        without = _without(rows, plain, places, min(sure, _FALLS))
         if without is None or not without.square:
             continue
         falls = plain.square / without.square
-        certain = falls >= (_SURE if noisy else _SURE_OF_MANY) and _certain(rows, plain, without, places)
+        certain = falls >= sure and _certain(rows, plain, without, places)
         better = best is None or (certain, falls) > (best.certain, best.falls)
-        if (certain or falls >= _FALLS) and better:
-            named = list({int(rows.lines[place]): place for place in reversed(places) if rows.lines[place]}.values())
+        named = list({int(rows.lines[place]): place for place in reversed(places) if rows.lines[place]}.values())
+        if named and (certain or falls >= _FALLS) and better:  # rows with which the rest of a turn is filled have none
             best = Suspect(tuple(named), falls, tuple(without.curve(rows.x[named]).tolist()), certain)
     return best
 
 
+def _sure(rows: Tabled, places: Sequence[int]) -> float:
+    """How many times less the mean square must be without rows that are certain: more in a stroke of few rows."""
+    span = min(spanned(rows, place) for place in places)
+    if span < _LEAST_ROWS:
+        return math.inf
+    return _SURE_OF_FEW if span == _LEAST_ROWS else _SURE if span < _MANY else _SURE_OF_MANY
+
+
 def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) -> bool:
-    """Whether rows are no part of a law that is sharp there: a stroke of many rows tells more than one of few."""
+    """Whether rows are off by more than their digits, and are no part of a law that is sharp there."""
     which = list(places)
     off = np.abs(rows.s[which] - without.curve(rows.x[which])) / rows.reading[which]
     if off.max() < _OFF:
         return False
-    span = min(spanned(rows, place) for place in places)
-    sure = _SURE if span > _LEAST_ROWS else _SURE_OF_FEW
-    if span < _LEAST_ROWS or (span < _MANY and plain.square < sure * without.square):
-        return False
-    before, after = (max(_about(rows, found, place) for place in places) for found in (plain, without))
+    before, after = (max(_about(rows, nearest, place) for place in places) for nearest in (plain, without))
     return before >= _CALMER * after and after <= _SHARP * without.square
 
 
@@ -103,11 +124,13 @@ def _about(rows: Tabled, found: Least, place: int) -> float:
     return found.curve.square(begin, end)
 
 
-def _without(rows: Tabled, plain: Least, places: Sequence[int]) -> Least | None:
+def _without(rows: Tabled, plain: Least, places: Sequence[int], falls: float) -> Least | None:
+    """The motion without some rows, looked for as long as its mean square may be so many times less."""
     bounds = rows.bounds()
     gone, keep = np.isin(bounds.row, places), ~np.isin(plain.row, places)
     bounds = bounds._replace(lo=np.where(gone, -np.inf, bounds.lo), hi=np.where(gone, np.inf, bounds.hi))
-    return least(rows.space, bounds, Touch(plain.row[keep], plain.upper[keep]))
+    ample = plain.square / falls * _ROUNDING
+    return least(rows.space, bounds, Touch(plain.row[keep], plain.upper[keep]), ample=ample)
 
 
 def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
@@ -117,18 +140,11 @@ def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
     """
     k = len(plain.row)
     order = np.argsort(-np.abs(plain.pull))[:_MOST_TRIED].tolist()
-    space = rows.space._replace(rest=rows.space.rest and (0.0, 0.0))
-    columns: dict[int, Array] = {}
-
-    def response(i: int) -> Array:
-        if i not in columns:
-            columns[i] = pulls(space, plain.x, np.where(np.arange(k) == i, 1.0, 0.0))[0]
-        return columns[i]
 
     def falls(group: Sequence[int]) -> float:
-        matrix = np.array([response(i)[list(group)] for i in group])
-        pull = plain.pull[list(group)]
-        return float(pull @ np.linalg.solve(matrix, pull)) / plain.square
+        """Share of the mean square by which it falls where the other rows stay touched."""
+        left = np.delete(np.arange(k), group)
+        return 1.0 - pulls(rows.space, plain.x[left], plain.values[left])[1] / plain.square
 
     def twins(i: int) -> list[int]:
         line = rows.lines[plain.row[i]]

@@ -10,12 +10,12 @@ import numpy as np
 from kin.law.programme import IntentError
 from kin.law.segment import Constant
 from kin.law.sources.dwells import runs, stretches
-from kin.law.sources.least_jerk import Bounds, CrowdedError, Floor, UnsolvedError, curve_through, least
+from kin.law.sources.least_jerk import Bounds, CrowdedError, LowerLimit, UnsolvedError, curve_through, least
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
 from kin.law.sources.ring import SAME_ANGLE, Samples, settled
 from kin.law.sources.spline import Ends, through
 from kin.law.sources.suspects import ladder, suspect
-from kin.law.sources.tabled import FLOOR, TableError, demand_rows, tabled
+from kin.law.sources.tabled import BELOW, TableError, demand_rows, tabled
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ Suspects: TypeAlias = Literal["refuse", "keep"]
 _LEAST_LOADS = 2
 _GAP = 1.5  # of the widest step of a load
 _ZERO = 2.0  # readings, within which the least value of a motion is meant to be 0
+_SAME = 1e-6  # of a reading
 _FAR = 0.01  # of the stroke: a distance of rows above that is told
 _PINS = 3  # times that a motion above its least level is brought down to it, where it was lowest
 _TOUCHES = 1e-9  # of the stroke: by so much it may stay above
@@ -106,33 +107,34 @@ def _motion(
     motion = _laid(layout, plain, total, around)
     theta = np.mod(rows.theta, total) if around == 1 else rows.theta
     off = np.abs(motion.derivatives(theta, 0)[0] - rows.s)
-    worst = int(np.argmax(off))
-    if off[worst] > _FAR * layout.stroke:
-        share = 100.0 * off[worst] / layout.stroke
-        text = f"the motion leaves its rows by up to {layout.tell(off[worst], 3)}, {share:.2g} % of the stroke"
+    distance = float(off.max())
+    worst = int(np.argmax(off >= distance - _SAME * reading))  # the first of those that rounding alone tells apart
+    if distance > _FAR * layout.stroke:
+        share = 100.0 * distance / layout.stroke
+        text = f"the motion leaves its rows by up to {layout.tell(distance, 3)}, {share:.2g} % of the stroke"
         remarks.append(TableRemark("table-distance", f"{text} (line {rows.lines[worst]})"))
-    return replace(motion, kept=Kept(float(off[worst]), int(rows.lines[worst]), tuple(remarks)))
+    return replace(motion, kept=Kept(distance, int(rows.lines[worst]), tuple(remarks)))
 
 
 def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Motion:
     """The motion with its dwells over [0, total], 0 where the rows have it."""
-    level = _floor(layout, plain) if around == 1 else None
-    floor = None if level is None else Floor(level, FLOOR * layout.stroke)
+    level = _least_level(layout, plain) if around == 1 else None
+    limit = None if level is None else LowerLimit(level, BELOW * layout.stroke)
     bounds = layout.bounds(1.0, level)
     for _ in range(_PINS):
         near = plain
-        if floor is not None:
-            about = Floor(floor.level, max(floor.depth, _ABOUT * float(layout.reading.min())))
-            near = _solved(layout.space, bounds, plain, about)
-        dwells, moving = stretches(layout, runs(layout, level), near, bounds, floor)
-        whole = near if dwells else _solved(layout.space, bounds, near, floor)
-        if floor is None or any(run.level == level for run in dwells):
+        if limit is not None:
+            about = max(limit.tolerance, _ABOUT * float(layout.reading.min()))
+            near = _solved(layout.space, bounds, plain, LowerLimit(limit.level, about))
+        dwells, moving = stretches(layout, runs(layout, level), near, bounds, limit)
+        whole = near if dwells else _solved(layout.space, bounds, near, limit)
+        if limit is None or any(run.level == level for run in dwells):
             break
         lows = [part.least.curve.lowest() for part in moving] or [whole.curve.lowest()]
         at, value = min(lows, key=lambda low: low[1])
-        if value - floor.level <= _TOUCHES * layout.stroke:
+        if value - limit.level <= _TOUCHES * layout.stroke:
             break
-        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), floor.level)
+        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), limit.level, total)
     if around is None:
         return joined(*_open(dwells, moving), None).raised(-dwells[0].level)
     turn = layout.period
@@ -141,15 +143,15 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
     return motion if around == 1 else Motion(motion.raised(-float(motion.at_start(0)[0])).motion, -1)
 
 
-def _solved(space: Space, bounds: Bounds, near: Least, floor: Floor | None) -> Least:
+def _solved(space: Space, bounds: Bounds, near: Least, limit: LowerLimit | None) -> Least:
     """The motion within bounds that is no constant."""
-    found = least(space, bounds, near.touch, floor)
-    if found is None:
+    solution = least(space, bounds, near.touch, limit)
+    if solution is None:
         raise UnsolvedError
-    return found
+    return solution
 
 
-def _floor(layout: Tabled, plain: Least) -> float | None:
+def _least_level(layout: Tabled, plain: Least) -> float | None:
     """Level that a motion over a turn is never below, and has somewhere; None of a table that is moved as a whole.
 
     A table that is lowest in a dwell has that level, or 0 where that is within its reading, as has any other table that
@@ -164,10 +166,10 @@ def _floor(layout: Tabled, plain: Least) -> float | None:
     return 0.0 if level > 0.0 and abs(plain.curve.lowest()[1]) <= _ZERO * reading else None
 
 
-def _pinned(bounds: Bounds, at: float, level: float) -> Bounds:
+def _pinned(bounds: Bounds, at: float, level: float, period: float) -> Bounds:
     """With a bound that brings the motion down to a level at an angle."""
     same = np.array([level])
-    return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])))
+    return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])), period)
 
 
 def _between(moving: Moving, before: Run, after: Run) -> tuple[list[float], list[Stretch]]:

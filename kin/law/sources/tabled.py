@@ -27,7 +27,7 @@ _LEAST_READING = 1e-6  # of a row's, of one that two rows bound
 _WHOLE = 1e-6  # of a cycle: so nearly must a whole number of them fill the turn
 _SAME = 1e-9  # of the stroke: rows that differ by less are one
 _MOST_FILLED = 400  # rows with which the rest of a turn is filled
-FLOOR = 1e-10  # of the stroke: by so much a motion may be below its least level
+BELOW = 1e-10  # of the stroke: by so much a motion may be below its least level
 
 
 class TableError(IntentError):
@@ -57,7 +57,7 @@ class Tabled:
     @property
     def period(self) -> float:
         """Angle after which the motion repeats, 0 where it does not."""
-        return 0.0 if self.space.rest else self.space.end - self.space.begin
+        return self.space.period
 
     @property
     def stroke(self) -> float:
@@ -73,13 +73,13 @@ class Tabled:
         """A reading error of two digits, not below this one, in a unit that a recipe may have."""
         return advised(reading, self.unit)
 
-    def bounds(self, share: float = 1.0, floor: float | None = None) -> Bounds:
-        """Bounds of a motion, with readings that are so many times as great; none below the floor."""
+    def bounds(self, share: float = 1.0, least_level: float | None = None) -> Bounds:
+        """Bounds of a motion, with readings that are so many times as great; none below its least level."""
         within = share * self.reading * _KEPT
         within[list(self.fixed)] = 0.0
         lo, hi = self.s - within, self.s + within
-        if floor is not None:
-            lo = np.where(hi >= floor, np.maximum(lo, floor), lo)
+        if least_level is not None:
+            lo = np.where(hi >= least_level, np.maximum(lo, least_level), lo)
         return Bounds(self.x, lo, hi, share * self.reading, np.arange(len(self.x)))
 
     def between(self, bounds: Bounds, space: Space) -> Bounds:
