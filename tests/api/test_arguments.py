@@ -36,7 +36,7 @@ name: searched
 cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [1, 2]}
 sweep: {vary: {"cam.shaft[0]": {from: 1, to: 2, steps: 2}}, limits: {size: {at_most: 1}}, rank: size}
 """  # of which no design is kept, so that nothing is drawn
-SHAFT = Path(__file__).parents[2] / "recipes" / "camshafts" / "packaging.yaml"
+SHAFT = Path(__file__).parents[2] / "recipes" / "camshafts" / "packaging.yaml"  # needs: camshaft
 OWN = frozenset(
     {"Check.of", "Edges.of", "Figure.of", "Edges.count", "Edges.index", "Report.get", "Report.items", "Report.keys"}
     | {f"{name}.{method}" for name in ("Figures", "Search") for method in ("get", "items", "keys", "values")}
@@ -85,6 +85,7 @@ def surface(folder: Path) -> Functions:
         "check": (camgeo.check, {"recipe": recipe, "progress": None}),
         "verify": (camgeo.verify, {"recipe": recipe, "file": "a.dxf", "tolerance": 0.1, "units": "mm"}),
         "laws": (camgeo.laws, {}),
+        # needs: sweep
         "search": (camgeo.search, {"recipe": camgeo.load(SEARCHED), "out": "out", "jobs": 1, "progress": None}),
         # needs: follow
         "follow": (

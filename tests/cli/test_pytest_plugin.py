@@ -165,6 +165,7 @@ def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> N
     assert sorted(map(str, foreseen(recipe))) == sorted(map(str, made))
 
 
+# needs: milling
 MILLED = """\
 cam: {{kind: support, p: 30 + 2*cos(2*t)}}
 part: {{thickness: 5, {part}}}
@@ -174,6 +175,7 @@ manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5
 """
 
 
+# needs: milling
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
 @pytest.mark.parametrize(

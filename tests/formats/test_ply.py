@@ -101,6 +101,7 @@ def test_kerf_inches_and_a_file_for_each_body(tmp_path: Path) -> None:
     assert camgeo.verify(recipe, foreign, units="inch").ok
 
 
+# needs: mechanism
 @pytest.mark.slow
 def test_all_bodies_of_a_mechanism(tmp_path: Path) -> None:
     recipe = camgeo.load("recipes/print-roller.yaml").replace("export.files", [{"ply": {"parts": "all"}}])

@@ -83,7 +83,7 @@ def test_a_frame_between_faces_that_meet_different_metal():
 
 def test_a_linkage_moves_as_first_order_has_it_for_a_cam_too_large():
     """Metal grown by e all round is a frame too narrow: the worst way of resting is e off at each face."""
-    ((_, part, surface),) = surfaces(shipped("long-dwell"))
+    ((_, part, surface),) = surfaces(shipped("as-figure-9-1"))
     linkage = part.linkage
     relative = np.radians(np.arange(0.0, 360.0, 5.0))
     e = 1e-3

@@ -78,6 +78,7 @@ def test_a_plain_part_needs_no_solids(tmp_path, capsys):
     assert {check["name"] for check in report["checks"]} >= {"watertight", "holes", "volume"}
 
 
+# needs: mechanism
 @pytest.mark.usefixtures("bare")
 def test_a_set_to_print_needs_them(tmp_path, capsys):
     path = tmp_path / "cam.yaml"

@@ -27,6 +27,7 @@ NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
 FORMATS = f"give {either(formats.FORMATS)}"
+HELD = either([name for name, record in formats.FORMATS.items() if "tolerance" in record.options.keys])
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -69,10 +70,7 @@ dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
         "cams/a.yaml:10:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         f"cams/a.yaml:10:63: export.files[3]: unknown file format, given 'stp'; {FORMATS}",
         "cams/a.yaml:11:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
-        (
-            "cams/a.yaml:12:1: tolerance: unknown key; it belongs under export, "
-            "or under the file dxf, svg, stl, ply, 3mf, step, glb, csv or gcode"
-        ),
+        (f"cams/a.yaml:12:1: tolerance: unknown key; it belongs under export, or under the file {HELD}"),
         "cams/a.yaml:13:11: dynamics: needs preload or backlash; give exactly one of them",  # needs: dynamics
     ]
 

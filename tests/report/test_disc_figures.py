@@ -11,7 +11,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
-from support.places import RECIPES
 
 from camgeo.measures.figures import of_design
 from camgeo.measures.limits import limit_checks
@@ -236,10 +235,24 @@ def test_a_ring_s_metal_is_bent_the_other_way() -> None:
     assert found["radius-of-curvature"].value == pytest.approx((found["pitch-radius"].value or 0.0) - 9.0, abs=1e-9)
 
 
+RING = """\
+cam:
+  kind: disc
+  track: internal
+  base_radius: 60
+  follower: {kind: roller, radius: 9}
+  motion:
+    - {rise: 12, over: 120, law: cycloidal}
+    - {dwell: 60}
+    - {return: 12, over: 120, law: cycloidal}
+    - {dwell: 60}
+part: {outer: 170}
+"""
+
+
 def test_check_figure_and_limit_of_a_ring_s_pitch_curve_are_one() -> None:
     """Of its hollows, also where it has none: its convex places cannot undercut."""
-    text = (RECIPES / "disc-ring.yaml").read_text() + "\nlimits: {pitch-radius: {at_least: 1000}}\n"
-    made = checks(text)
+    made = checks(RING + "limits: {pitch-radius: {at_least: 1000}}\n")
     assert made["pitch-radius"].value == made["limit:pitch-radius"].value == math.inf
     assert made["limit:pitch-radius"].ok
     hollow = checks(disc("kind: roller, radius: 9;", more="limits: {pitch-radius: {at_least: 1}}\n"))

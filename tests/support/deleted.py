@@ -72,6 +72,11 @@ def uses(path: Path, name: str) -> bool:
     return not words.isdisjoint({*label.words, *label.roots})
 
 
+def unshipped(name: str) -> list[Path]:
+    """Shipped recipes that go with a capability."""
+    return [path for path in (ROOT / "recipes").rglob("*.yaml") if uses(path, name)]
+
+
 def copy_without(name: str, folder: Path) -> Path:
     """Copy what the repository holds, but for a capability, into a folder."""
     told = subprocess.run(
@@ -80,7 +85,7 @@ def copy_without(name: str, folder: Path) -> Path:
         capture_output=True,
         check=True,
     )
-    gone = {path.name for path in (ROOT / "recipes").rglob("*.yaml") if uses(path, name)}
+    gone = {path.name for path in unshipped(name)}
     own = (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md")
     for place in told.stdout.decode().split("\0"):
         path = ROOT / place
@@ -90,10 +95,11 @@ def copy_without(name: str, folder: Path) -> Path:
             continue
         copied = folder / place
         copied.parent.mkdir(parents=True, exist_ok=True)
-        if path.suffix not in {".py", ".md"}:
+        whole = path.read_text(encoding="utf-8") if path.suffix in {".py", ".md"} else ""
+        if "needs: " not in whole and place != "docs/gallery.md":
             shutil.copy2(path, copied)
             continue
-        text = without_marked(path.read_text(encoding="utf-8"), name)
+        text = without_marked(whole, name)
         if place == "docs/gallery.md":
             lines = text.split("\n")
             text = "\n".join(line for line in lines if not any(f"recipes/{recipe}" in line for recipe in gone))

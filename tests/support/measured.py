@@ -50,7 +50,7 @@ RECIPES = {
     "roller yoke": shipped("hypocycloid"),
     "double roller": shipped("w-figure-5"),
     "flat pair": shipped("w-figure-9"),
-    "four-bar": shipped("long-dwell"),
+    "four-bar": shipped("as-figure-9-1"),
 }
 
 

@@ -182,7 +182,16 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
         assert row.shaft > row.hub
 
 
-@pytest.mark.parametrize("name", ["w-law", "disc-ring", "disc-packaging", "w-rosette", "hypocycloid"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "w-law",
+        "disc-ring",  # needs: milling
+        "disc-packaging",  # needs: milling
+        "w-rosette",
+        "hypocycloid",
+    ],
+)
 @pytest.mark.parametrize("limit", [0.0, 6.0])
 def test_walls_that_are_left_out_are_neither_the_least_nor_thin(name: str, limit: float) -> None:
     recipe = load(RECIPES / f"{name}.yaml")

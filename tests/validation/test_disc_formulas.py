@@ -54,7 +54,8 @@ def heart_area():
 
 def rows(workshop):
     roller, flat = workshop.shipped("disc-roller"), workshop.shipped("disc-flat")
-    valve, heart = workshop.shipped("valve-lobe"), workshop.shipped("disc-knife-edge")
+    valve = workshop.shipped("valve-lobe")  # needs: dynamics
+    heart = workshop.shipped("disc-knife-edge")
     e = 0.001
     s, half = lobe()
     u = np.linspace(-1, 1, 400_001)
@@ -68,10 +69,13 @@ def rows(workshop):
         Row("perimeter of disc-flat, mm", "Cauchy: 2π Rb + ∫ s; laws are symmetric",
             "2π (30 + 12 · 140/360)", 2 * PI * (30 + 12 * 140 / 360),
             flat.contour.as_arcs()[0].length.sum(), 2 * PI * e),
+        # needs: dynamics
         Row("perimeter of valve-lobe, mm", "Cauchy: 2π Rb + ∫ s",
             f"{2 * PI * 18 + lift:.7g}", 2 * PI * 18 + lift, valve.contour.as_arcs()[0].length.sum(), 2 * PI * e),
+        # needs: dynamics
         Row("least radius of curvature of valve-lobe, mm", "N: Rb + s + s''",
             f"{(18 + s(u) + a).min():.7g}", (18 + s(u) + a).min(), valve.value("radius-of-curvature"), 1e-7),
+        # needs: dynamics
         Row("travel of the contact over the tappet of valve-lobe, mm", "N: max s' - min s'",
             f"{2 * widest:.7g}", 2 * widest, valve.value("contact-travel"), 1e-7),
         Row("area of disc-knife-edge, mm²", "1/2 ∫ (Rb + s)² dθ",

@@ -33,20 +33,20 @@ SHARES = np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 SHAFT = np.radians([7.0, 41.0, 98.0, 133.0, 188.0, 226.0, 277.0, 333.0])
 FAMILIES = [
     "disc-roller",
-    "disc-ring",
+    "disc-ring",  # needs: milling
     "disc-flat",
     "disc-arm",
     "disc-arm-flat",
     "conjugate-stem",
     "conjugate-arm",
     "conjugate-flat",
-    "groove-stem",
+    "groove-stem",  # needs: milling
     "groove-arm",
-    "print-double-roller",
+    "print-double-roller",  # needs: mechanism
     "w-ellipse",
-    "print-constant-diameter",
+    "print-constant-diameter",  # needs: mechanism
     "shu-wu",
-    "valve-lobe",
+    "valve-lobe",  # needs: dynamics
     "as-figure-8",
     "as-figure-12",
     "slider-crank",
@@ -54,11 +54,11 @@ FAMILIES = [
 
 READ = [
     "disc-roller",
-    "disc-ring",
+    "disc-ring",  # needs: milling
     "disc-flat",
     "disc-arm",
     "disc-arm-flat",
-    "groove-stem",
+    "groove-stem",  # needs: milling
     "disc-knife-edge",
     "knife-arm",
     "conjugate-stem",

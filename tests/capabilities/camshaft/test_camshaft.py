@@ -717,7 +717,10 @@ def test_a_shaft_as_thick_as_a_lobe_fails(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("recipe", "message"),
-    [("w-booth", "two contacts on one arm are no lobe's"), ("disc-ring", "a ring, a groove or a pair is no lobe")],
+    [
+        ("w-booth", "two contacts on one arm are no lobe's"),
+        ("disc-ring", "a ring, a groove or a pair is no lobe"),  # needs: milling
+    ],
 )
 def test_what_is_no_lobe(tmp_path: Path, recipe: str, message: str) -> None:
     path = shaft(tmp_path, f"recipe: {RECIPES / recipe}.yaml, at: 0, z: 30, length: 9")
