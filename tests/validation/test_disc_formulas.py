@@ -30,6 +30,18 @@ def rise_angle(e):
     return math.degrees(math.atan(((24 * v / (100 * DEGREE) - e) / (math.sqrt(45**2 - e**2) + 24 * s)).max()))
 
 
+VALVE = """\
+cam:
+  kind: disc
+  base_radius: 18
+  follower: {kind: flat, width: 27}
+  motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}
+part: {thickness: 14, bore: 20}
+limits: {radius-of-curvature: {at_least: 3.5}}
+export: {tolerance: 0.001, files: [dxf, stl, csv]}
+"""  # that of valve-lobe
+
+
 def lobe():
     """The lobe of valve-lobe as a polynomial in u, and its half angle in rad."""
     made = np.zeros(27)
@@ -54,8 +66,7 @@ def heart_area():
 
 def rows(workshop):
     roller, flat = workshop.shipped("disc-roller"), workshop.shipped("disc-flat")
-    valve = workshop.shipped("valve-lobe")  # needs: dynamics
-    heart = workshop.shipped("disc-knife-edge")
+    valve, heart = workshop.written("lobe", VALVE), workshop.shipped("disc-knife-edge")
     e = 0.001
     s, half = lobe()
     u = np.linspace(-1, 1, 400_001)
@@ -69,13 +80,10 @@ def rows(workshop):
         Row("perimeter of disc-flat, mm", "Cauchy: 2π Rb + ∫ s; laws are symmetric",
             "2π (30 + 12 · 140/360)", 2 * PI * (30 + 12 * 140 / 360),
             flat.contour.as_arcs()[0].length.sum(), 2 * PI * e),
-        # needs: dynamics
         Row("perimeter of valve-lobe, mm", "Cauchy: 2π Rb + ∫ s",
             f"{2 * PI * 18 + lift:.7g}", 2 * PI * 18 + lift, valve.contour.as_arcs()[0].length.sum(), 2 * PI * e),
-        # needs: dynamics
         Row("least radius of curvature of valve-lobe, mm", "N: Rb + s + s''",
             f"{(18 + s(u) + a).min():.7g}", (18 + s(u) + a).min(), valve.value("radius-of-curvature"), 1e-7),
-        # needs: dynamics
         Row("travel of the contact over the tappet of valve-lobe, mm", "N: max s' - min s'",
             f"{2 * widest:.7g}", 2 * widest, valve.value("contact-travel"), 1e-7),
         Row("area of disc-knife-edge, mm²", "1/2 ∫ (Rb + s)² dθ",
