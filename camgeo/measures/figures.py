@@ -18,10 +18,10 @@ from camgeo.checks.declared import (
 )
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.recipe.figures import (
-    AT_LIFT,
     BACKLASH,
     BASE_RADIUS,
     CONTOUR_ERROR,
+    DURATION,
     DWELL,
     DWELL_ERROR,
     DWELL_RELATIVE,
@@ -31,6 +31,8 @@ from camgeo.recipe.figures import (
     FORCE_ANGLE,
     HOLLOW_RADIUS,
     INERTIA,
+    LIFT_AREA,
+    LOBE_CENTRE,
     MARGIN,
     MASS,
     NOTHING,
@@ -48,6 +50,7 @@ from camgeo.recipe.figures import (
     PRELOAD_GREATEST,
     PRELOAD_LEAST,
     RADIUS,
+    RAMP_VELOCITY,
     ROLLER_SPEED,
     SHAFT_RATE,
     SIZE,
@@ -314,7 +317,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     ECCENTRICITY: _of_mass(lambda disc: disc.eccentricity, "mm"),
     INERTIA: _of_mass(lambda disc: disc.inertia, "kg mm^2"),
     UNBALANCE: _of_mass(lambda disc: disc.unbalance, "kg mm"),
-    **{name: partial(_of_lobe, name) for name in AT_LIFT},
+    **{name: partial(_of_lobe, name) for name in (DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA)},
 }
 
 

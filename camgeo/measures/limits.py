@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.checks.declared import LIMIT, Scene, declaration
 from camgeo.checks.remedies import Missed, of_limit
 from camgeo.measures.figures import of_design, of_file
-from camgeo.recipe.figures import AT_LIFT, FIGURES
+from camgeo.recipe.figures import FIGURES
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
@@ -38,15 +38,15 @@ def limit_checks(
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
-    names = [limit.figure for limit in recipe.limits if limit.figure not in AT_LIFT]
+    names = [limit.figure for limit in recipe.limits if FIGURES[limit.figure].at_lift is None]
     measured = of_design(recipe, design, checks, names, speeds)
     found: list[Check] = []
     for limit in recipe.limits:
         name, of = limit.figure, FIGURES[limit.figure].of
-        if name in AT_LIFT:
-            from camgeo.measures.lobe import lobe_figure
+        if FIGURES[name].at_lift is not None:
+            from camgeo.measures.lobe import figure_at
 
-            found += _held(recipe, limit, lobe_figure(name, design.exact, limit.lift))
+            found += _held(recipe, limit, figure_at(recipe, design, name, limit.lift))
         elif name in measured:
             found += _held(recipe, limit, measured[name])
         elif runs is not None and name in runs:
@@ -81,7 +81,7 @@ def _held(
         if value is not None and not ok:
             missed = Missed(value, bound, measured.unit, tolerance, measured.surface)
             detail = f"{of_limit(recipe, limit, missed)} would satisfy it"
-        if limit.figure in AT_LIFT and value is not None:
+        if FIGURES[limit.figure].at_lift is not None and value is not None:
             lift = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
             detail = f"{lift}: {detail}" if detail else lift
         name, of = LIMIT + limit.figure, measured.surface

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.measures.measured import Measured
-from camgeo.recipe.figures import AT_LIFT, DURATION, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
+from camgeo.recipe.figures import DURATION, FIGURES, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
+from camgeo.registry import registry
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import CamgeoError
 from kin.numeric.monotone import RoughError, between, cells, pieces
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import ExactCam
     from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import Moved
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
     from kin.numeric.monotone import Pieces
@@ -134,5 +136,19 @@ def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
 
 def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
     """Measure a figure at the lift that the recipe's first limit of it states, or at its usual one."""
-    lift = next((limit.lift for limit in recipe.limits if limit.figure == name), AT_LIFT[name])
+    lift = next((limit.lift for limit in recipe.limits if limit.figure == name), FIGURES[name].at_lift or 0.0)
     return lobe_figure(name, design.exact, lift)
+
+
+def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
+    """Measure a figure of the lobe, or of what a capability adds to it, at a lift, mm."""
+    owner = FIGURES.owner(name)
+    if owner:
+        return registry.capability(owner).measure_at(recipe, design, name, lift)
+    return lobe_figure(name, design.exact, lift)
+
+
+def moved_by(recipe: Recipe, design: Design) -> Moved | None:
+    """What the follower moves besides itself, such as a valve; None where nothing is told of it."""
+    made = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
+    return next((moved for moved in made if moved is not None), None)

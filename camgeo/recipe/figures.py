@@ -94,10 +94,6 @@ MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "u
 DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA = "duration", "lobe-centre", "ramp-velocity", "lift-area"
 
 
-AT_LIFT = {DURATION: 1.27, LOBE_CENTRE: 1.27, RAMP_VELOCITY: 0.1524, LIFT_AREA: 0.0}
-"""Lifts, mm, at which figures of lobes are taken unless a limit says another: 0.050 and 0.006 in, and all of it."""
-
-
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
@@ -121,9 +117,10 @@ _RETURN = Field(
 )
 
 
-def _at_lift(name: str) -> tuple[Field]:
+def lift_key(usual: float) -> tuple[Field]:
+    """Give the key of a limit by which a figure is taken at another lift than its usual one, mm."""
     about = "lift at which it is taken, from the lowest"
-    return (Field("at_lift", Kind.LENGTH, about, default=f"{AT_LIFT[name]:g} mm", at_least=0, at_most=MOST),)
+    return (Field("at_lift", Kind.LENGTH, about, default=f"{usual:g} mm", at_least=0, at_most=MOST),)
 
 
 @dataclass(frozen=True)
@@ -135,8 +132,9 @@ class Figure:
     figure is taken from. `per` ends its unit's name. `of` says whether the exact design has it, each file, or each run
     of a capability. `swept` is whether a sweep knows it, `dear` whether designs are given it only where it ranks or
     limits. `eased_by` is what makes it less: a smaller `motion` alone, or a larger cam (`size`) too; empty: neither.
-    `keys` are those of its limits in a recipe besides the bounds. `after` is the core's
-    figure behind which it stands.
+    `keys` are those of its limits in a recipe besides the bounds. `at_lift` is the lift, mm, at which it is taken
+    unless a limit says another; such limits may stand in a list. It is None of a figure of no lift. `after` is the
+    core's figure behind which it stands.
     """
 
     about: str
@@ -150,7 +148,12 @@ class Figure:
     dear: bool = False
     eased_by: Literal["", "motion", "size"] = ""
     keys: tuple[Field, ...] = ()
+    at_lift: float | None = None
     after: str = ""
+
+
+def _of_lobe(about: str, kind: Kind, best: Literal["most", "least"], lift: float, per: str = "") -> Figure:
+    return Figure(about, kind, best, OF_STEM, per, keys=lift_key(lift), at_lift=lift)
 
 
 def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> Figure:
@@ -288,27 +291,11 @@ _CORE: dict[str, Figure] = {
         "kg mm",
         dear=True,
     ),
-    DURATION: Figure(
-        "crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", OF_STEM, keys=_at_lift(DURATION)
-    ),
-    LOBE_CENTRE: Figure(
-        "cam angle midway between the crossings of 1.27 mm of lift",
-        Kind.ANGLE,
-        "most",
-        OF_STEM,
-        keys=_at_lift(LOBE_CENTRE),
-    ),
-    RAMP_VELOCITY: Figure(
-        "velocity at a lift of 0.1524 mm, a cam degree",
-        Kind.LENGTH,
-        "least",
-        OF_STEM,
-        "/deg",
-        keys=_at_lift(RAMP_VELOCITY),
-    ),
-    LIFT_AREA: Figure(
-        "lift over the turn, times cam degrees", Kind.LENGTH, "most", OF_STEM, " deg", keys=_at_lift(LIFT_AREA)
-    ),
+    # at 0.050 and 0.006 in, and of all of it
+    DURATION: _of_lobe("crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", 1.27),
+    LOBE_CENTRE: _of_lobe("cam angle midway between the crossings of 1.27 mm of lift", Kind.ANGLE, "most", 1.27),
+    RAMP_VELOCITY: _of_lobe("velocity at a lift of 0.1524 mm, a cam degree", Kind.LENGTH, "least", 0.1524, "/deg"),
+    LIFT_AREA: _of_lobe("lift over the turn, times cam degrees", Kind.LENGTH, "most", 0.0, " deg"),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
     CONTOUR_ERROR: _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),

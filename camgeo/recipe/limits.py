@@ -6,7 +6,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.figures import AT_LIFT, FIGURES, ON_RETURN, ON_RISE
+from camgeo.recipe.figures import FIGURES, ON_RETURN, ON_RISE
 from camgeo.recipe.words import words_of
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -44,7 +44,7 @@ class Limit:
     @property
     def lift(self) -> float:
         """Lift, mm, at which a lobe's figure is held."""
-        return AT_LIFT[self.figure] if self.at_lift is None else self.at_lift
+        return (FIGURES[self.figure].at_lift or 0.0) if self.at_lift is None else self.at_lift
 
     def field(self, sense: str) -> str:
         """Give the recipe's field of a bound, `at_least` or `at_most`."""
@@ -96,7 +96,7 @@ def _read_limits(swept: bool, reader: Reader, field: Field, node: Node, path: st
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
         value = given[name]
-        if not swept and name in AT_LIFT and isinstance(value, Sequence):
+        if not swept and FIGURES[name].at_lift is not None and isinstance(value, Sequence):
             for i, item in enumerate(reader.items(_bounded(swept, name), value, below, MOST_LIFTS)):
                 own = _read_limit(swept, reader, name, item, join(below, i))
                 limits += [{**limit, "place": f"{name}[{i}]"} for limit in own]
@@ -141,8 +141,8 @@ def _limits_schema(swept: bool, _: Field) -> Schema:
     known = {name: figure for name, figure in FIGURES.items() if figure.swept or not swept}
     tables = {name: bounds(figure) if swept else own_bounds(name) for name, figure in known.items()}
     limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
-    for name in () if swept else AT_LIFT:  # one lift, or a list of them
-        item = limits[name]
+    for name in () if swept else (name for name, figure in known.items() if figure.at_lift is not None):
+        item = limits[name]  # one lift, or a list of them
         limits[name] = {**item, "type": ["object", "array"], "items": item, "minItems": 1, "maxItems": MOST_LIFTS}
     return {"type": "object", "properties": limits, "additionalProperties": False}
 
@@ -173,7 +173,7 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
     for limit in limits:
         name, figure = limit["figure"], FIGURES[limit["figure"]]
         for bound in ("at_least", "at_most"):
-            key = name, bound, limit.get("at_lift", AT_LIFT.get(name))
+            key = name, bound, limit.get("at_lift", figure.at_lift)
             if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
                 other, path = sorted((bounded[key], limit["at"]), key=len)
                 how = "at the same lift" if "place" in limit else "with on_return"

@@ -53,6 +53,20 @@ class Results(NamedTuple):
     skipped: Sequence[tuple[str, str]] = ()
 
 
+class Moved(Protocol):
+    """What a follower on a stem moves besides itself, such as a valve; lifts in mm."""
+
+    @property
+    def name(self) -> str:
+        """What it is."""
+
+    def rows(self, tappet: Array) -> Array:
+        """Its lift and two derivatives (3, n) by those of the follower (3, n)."""
+
+    def follower_lift(self, lift: float) -> float:
+        """Lift of the follower at which it is at a lift."""
+
+
 class SampledCams(Protocol):
     """Cams of m designs, each sampled at n places, of which a sweep estimates figures (m,) in mm and degrees."""
 
@@ -184,6 +198,16 @@ def no_figures(
     return EMPTY
 
 
+def no_figure_at(_recipe: Recipe, _design: Design, name: str, _lift: float, /) -> Measured:
+    """Know no figure at a lift."""
+    raise KeyError(name)
+
+
+def nothing_moved(_recipe: Recipe, _design: Design, /) -> Moved | None:
+    """Move nothing."""
+    return None
+
+
 def no_remedy(_recipe: Recipe, _figure: str, _value: float, _bound: float, /) -> str:
     """Know no remedy."""
     return ""
@@ -238,6 +262,8 @@ class Capability:
 
     figures   by name, as recipes limit them and sweeps rank by them
     measure   figures `of` the design: (recipe, design, names, speeds of limits, turns a minute, by figure)
+    measure_at figures that have a lift: (recipe, design, name, lift in mm)
+    moved     what the follower moves besides itself, of which events may be told; None for nothing
     estimates figures of many cams at once for a sweep, by name
     checks    declarations of all its checks; every check that it makes is one of them
     exact     checks that need no file: (recipe, exact cam, each surface with its contour)
@@ -267,6 +293,8 @@ class Capability:
     roots: Mapping[str, Root[Any]] = EMPTY
     figures: Mapping[str, Figure] = EMPTY
     measure: Callable[[Recipe, Design, Sequence[str], Mapping[str, float]], Mapping[str, Measured]] = no_figures
+    measure_at: Callable[[Recipe, Design, str, float], Measured] = no_figure_at
+    moved: Callable[[Recipe, Design], Moved | None] = nothing_moved
     estimates: Callable[[], Mapping[str, Estimate]] = no_estimates
     checks: Callable[[], Sequence[Declared]] = no_declarations
     exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = no_exact_checks

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,14 @@ if TYPE_CHECKING:
 
 LIFTS = (0.02, 0.15, 0.5, 1.27, 2.5, 5.08, 8.0)
 WITHIN = 1e-6  # crank degrees, by which the figure may be off a card that is met
-REFUSED = re.compile(r"give|lies? between|longer than|shorter durations|leaves nothing|half and powers")
+VALVES = (  # needs: valve
+    "valve: {ratio: 1.6, lash: 0.3}\n",
+    "valve: {ratio: 1, lash: 40}\n",
+    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [12, 1.55]]}}\n",
+    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [7, 0.01]]}, lash: 0.2}\n",
+    "valve: {ratio: -1}\n",
+)
+REFUSED = re.compile(r"give|let|lies? between|longer than|shorter durations|leaves nothing|half and powers")
 
 
 def carded(rng: Random, number: int) -> Attack:
@@ -27,10 +35,11 @@ def carded(rng: Random, number: int) -> Attack:
     )
 
     def card(share: float) -> list[tuple[float, float]]:
-        degrees, rows = rng.uniform(230, 330), []
+        """Of about a cosine, whose halves are met by no lobe to the last degree."""
+        whole, rows = rng.uniform(230, 330), []
         for at in sorted(rng.sample(LIFTS, rng.randrange(1, 4))):
-            rows.append((at, round(share * degrees, 1)))
-            degrees *= rng.uniform(0.6, 0.97) if rng.random() < 0.95 else 1.1
+            part = math.acos(2.0 * min(at / lift, 1.0) - 1.0) / math.pi
+            rows.append((at, round(share * (whole * part + rng.uniform(-4, 4)), 1)))
         return rows
 
     def written(rows: list[tuple[float, float]]) -> str:
@@ -48,6 +57,7 @@ def carded(rng: Random, number: int) -> Attack:
     text = "cam:\n  kind: disc\n  base_radius: 40\n  follower: {kind: flat}\n"
     text += f"  motion: {{lobe: {{lift: {lift}, {shape}}}}}\nexport: {{files: [dxf]}}\n"
     text += f"limits: {{duration: [{bounds}]}}\n" if even else ""
+    text += rng.choice(["", "", *VALVES])
 
     def judge(done: Done, _: Path) -> list[str]:
         if done.status == 2:

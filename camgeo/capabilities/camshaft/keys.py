@@ -55,13 +55,14 @@ class Bar:
 class Engine:
     """Crank data, rad: lobe centres of intake after and of exhaust before dead centre, and when cylinders fire.
 
-    `firing` is by the number of the cylinder; `lift` is the tappet's, mm, at which events are told.
+    `firing` is by the number of the cylinder; `lift`, mm, at which events are told, is the tappet's, or the valve's.
     """
 
     intake: float
     exhaust: float
     firing: dict[int, float]
     lift: float = LIFT
+    at_valve: bool = False
 
     def centre(self, cylinder: int, valve: str) -> float:
         """Cam angle of a lobe's centre, rad, after the firing dead centre of the first cylinder in the order."""
@@ -182,6 +183,7 @@ ENGINE = Table(
         _angle("separation", "mean of both centres, cam degrees between a cylinder's lobes, in their place", 0, 360),
         _angle("advance", "crank degrees by which both stand earlier than that", -180, 180, default="0"),
         length("lift", "lift of the tappet at which events are told", default="1.27 mm"),
+        length("valve_lift", "lift of the valve in its place, by `valve` of each lobe's recipe"),
         Field(
             "firing",
             Kind.NUMBERS,
@@ -317,6 +319,8 @@ def _check(values: Values, reader: Reader) -> None:
         if firing is not None and len(firing) != len(order):
             remedy = f"give {len(order)}, one for each cylinder of the order"
             reader.fault_at(f"{path}.firing", f"{len(firing)} angles for {len(order)} cylinders", None, remedy)
+        if "valve_lift" in engine and "lift" in engine:
+            reader.fault_at(f"{path}.valve_lift", "cannot be combined with lift", None, "give exactly one of them")
         if "advance" in engine and "separation" not in engine:
             reader.fault_at(f"{path}.advance", "needs the lobes' separation", None, "leave it out")
     for i, lobe in enumerate(camshaft["lobes"]):
@@ -419,7 +423,9 @@ def _engine(values: Values | None) -> Engine | None:
     advance = values.get("advance", 0.0)
     intake = values["intake"] if "intake" in values else values["separation"] - advance
     exhaust = values["exhaust"] if "exhaust" in values else values["separation"] + advance
-    return Engine(intake, exhaust, dict(zip(order, firing, strict=True)), values.get("lift", LIFT))
+    at_valve = "valve_lift" in values
+    lift = values["valve_lift"] if at_valve else values.get("lift", LIFT)
+    return Engine(intake, exhaust, dict(zip(order, firing, strict=True)), lift, at_valve)
 
 
 def _cam(document: Document, name: str, field: str) -> Recipe:

@@ -13,6 +13,7 @@ from camgeo.capabilities.camshaft.events import event, stretches, valves_of
 from camgeo.capabilities.camshaft.keys import ROUNDING, of_a_lobe
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
+from camgeo.measures.lobe import moved_by
 from camgeo.recipe.part import THINNEST
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
+    from camgeo.registry.capability import Moved
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.expected_checks import Foreseen
     from kin.judge.check import Check
@@ -58,6 +60,15 @@ class PlacedLobe:
         if lift not in self.events:
             self.events[lift] = event(self.design.exact, self.zero, lift)
         return self.events[lift]
+
+    @property
+    def moved(self) -> Moved | None:
+        """What its follower moves, such as a valve."""
+        return moved_by(self.lobe.recipe, self.design)
+
+    def told_at(self, engine: Engine) -> float:
+        """Lift of its follower, mm, at which an engine's events are told."""
+        return self.moved.follower_lift(engine.lift) if engine.at_valve and self.moved is not None else engine.lift
 
     @property
     def stretches(self) -> tuple[Stretch, ...]:
@@ -124,7 +135,8 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
     """Angle by which a lobe's metal is turned, rad from 0 to below a turn: as given, or so that its centre is right."""
     if lobe.at is not None or recipe.engine is None or lobe.cylinder is None:
         return float(np.mod(lobe.at or 0.0, TURN))
-    unturned = event(design.exact, 0.0, recipe.engine.lift)
+    lift = _tappet_lift(recipe, recipe.engine, lobe, design, index)
+    unturned = event(design.exact, 0.0, lift)
     if unturned is None:
         remedy = "give a camshaft.engine.lift that each lobe crosses once on its rise and once on its return"
         told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
@@ -133,9 +145,21 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
     return float(np.mod(zero + lobe.direction, TURN))
 
 
+def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Design, index: int) -> float:
+    """Lift of a lobe's tappet, mm, at which its events are told; raises RecipeErrors for a valve that is not given."""
+    if not engine.at_valve:
+        return engine.lift
+    moved = moved_by(lobe.recipe, design)
+    if moved is None:
+        told = f"{lobe.recipe.path.name} tells of no valve"
+        remedy = "give `valve: {ratio: ..., lash: ...}` there, or camshaft.engine.lift in place of valve_lift"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
+    return moved.follower_lift(engine.lift)
+
+
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
     """Events of a cylinder with an intake and an exhaust lobe; None without both."""
-    own = {lobe.lobe.valve: lobe.event(engine.lift) for lobe in lobes if lobe.lobe.cylinder == cylinder}
+    own = {lobe.lobe.valve: lobe.event(lobe.told_at(engine)) for lobe in lobes if lobe.lobe.cylinder == cylinder}
     intake, exhaust = own.get("intake"), own.get("exhaust")
     if intake is None or exhaust is None:
         return None

@@ -34,8 +34,14 @@ def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
         heads, columns = [*heads, "crank_deg"], [*columns, 2.0 * angle]
     for lobe, lift in zip(lobes, lifts(lobes, np.radians(angle)), strict=True):
         swings = lobe.lobe.recipe.cam.arrangement.unit == "deg"
-        heads.append(f"{column(lobe.lobe.name)}_{'deg' if swings else 'mm' if recipe.mm == 1.0 else 'in'}")
+        unit = "deg" if swings else "mm" if recipe.mm == 1.0 else "in"
+        heads.append(f"{column(lobe.lobe.name)}_{unit}")
         columns.append(np.degrees(lift) if swings else lift / recipe.mm)
+        if (moved := lobe.moved) is not None:
+            made = moved.rows(lobe.rows(np.radians(angle), 2)) / recipe.mm
+            name = f"{column(lobe.lobe.name)}_{moved.name}"
+            heads += [f"{name}_{unit}", f"{name}_velocity", f"{name}_acceleration"]
+            columns += list(made)
     write_table(path, heads, np.column_stack(columns))
 
 
@@ -69,6 +75,6 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
 def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:
     """Lift, mm or rad, at which a lobe's events are told: the engine's; of a machine's lobes half of the stroke."""
     if recipe.engine is not None and lobe.lobe.recipe.cam.arrangement.unit == "mm":
-        return recipe.engine.lift
+        return lobe.told_at(recipe.engine)
     lift = lobe.design.motion.rows(np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False), 0)[0]
     return 0.5 * float(np.ptp(lift)) + float(lift.min())

@@ -26,7 +26,7 @@ OUTER, RIM = 138.0, 150.0  # px of the crank's wheel: the outer ring's middle, a
 
 def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, Event]]:
     """Return the events of each cylinder's valves, `intake` before `exhaust`, cylinders in the order of firing."""
-    events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(engine.lift) for lobe in lobes}
+    events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(lobe.told_at(engine)) for lobe in lobes}
     rows = {
         cylinder: {valve: event for valve in DEAD_CENTRES if (event := events.get((cylinder, valve))) is not None}
         for cylinder in engine.firing
@@ -54,7 +54,7 @@ def _crank_wheel(
 ) -> str:
     """Return the wheel of cylinders; an event is a valve, and crank degrees at which it opens and for how long."""
     named = f"cylinder{'s' * (len(cylinders) > 1)} {', '.join(map(str, cylinders))}"
-    lift = f"{engine.lift / recipe.mm:.4g} {UNIT_NAMES[recipe.units]}"
+    lift = f"{engine.lift / recipe.mm:.4g} {UNIT_NAMES[recipe.units]}{' of the valve' if engine.at_valve else ''}"
     middle = 0.5 * WIDTH, 262.0
     parts = [
         text(14.0, 24.0, f"{recipe.name}: one turn of the crank", size=15.0),

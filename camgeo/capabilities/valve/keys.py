@@ -1,0 +1,113 @@
+"""The key `valve` of a recipe: the rocker's ratio, constant or over the tappet's lift, and the lash at the valve."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.valve.train import Valve
+from camgeo.motions.lift_table import MAX_BYTES, TABLE, Origin
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
+from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.json_schema import number_schema, table_schema
+from camgeo.schema.scalars import Complaint
+from camgeo.schema.yaml_source import Mapping, join
+
+if TYPE_CHECKING:
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
+
+MOST_ROWS = 1000
+LEAST_ROWS = 2
+MOST_RATIO = 100.0
+_NUMBER = Field("ratio", Kind.NUMBER, "", above=0, at_most=MOST_RATIO)
+_ROWS = Table((Field("table", Kind.OWN, "file with a row for each tappet lift and the ratio there", True, form=TABLE),))
+
+
+def fields() -> tuple[Field, ...]:
+    """Give the keys that the capability adds to a recipe."""
+    ratio = Form(
+        "a ratio",
+        "a number above 0, or {table: rocker.csv} with tappet lifts and ratios",
+        _read_ratio,
+        _ratio_schema,
+    )
+    return (
+        mapping(
+            "valve",
+            "the valve that the tappet works: its lift is the ratio times the tappet's, less the lash",
+            Field("ratio", Kind.OWN, "lift of the valve by lift of the tappet", required=True, table=_ROWS, form=ratio),
+            Field("lash", Kind.LENGTH, "clearance at the valve", default="0", at_least=0, at_most=MOST),
+        ),
+    )
+
+
+def _ratio_schema(_: Field) -> Schema:
+    return {"anyOf": [number_schema(_NUMBER), table_schema(_ROWS)]}
+
+
+def _read_ratio(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
+    """Read a ratio as one row at a lift of 0, or rows of a tappet's lift, mm, and the ratio there."""
+    if not isinstance(node, Mapping):
+        ratio = reader.readers[Kind.NUMBER](reader, _NUMBER, node, path)
+        return None if ratio is None else ((0.0, ratio),)
+    values = reader.mapping(Field("", Kind.TABLE, field.about, table=_ROWS), node, path) or {}
+    if "table" not in values:
+        return None
+    origin: Origin = values["table"]
+    place = join(path, "table")
+    try:
+        rows = _rows(origin, reader)
+    except Complaint as complaint:
+        remedy = complaint.remedy or "give rows of a tappet lift and a ratio, such as 0;1.55"
+        reader.fault_at(place, complaint.problem, repr(origin.name), remedy)
+        return None
+    return tuple((lift * reader.mm, ratio) for lift, ratio in rows)
+
+
+def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
+    """Rows of lifts, in the recipe's unit, and ratios; raises Complaint for what are none."""
+    text = origin.text
+    if text is None:
+        data = bytes_of(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table")
+        text = data.decode("utf-8-sig", "replace")
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        cells = [cell for cell in re.split(r"[;\t]\s*|,\s*(?=\S)|\s+", line.strip()) if cell]
+        if not cells or line.lstrip().startswith("#"):
+            continue
+        try:
+            lift, ratio = map(float, cells)
+        except ValueError:
+            if not rows and not re.match(r"[+-]?[\d.]", cells[0]):
+                continue  # a heading
+            raise Complaint(f"line {number} is no row of two numbers") from None
+        if not (math.isfinite(lift) and 0.0 < ratio <= MOST_RATIO):
+            raise Complaint(f"line {number}: a ratio lies between 0 and {MOST_RATIO:g}")
+        rows.append((lift, ratio))
+    if not LEAST_ROWS <= len(rows) <= MOST_ROWS:
+        raise Complaint(f"{len(rows)} rows", f"give {LEAST_ROWS} to {MOST_ROWS} rows")
+    if rows[0][0] != 0.0 or not all(a < b for (a, _), (b, _) in pairwise(rows)):
+        raise Complaint("the tappet lifts do not rise from 0", "let them begin at 0 and rise")
+    return rows
+
+
+def check(values: Values, reader: Reader) -> None:
+    """Note a valve of a follower that is no tappet."""
+    if "valve" not in values:
+        return
+    if reader.offers.isdisjoint({"stem", "stem-face"}):
+        remedy = "give a cam of kind disc with a follower on a stem, or leave valve out"
+        reader.fault_at("valve", "a valve is worked by a tappet, a follower on a stem", None, remedy)
+    elif "linkage" in values:
+        reader.fault_at("valve", "the tappet drives a linkage already", None, "leave one of the two out")
+
+
+def build(values: Values) -> Valve | None:
+    """Make the valve of values in which there is no fault."""
+    given = values.get("valve")
+    return None if given is None else Valve(given["ratio"], given.get("lash", 0.0))

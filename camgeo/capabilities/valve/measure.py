@@ -1,0 +1,112 @@
+"""What the figures of a valve are, in mm and degrees, with their places; lifts are those of the valve."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.valve.figures import ACCELERATION, DURATION, FIGURES, LIFT, SEATING, VELOCITY
+from camgeo.capabilities.valve.train import ORDER, tappet_lift, valve_of
+from camgeo.measures.lobe import SHARE, EventError, event_of
+from camgeo.measures.measured import ABRUPT, Measured
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.monotone import RoughError, between, cells, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.valve.train import Valve
+    from camgeo.measures.lobe import Event
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+EVENTS = 1.0  # mm of valve lift, at which events are told beside those of its seat
+_UNITS = {LIFT: "mm", DURATION: "deg", VELOCITY: "mm/rad", ACCELERATION: "mm/rad^2", SEATING: "mm/deg"}
+
+
+class Extreme(NamedTuple):
+    """Greatest magnitude of a derivative while the valve is open, by rad of the cam, and where, degrees of the cam."""
+
+    value: float
+    at_deg: float
+
+
+def valve_event(valve: Valve, design: Design, lift: float) -> Event:
+    """When the valve is above a lift, mm: shaft angles, rad. Raises EventError unless it crosses it once either way."""
+    return event_of(design.exact, valve.follower_lift(lift))
+
+
+def extremes(valve: Valve, design: Design) -> dict[int, Extreme]:
+    """Greatest velocity (1) and acceleration (2) while the valve is open; raises EventError where neither is known."""
+    event, exact = valve_event(valve, design, 0.0), design.exact
+    datum = float(exact.motion.by_parameter(np.array([event.opening % TURN]), 0)[0, 0]) - event.lift
+
+    def rows(t: Array) -> Array:
+        tappet = exact.motion.by_parameter(np.mod(t, TURN), ORDER)
+        tappet[0] -= datum
+        made = valve.travel(tappet[0])
+        return np.array([made[1] * tappet[1], made[2] * tappet[1] ** 2 + made[1] * tappet[2]])
+
+    breaks = [at + turns * TURN for at in exact.breaks.tolist() for turns in (0.0, 1.0)]
+    try:
+        made = cells(rows, between(event.opening, event.closing, breaks), share=SHARE)
+    except RoughError as error:
+        raise EventError(ABRUPT) from error
+    found = {}
+    for k in (1, 2):
+        row = pieces(made, k - 1)
+        value, at = max(row.least(), row.greatest(), key=lambda place: abs(place[0]))
+        found[k] = Extreme(abs(value), degrees(at % TURN))
+    return found
+
+
+def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
+    """Measure a figure at a lift of the valve, mm; without a value where that is not crossed just twice."""
+    valve = valve_of(recipe, design)
+    if valve is None:
+        return Measured(None, _UNITS[name], detail="valve is not given")
+    try:
+        event = valve_event(valve, design, lift)
+    except EventError as error:
+        return Measured(None, _UNITS[name], detail=str(error))
+    if name == DURATION:
+        return Measured(event.duration, "deg", degrees(event.opening % TURN))
+    opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
+    motion, slope = design.exact.motion, valve.travel(np.array([valve.follower_lift(lift)]))[1, 0]
+    tappet = motion.rows(opening, 1, 1)[1, 0], motion.rows(closing, 1, -1)[1, 0]
+    rate, at = max((abs(float(slope * one)), at) for one, at in zip(tappet, event[1:], strict=True))
+    return Measured(math.radians(rate), "mm/deg", degrees(at % TURN))
+
+
+def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, Measured]:
+    """Measure figures, those at a lift at the one that the recipe's first limit states, or at the usual one."""
+    valve, found = valve_of(recipe, design), dict[str, Measured]()
+    for name in names:
+        usual = FIGURES[name].at_lift
+        if usual is not None:
+            lift = next((limit.lift for limit in recipe.limits if limit.figure == name), usual)
+            found[name] = measure_at(recipe, design, name, lift)
+        elif valve is None:
+            found[name] = Measured(None, _UNITS[name], detail="valve is not given")
+        elif name == LIFT:
+            found[name] = Measured(greatest_lift(valve, design), "mm")
+        else:
+            found[name] = _peak(valve, design, name)
+    return found
+
+
+def greatest_lift(valve: Valve, design: Design) -> float:
+    """Greatest lift of the valve, mm, at least 0."""
+    most = tappet_lift(design)
+    return max(float(valve.travel(np.array([most]))[0, 0]) - valve.lash, 0.0)
+
+
+def _peak(valve: Valve, design: Design, name: str) -> Measured:
+    try:
+        found = extremes(valve, design)[1 if name == VELOCITY else 2]
+    except EventError as error:
+        return Measured(None, _UNITS[name], detail=str(error))
+    return Measured(found.value, _UNITS[name], found.at_deg)

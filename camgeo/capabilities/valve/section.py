@@ -1,0 +1,104 @@
+"""The valve in the report and on the page: its lift, events, velocity and acceleration."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.valve.figures import SEATING
+from camgeo.capabilities.valve.measure import EVENTS, extremes, greatest_lift, measure_at, valve_event
+from camgeo.capabilities.valve.train import ORDER, valve_of
+from camgeo.measures.lobe import EventError
+from camgeo.report.page.curves import Plot, Series, per
+from camgeo.report.page.followers import SHAFT
+from camgeo.report.page.tables import html_table, number
+from kin.numeric.angles import TURN, degrees
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.valve.train import Valve
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+TITLES = ("Valve lift", "Valve velocity", "Valve acceleration")
+
+
+def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
+    """Lift and lash in the recipe's unit, events in degrees of the cam and of the crank, peaks by rad of the cam."""
+    valve = valve_of(recipe, design)
+    if valve is None:
+        return None
+    unit, mm = "in" if recipe.units == "inch" else "mm", recipe.mm
+    lifts = dict.fromkeys([0.0, EVENTS, *(limit.lift for limit in recipe.limits if limit.figure == "valve-duration")])
+    entry: dict[str, Any] = {
+        "ratio": valve.ratios[0][1] if len(valve.ratios) == 1 else [[x / mm, ratio] for x, ratio in valve.ratios],
+        "lash": valve.lash / mm,
+        "lift": greatest_lift(valve, design) / mm,
+        "unit": unit,
+        "events": [_event(valve, design, lift, mm) for lift in lifts],
+    }
+    seating = measure_at(recipe, design, SEATING, 0.0)
+    if seating.value is not None:
+        entry["seating"] = {"value": seating.value / mm, "unit": f"{unit}/deg", "at_deg": seating.at_deg}
+    try:
+        peaks = extremes(valve, design)
+    except EventError:
+        return entry
+    for k, (name, power) in enumerate((("velocity", "/rad"), ("acceleration", "/rad^2")), 1):
+        entry[name] = {"max": peaks[k].value / mm, "unit": unit + power, "at_deg": peaks[k].at_deg}
+    return entry
+
+
+def _event(valve: Valve, design: Design, lift: float, mm: float) -> dict[str, Any]:
+    """When the valve is above a lift: cam angles, and crank degrees in all; None where it does not cross it twice."""
+    told: dict[str, Any] = {"lift": lift / mm, "tappet_lift": valve.follower_lift(lift) / mm}
+    try:
+        event = valve_event(valve, design, lift)
+    except EventError:
+        return {**told, "opens_deg": None, "closes_deg": None, "centre_deg": None, "duration_crank_deg": None}
+    opens, closes = (degrees(angle % TURN) for angle in (event.opening, event.closing))
+    return {
+        **told,
+        "opens_deg": opens,
+        "closes_deg": closes,
+        "centre_deg": event.centre,
+        "duration_crank_deg": event.duration,
+    }
+
+
+def panel(report: dict[str, Any]) -> str:
+    """The section of the page, empty where the report has no valve."""
+    entry = report.get("valve")
+    if entry is None:
+        return ""
+    unit = entry["unit"]
+    ratio = number(entry["ratio"]) if isinstance(entry["ratio"], float) else "by a table"
+    told = f"Lift {number(entry['lift'])} {unit}, at a ratio {ratio} and a lash of {number(entry['lash'])} {unit}."
+    peaks = [
+        f"greatest {name} {number(entry[name]['max'])} {entry[name]['unit']} at {number(entry[name]['at_deg'])}°"
+        for name in ("velocity", "acceleration")
+        if name in entry
+    ]
+    cells = [
+        [number(row[key]) for key in ("lift", "tappet_lift", "opens_deg", "closes_deg", "duration_crank_deg")]
+        for row in entry["events"]
+    ]
+    rows = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in cells]
+    heads = (f"valve lift, {unit}", f"tappet lift, {unit}", "opens, cam °", "closes, cam °", "duration, crank °")
+    told += f" While it is open: {', '.join(peaks)}." if peaks else ""
+    table = html_table("Valve events", heads, rows)
+    return f'<section aria-labelledby="valve-head"><h2 id="valve-head">Valve</h2><p>{told}</p>{table}</section>'
+
+
+def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
+    """Lift, velocity and acceleration of the valve over the turn, in the recipe's unit."""
+    valve = valve_of(recipe, design)
+    if valve is None:
+        return ()
+    rows = valve.rows(design.motion.rows(SHAFT, ORDER)) / recipe.mm
+    unit, made = "in" if recipe.units == "inch" else "mm", []
+    for order, title in enumerate(TITLES):
+        factor, power, note = per(recipe, order) if order else (1.0, "", "")
+        series = (Series(title.lower(), factor * rows[order]),)
+        made.append(Plot(title, unit + power, series, note=note, axis=title.split()[1], holds=(0.0,)))
+    return made

@@ -1,0 +1,41 @@
+"""The table of a valve over the shaft angle: lifts of tappet and valve, velocity and acceleration of the valve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.valve.train import ORDER, valve_of
+from camgeo.formats.tables.tabled import tabled
+from camgeo.registry.formats import Form
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from camgeo.formats.tables.tabled import Columns
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+
+
+def _check(file: Values, values: Values, reader: Reader) -> None:
+    if "valve" not in values:
+        remedy = "give valve, such as valve: {ratio: 1.6, lash: 0.3}, or leave this out"
+        reader.fault_at(f"{file['path']}.csv.as", "a table of the valve needs one", "'valve'", remedy)
+
+
+def _columns(job: Job, request: FileRequest) -> Columns:
+    """Column names and rows (angles + 1, 6), derivatives by rad of the cam, in the unit of the file."""
+    recipe = job.recipe.told_for(request)
+    valve = valve_of(recipe, job.design)
+    if valve is None:
+        raise ValueError(f"{recipe.name}: there is no valve")
+    shaft = np.linspace(0.0, TURN, recipe.verify.angles + 1)
+    tappet = job.design.motion.turn(shaft, ORDER)
+    made = valve.rows(tappet) / recipe.mm
+    unit, degrees = "in" if recipe.units == "inch" else "mm", np.linspace(0.0, 360.0, len(shaft))
+    names = ("shaft_deg", "crank_deg", f"tappet_{unit}", f"valve_{unit}", "valve_velocity", "valve_acceleration")
+    return names, np.column_stack([degrees, 2.0 * degrees, tappet[0] / recipe.mm, *made])
+
+
+FORM = Form(name="valve", after="motion", check=_check, make=tabled("valve", _columns))

@@ -1,0 +1,109 @@
+"""The lift of a valve by that of its tappet: ratio times lift, less the lash, at least 0."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+ORDER = 2  # derivatives of a valve's lift that are told: its velocity and its acceleration
+_LOOKS = 2001  # places over the lift at which a table's slope is looked at
+_HALVINGS = 100
+_WITHIN = 1e-9  # of the greatest lift: so far a table may end before it
+
+
+@dataclass(frozen=True)
+class Valve:
+    """Rows of a tappet's lift, mm, and the rocker's ratio there, one of a constant ratio; the lash at the valve, mm.
+
+    Between rows the ratio is a natural cubic spline.
+    """
+
+    ratios: tuple[tuple[float, float], ...]
+    lash: float = 0.0
+    name: str = "valve"
+
+    def travel(self, lift: Array) -> Array:
+        """What the rocker makes of tappet lifts (n,), mm, with its first two derivatives by them, (3, n)."""
+        ratio = _ratio(self.ratios, lift)
+        return np.array([ratio[0] * lift, ratio[1] * lift + ratio[0], ratio[2] * lift + 2.0 * ratio[1]])
+
+    def rows(self, tappet: Array) -> Array:
+        """Lift of the valve, velocity and acceleration (3, n), by lift, velocity and acceleration of the tappet (3, n).
+
+        All are 0 where the valve is on its seat.
+        """
+        made = self.travel(tappet[0])
+        lift = made[0] - self.lash
+        velocity = made[1] * tappet[1]
+        acceleration = made[2] * tappet[1] ** 2 + made[1] * tappet[2]
+        return np.where(lift > 0.0, np.array([lift, velocity, acceleration]), 0.0)
+
+    def follower_lift(self, lift: float) -> float:
+        """Lift of the tappet, mm, at which the valve is at a lift, mm, of 0 or more, by halving; the travel rises."""
+        wanted = lift + self.lash
+        if len(self.ratios) == 1:
+            return wanted / self.ratios[0][1]
+        low, high = 0.0, self.ratios[-1][0]
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if self.travel(np.array([middle]))[0, 0] >= wanted else (middle, high)
+        return high
+
+
+def valve_of(recipe: Recipe, design: Design) -> Valve | None:
+    """The valve of a recipe, None without one; raises RecipeErrors for a table that ends too soon or turns back."""
+    valve = recipe.of(Valve)
+    if valve is None or len(valve.ratios) == 1:
+        return valve
+    most = tappet_lift(design)
+    last = valve.ratios[-1][0]
+    where = "valve.ratio.table"
+    if last < most * (1.0 - _WITHIN):
+        told = f"the table ends at a tappet lift of {last / recipe.mm:.6g}, the tappet lifts {most / recipe.mm:.6g}"
+        raise recipe.error(where, told, None, f"give rows up to {most / recipe.mm:.6g} or more")
+    slope = valve.travel(np.linspace(0.0, min(most, last), _LOOKS))[1]
+    if slope.min() <= 0.0:
+        raise recipe.error(where, "the valve falls while the tappet rises", None, "give ratios that fall less steeply")
+    return valve
+
+
+def tappet_lift(design: Design) -> float:
+    """Greatest lift of the tappet, mm, from its lowest place."""
+    from camgeo.measures.lobe import monotone
+
+    made = monotone(design.exact)
+    return made.greatest()[0] - made.least()[0]
+
+
+@lru_cache(maxsize=8)
+def _spline(rows: tuple[tuple[float, float], ...]) -> tuple[Array, Array]:
+    """Places (m + 1,) and coefficients (4, m) of a natural cubic spline about each place, the constant first."""
+    x, y = np.array(rows).T
+    width, count = np.diff(x), len(x)
+    matrix, right = np.eye(count), np.zeros(count)
+    for i in range(1, count - 1):
+        matrix[i, i - 1 : i + 2] = width[i - 1], 2.0 * (width[i - 1] + width[i]), width[i]
+        right[i] = 6.0 * ((y[i + 1] - y[i]) / width[i] - (y[i] - y[i - 1]) / width[i - 1])
+    bend = np.linalg.solve(matrix, right)
+    slope = np.diff(y) / width - width * (2.0 * bend[:-1] + bend[1:]) / 6.0
+    return x, np.array([y[:-1], slope, 0.5 * bend[:-1], np.diff(bend) / (6.0 * width)])
+
+
+def _ratio(rows: tuple[tuple[float, float], ...], lift: Array) -> Array:
+    """Ratio with two derivatives by the tappet's lift, (3, n); beyond the table as in its last part."""
+    if len(rows) == 1:
+        return np.array([np.full_like(lift, rows[0][1]), np.zeros_like(lift), np.zeros_like(lift)])
+    places, (a, b, c, d) = _spline(rows)
+    part = np.clip(np.searchsorted(places, lift, side="right") - 1, 0, len(places) - 2)
+    t = lift - places[part]
+    a, b, c, d = a[part], b[part], c[part], d[part]
+    return np.array([a + t * (b + t * (c + t * d)), b + t * (2.0 * c + 3.0 * t * d), 2.0 * c + 6.0 * t * d])
