@@ -116,12 +116,13 @@ def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[
     return None
 
 
-_COLUMNS = Form(
+_TWO = Form(
     "a list of two columns",
     "a list of the columns of angle and value, by heading or number, such as [crank, intake]",
     _read_columns,
     lambda _: {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 2, "maxItems": 2},
 )
+COLUMNS = Field("columns", Kind.OWN, "columns of angle and value", default="the only two, or by heading", form=_TWO)
 SHEET = (
     Field(
         "angle",
@@ -130,7 +131,7 @@ SHEET = (
         default="the heading's, else cam",
         choices=("cam", "crank", "radians", "turns", "percent"),
     ),
-    Field("columns", Kind.OWN, "columns of angle and value", default="the only two, or by heading", form=_COLUMNS),
+    COLUMNS,
     Field("scale", Kind.NUMBER, "factor of the table's values", default="1", at_least=-MOST, at_most=MOST),
     Field(
         "offset",

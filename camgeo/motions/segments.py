@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
 from camgeo.schema.errors import shown, suggestion
-from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
-from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Scalar, join
+from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, mapping
+from camgeo.schema.json_schema import number_schema, table_schema
+from camgeo.schema.yaml_source import Scalar, Sequence, described, join
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    import kin.law.programme
+    from camgeo.motions.lift_table import Rows
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
+    from kin.law.programme import Law
     from kin.law.sources.programme import Step
 
 
@@ -26,7 +30,73 @@ class SccaLaw:
     constant: float = 0.0
     velocity: float = 0.0
 
+    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - its shares are of any angle
+        """Make the law; raises IntentError for shares out of bounds."""
+        from kin.law.sources.laws import scca
 
+        return scca(self.sine, self.constant, self.velocity, f"{field}.scca")
+
+
+@dataclass(frozen=True)
+class UniformLaw:
+    """Constant velocity between two blends, their angles in rad."""
+
+    blend: tuple[float, float]
+
+    def made(self, over: float, field: str) -> Law:
+        """Make the law over an angle, rad; raises IntentError for blends that are longer."""
+        from kin.law.programme import IntentError
+        from kin.law.sources.laws import blended
+
+        whole, both = (round(math.degrees(angle), _PLACES) for angle in (over, sum(self.blend)))
+        if both > whole:
+            raise IntentError(
+                f"both blends together take {both:g} degrees, their segment {whole:g}; give blends of up to {whole:g}",
+                f"{field}.uniform.blend",
+            )
+        first, last = (angle / over for angle in self.blend)
+        return blended(first, last, f"{field}.uniform.blend")
+
+
+@dataclass(frozen=True)
+class PointsLaw:
+    """Points (u, s) from (0, 0) to (1, 1) for a spline to go through."""
+
+    points: tuple[tuple[float, float], ...]
+
+    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
+        """Make the law; raises IntentError for points that are none."""
+        from kin.law.sources.laws import through_points
+
+        return through_points(self.points, f"{field}.points")
+
+
+@dataclass(frozen=True)
+class TableLaw:
+    """Rows (u, s) of a table, each kept within a reading."""
+
+    file: str
+    rows: Rows
+    reading: float
+
+    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
+        """Make the law; raises IntentError for rows that are none."""
+        return _law_of_rows(self, f"{field}.table")
+
+
+@lru_cache(maxsize=8)
+def _law_of_rows(table: TableLaw, field: str) -> Law:
+    from kin.law.programme import IntentError
+    from kin.law.sources.laws import from_rows
+
+    try:
+        return from_rows(table.rows.samples(), table.reading, field)
+    except IntentError as error:
+        raise IntentError(f"{table.file}, {error.message}", field) from error
+
+
+OwnLaw: TypeAlias = SccaLaw | UniformLaw | PointsLaw | TableLaw
+_PLACES = 9  # decimals of a degree: what sums of angles are rounded by is cut off
 MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
 
 
@@ -43,7 +113,7 @@ class MotionSegment:
     kind: Literal["rise", "return", "to", "rise_fall", "displacement", "dwell"]
     over: float
     stroke: float = 0.0
-    law: str | tuple[float, ...] | SccaLaw | None = None
+    law: str | tuple[float, ...] | OwnLaw | None = None
     split: float | None = None
     at_end: tuple[float, float] | None = None
     formula: str = ""
@@ -78,17 +148,71 @@ class MotionSegment:
         law = self._law(field)
         return Move(self.over, law if self.split is None else split(law, self.split, field), by, to)
 
-    def _law(self, field: str) -> kin.law.programme.Law:
+    def _law(self, field: str) -> Law:
         from kin.law.programme import polynomial_law
-        from kin.law.sources.laws import named, scca
+        from kin.law.sources.laws import named
 
         if isinstance(self.law, str):
             return named(self.law)
-        if isinstance(self.law, SccaLaw):
-            return scca(self.law.sine, self.law.constant, self.law.velocity, f"{field}.law.scca")
-        return polynomial_law(self.law or (), f"{field}.law")
+        if self.law is None or isinstance(self.law, tuple):
+            return polynomial_law(self.law or (), f"{field}.law")
+        return self.law.made(self.over, f"{field}.law")
 
 
+_ANGLE = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
+
+
+def _read_blend(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
+    """Read an angle, or two."""
+    if isinstance(node, Scalar):
+        angle: float | None = reader.field(_ANGLE, node, path)
+        return None if angle is None else (angle, angle)
+    items = reader.items(field, node, path, 2)
+    angles = [reader.field(_ANGLE, item, join(path, i)) for i, item in enumerate(items)]
+    if len(angles) == 1:
+        reader.fault(node.mark, path, "not two angles", None, reader.wanted(field))
+    return None if len(angles) < 2 or None in angles else (angles[0], angles[1])
+
+
+_BLEND = Form(
+    "angles of blends",
+    "an angle from 0 to 360, or two, such as [10, 20]",
+    _read_blend,
+    lambda _: {
+        "anyOf": [
+            number_schema(_ANGLE),
+            {"type": "array", "items": number_schema(_ANGLE), "minItems": 2, "maxItems": 2},
+        ]
+    },
+)
+MOST_LAW_POINTS = 200
+LEAST_READING = 1e-9  # of a law whose table shows every digit of its computer
+
+
+def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
+    """Read a list of pairs from 0 to 1."""
+    number = Field("", Kind.NUMBER, "", at_least=-10, at_most=10)
+    found = []
+    for i, item in enumerate(reader.items(field, node, path, MOST_LAW_POINTS)):
+        below = join(path, i)
+        if not isinstance(item, Sequence) or len(item.items) != 2:
+            reader.fault(item.mark, below, "not a point", described(item), "give a list [u, s]")
+            continue
+        found.append(tuple(reader.field(number, one, join(below, k)) for k, one in enumerate(item.items)))
+    return tuple(found) if found and not any(None in point for point in found) else None
+
+
+_POINTS = Form(
+    "a list of points",
+    "a list of points such as [[0, 0], [0.4, 0.25], [1, 1]]",
+    _read_points,
+    lambda _: {
+        "type": "array",
+        "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+        "minItems": 3,
+        "maxItems": MOST_LAW_POINTS,
+    },
+)
 _LAW = Table(
     (
         Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
@@ -101,13 +225,29 @@ _LAW = Table(
                 "velocity", Kind.NUMBER, "share of the segment at constant velocity", default="0", at_least=0, at_most=1
             ),
         ),
+        mapping(
+            "uniform",
+            "constant velocity between two blends",
+            Field("blend", Kind.OWN, "over which it comes to that velocity and to rest; 0 of none", True, form=_BLEND),
+        ),
+        Field("points", Kind.OWN, "points [u, s] from [0, 0] to [1, 1] for a spline to go through", form=_POINTS),
+        Field("table", Kind.OWN, "file with a row for each u and its s, from 0;0 to 1;1, or rows", form=TABLE),
+        COLUMNS,
+        Field(
+            "reading",
+            Kind.NUMBER,
+            "greatest distance of the law from a row of the table",
+            default="half the last digit",
+            above=0,
+            at_most=1,
+        ),
     ),
-    alternatives=(("polynomial", ()), ("scca", ())),
+    alternatives=(("polynomial", ()), ("scca", ()), ("uniform", ()), ("points", ()), ("table", ())),
 )
 
 
-def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | SccaLaw | None:
-    """Read the name of a motion law, the coefficients of a polynomial, or the shares of a member of the SCCA family."""
+def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | OwnLaw | None:
+    """Read the name of a motion law, the coefficients of a polynomial, or a law of the recipe's own."""
     from kin.law.programme import IntentError, polynomial_law
     from kin.law.sources.laws import NAMES, scca
 
@@ -115,10 +255,24 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
     if isinstance(node, Scalar):
         if node.text in names:
             return node.text
-        remedy = suggestion(node.text, names) or f"give {either(names)}, {{polynomial: [...]}} or {{scca: {{...}}}}"
+        own = "{polynomial: [...]}, {scca: {...}}, {uniform: {blend: 10}}, {points: [...]} or {table: s.csv}"
+        remedy = suggestion(node.text, names) or f"give {', '.join(names)}, {own}"
         reader.fault(node.mark, path, "unknown motion law", shown(node.text), remedy)
         return None
+    faults = len(reader.errors)
     values = reader.mapping(field, node, path) or {}
+    if len(reader.errors) > faults:
+        return None
+    for key in ("columns", "reading"):
+        if key in values and "table" not in values:
+            reader.fault_at(join(path, key), "cannot stand without a table", None, "leave it out")
+            return None
+    if "uniform" in values:
+        return UniformLaw(values["uniform"]["blend"])
+    if "points" in values:
+        return _tried(reader, node, join(path, "points"), PointsLaw(values["points"]))
+    if "table" in values:
+        return _table_law(reader, node, join(path, "table"), values)
     if "scca" in values:
         shares = SccaLaw(**values["scca"])
         try:
@@ -137,6 +291,32 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
         reader.fault(node.mark, path, error.message, None, "let c0 be 0 and the sum of all coefficients 1")
         return None
     return coefficients
+
+
+def _tried(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
+    """A law that can be made over any angle; of another one the fault is noted."""
+    from kin.law.programme import IntentError
+
+    try:
+        law.made(1.0, "law")
+    except IntentError as error:
+        reader.fault(node.mark, path, error.message, None, "let it lead from 0 to 1, u rising")
+        return None
+    return law
+
+
+def _table_law(reader: Reader, node: Node, path: str, values: Values) -> OwnLaw | None:
+    """Read the rows of a law now, so that the recipe needs no file any more."""
+    raw = {**values, "angle": "radians", "units": "mm"}
+    found = read_rows(reader, raw, path, quantity="length", instead="mm")
+    if found is None:
+        return None
+    rows, place = found
+    if values["table"].text is not None and "reading" not in values:
+        reader.fault_at(path, "rows in a recipe show no last digit", None, "give reading beside them")
+        return None
+    reading = values.get("reading", max(0.5 * place, LEAST_READING))
+    return _tried(reader, node, path, TableLaw(values["table"].name, rows, reading))
 
 
 def read_segments(
@@ -192,7 +372,7 @@ def segment_table(stroke: Kind, over: int = 180) -> Table:
             Field(
                 "law",
                 Kind.OWN,
-                "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}",
+                "motion law by name, match, or one of its own",
                 table=_LAW,
                 form=LAW,
             ),

@@ -17,17 +17,21 @@ import numpy as np
 from kin.law.piecewise import Piecewise
 from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
 from kin.law.segment import Affine, Stretch
-from kin.law.sources.functions import Cosines, Sines, TwoPoint
+from kin.law.sources.functions import Cosines, FromRest, Sines, TwoPoint
 from kin.law.sources.peaks import peaks
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from kin.law.sources.ring import Samples
+
 Shape = Literal["sin", "cos", "flat"]
 
 _PI = math.pi
 _SAME = 4 * 2.0**-52  # shares that differ by less are the same
+_LEAST_POINTS = 3
+_END = 1e-9  # of u, within which rows of a law begin at 0 and end at 1
 _LEAST_SHARE = 1e-6  # of a run: a shorter one is a jump in all but name
 
 
@@ -115,6 +119,68 @@ def trapezoid(ramp: float = 0.125, field: str = "law") -> Law:
         x = end - begin
         s, v = s + x * (v + x * (a / 2 + x * j / 6)), v + x * (a + x * j / 2)
     return _of("trapezoid", _imaged(knots, half))
+
+
+def blended(first: float, last: float, field: str = "law") -> Law:
+    """Make the law of constant velocity between a blend from rest and one to rest, shares `first` and `last` of it.
+
+    A blend is 2 u**3 - u**4 of its own share, so that acceleration is 0 at its ends and has no step; where the share is
+    0 the law moves at that end. IntentError for shares that are not within the segment.
+    """
+    for share in (first, last):
+        if not (share == 0.0 or _LEAST_SHARE <= share <= 1.0):
+            raise IntentError(
+                f"a blend takes a share of the segment: 0, or {_LEAST_SHARE:g} to 1, not {share:.9g}", field
+            )
+    if first + last > 1.0 + _SAME:
+        raise IntentError("both blends are longer than their segment", field)
+    velocity = 1.0 / (1.0 - 0.5 * (first + last))
+    knots, functions = [0.0], list[Stretch]()
+    if first:
+        functions.append(Affine(FromRest(), scale=0.5 * velocity * first, width=first))
+        knots.append(first)
+    if 1.0 - first - last > _LEAST_SHARE:
+        functions.append(Polynomial((0.5 * velocity * first, velocity), first))
+        knots.append(1.0 - last)
+    if last:
+        functions.append(Affine(FromRest(), offset=1.0, scale=-0.5 * velocity * last, start=1.0, width=-last))
+        knots.append(1.0)
+    knots[-1] = 1.0
+    return _of(f"uniform (blends {first:.6g} and {last:.6g})", Piecewise(np.array(knots), tuple(functions)))
+
+
+def through_points(points: Sequence[tuple[float, float]], field: str = "law") -> Law:
+    """Make the law of a spline through points (u, s) from (0, 0) to (1, 1), at rest at both ends.
+
+    IntentError for points that do not rise in u from 0 to 1, or do not begin at 0 and end at 1.
+    """
+    from kin.law.sources.points import from_points
+
+    if len(points) < _LEAST_POINTS or points[0] != (0.0, 0.0) or points[-1] != (1.0, 1.0):
+        raise IntentError("the points of a law lead from [0, 0] to [1, 1] by one or more between", field)
+    u, s = zip(*points, strict=True)
+    try:
+        made = from_points(u, s, 1.0, around=None, field=field)
+    except IntentError as error:
+        raise IntentError("the points of a law rise in u, its first number", field) from error
+    return _of(f"points ({len(points)})", made.motion, reverses=True)
+
+
+def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
+    """Make the law of least jerk within a reading of each row (u, s) from (0, 0) to (1, 1), at rest at both ends.
+
+    Raises IntentError, and kin.law.sources.tabled.TableError, for rows that are none.
+    """
+    from kin.law.sources.table import from_table
+
+    u, s = samples.theta, samples.s
+    ends = len(u) > 1 and max(abs(u[0]), abs(u[-1] - 1.0)) <= _END
+    if not ends or max(abs(s[0]), abs(s[-1] - 1.0)) > reading:
+        raise IntentError("the rows of a law lead from 0;0 to 1;1", field)
+    made = from_table(samples, reading, 1.0, around=None, field=field)
+    rise = made.at_end(0)[0] - made.at_start(0)[0]
+    functions = tuple(Affine.of(f, offset=-made.at_start(0)[0] / rise, scale=1.0 / rise) for f in made.motion.functions)
+    return _of(f"table ({len(u)} rows)", Piecewise(made.motion.knots, functions), reverses=True)
 
 
 def boundary(start: Sequence[float], end: Sequence[float], name: str = "boundary") -> Law:
