@@ -3,7 +3,8 @@
 `growth` prints milliseconds over the size of the work, and the exponent of one by the other, by least squares over the
 last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `warm` prints milliseconds
 from a recipe object to its exact design without part and limits, as shipped, and with every figure that may be asked;
-then with arcs at 0.001 mm and their verdict at 3600 angles in memory, and of a whole export of a DXF.
+then with arcs at 0.001 mm and their verdict at 3600 angles in memory, of a whole export of a DXF, and of the scene of a
+finished design, which is all that a page draws.
 
 All of it is processor time with one BLAS thread, the least of several repeats. `--small` takes little of everything, to
 see that it works: its figures say nothing. `--only REGEX` takes the rows whose names match.
@@ -257,29 +258,31 @@ def in_memory(recipe: Recipe) -> None:
 def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:
     """Print a line for each shipped recipe, and give its milliseconds."""
     found = {}
-    print("\n| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("\n| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF | scene |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for path in sorted(RECIPES.glob("*.yaml"))[:: 12 if small else 1]:
         if not re.search(pattern, path.stem):
             continue
         recipe = load(path)
         plain = replace(recipe, part=replace(Part(), outer=recipe.part.outer), limits=(), linkage=None)
         dxf = recipe.replace("export.files", ["dxf"])
-        scenes: tuple[Callable[[], object], ...] = (
+        calls: tuple[Callable[[], object], ...] = (
             lambda plain=plain: designed(plain),
             lambda recipe=recipe: designed(recipe),
             lambda plain=plain: Design(plain, designed(plain)).figures,
             lambda plain=plain: in_memory(plain),
             lambda dxf=dxf: exported(dxf),
+            Design(recipe, designed(recipe)).scene,
         )
         spent = []
-        for scene in scenes:
-            scene()
-            spent.append(1e3 * least(scene, 1 if small else 7))
+        for call in calls:
+            call()
+            spent.append(1e3 * least(call, 1 if small else 7))
         found[path] = spent
-        a, b, c, d, e = spent
+        a, b, c, d, e, f = spent
         print(
-            f"| {path.stem} | {a:.1f} | {b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} |", flush=True
+            f"| {path.stem} | {a:.1f} | {b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} | {f:.1f} |",
+            flush=True,
         )
     return found
 

@@ -1,9 +1,10 @@
 """Do two commits write the same bytes? `python benchmarks/same_bytes.py OLD NEW [--recipes N] [--only shipped|random]`.
 
-OLD and NEW are commits of this repository, or folders that hold the packages, such as `.`. The shipped recipes (of OLD)
-and N random ones are exported by both, with this interpreter, in calls of several recipes each. Compared are every file
-byte by byte, every report but its seconds and its version, every line on the terminal, and exit statuses; of a recipe
-that is refused, its status and the text of the error. A line for each difference; exit status 1 if there is any.
+OLD and NEW are commits of this repository, or folders that hold the packages, such as `.`. The shipped recipes of OLD,
+with their tables and camshafts, and N random ones are exported by both, with this interpreter, in calls of several
+recipes each. Compared are every file byte by byte, every report but its seconds and its version, every line on the
+terminal, and exit statuses; of a recipe that is refused, its status and the text of the error. A line for each
+difference; exit status 1 if there is any.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -166,7 +168,10 @@ def compare(sides: list[Side], args: argparse.Namespace) -> int:
 
     fates: Counter[tuple[str, str]] = Counter()
     if args.recipe or args.only != "random":
-        paths = args.recipe or sorted((old.tree / "recipes").glob("*.yaml"))
+        paths = args.recipe or sorted((old.tree / "recipes").rglob("*.yaml"))
+        for rows in {rows for path in paths for rows in path.parent.glob("*.csv")}:
+            for each in sides:
+                shutil.copy(rows, each.folder / "recipes")
         held({path.stem: path.read_text(encoding="utf-8") for path in paths})
         fates.update(("shipped", old.fate(path.stem)) for path in paths)
     if not args.recipe and args.only != "shipped":

@@ -66,7 +66,7 @@ def export(
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with RunFolder(out, recipe.name) as run:
         _, found = _produced(recipe, requests, run.folder, clock)
-        _demand_any(recipe, found)
+        demand_any(recipe.path, found)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
@@ -82,14 +82,14 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> O
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
-        _demand_any(recipe, found)
+        demand_any(recipe.path, found)
         return Outcome(document(recipe, found), found.ok, None)
 
 
-def _demand_any(recipe: Recipe, findings: Findings) -> None:
-    """Raise SurroundingsError where packages are missing for every file."""
+def demand_any(path: Path, findings: Findings) -> None:
+    """Raise SurroundingsError, of the recipe's path, where packages are missing for every file."""
     if findings.missing and not findings.files:
-        raise SurroundingsError(findings.missing[0][1], recipe.path)
+        raise SurroundingsError(findings.missing[0][1], path)
 
 
 def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:

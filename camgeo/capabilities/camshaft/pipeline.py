@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 from camgeo.capabilities.camshaft.keys import SHAFT_FILES
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
-from camgeo.common.errors import SurroundingsError
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.files.mesh import Item
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
-from camgeo.output.pipeline import REPORT, Outcome
+from camgeo.output.pipeline import REPORT, Outcome, demand_any
 from camgeo.registry.formats import numbers_of
 from camgeo.report.document import Findings, document, encoded
 from camgeo.schema.fields import either
@@ -68,6 +67,7 @@ def export(
     requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
     with RunFolder(out, recipe.name) as run:
         findings = _produced(recipe, requests, run.folder, Clock(progress))
+        demand_any(recipe.path, findings.found)
         kept = run.kept() if only else ()
         report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
@@ -83,6 +83,7 @@ def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = No
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         findings = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
+        demand_any(recipe.path, findings.found)
         return Outcome(_report(recipe, findings.found, findings.lobes), findings.found.ok, None)
 
 
@@ -128,16 +129,24 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
     checks = lobe_checks(recipe, lobes)
     files: list[FileResult] = []
     pages = [request for request in requests if request.format.summary]
+    missing: dict[FileRequest, str] = {}
     if all(lobe.contour is not None for lobe in lobes) and all(check.ok or check.name != "shaft" for check in checks):
         job = _Job(recipe, lobes, clock)
         for request in requests:
-            if request.format.summary:
+            try:
+                _foresee(request)
+            except MissingExtraError as error:
+                missing[request] = str(error)
+        for request in requests:
+            if request in missing or request.format.summary:
                 continue
             path = folder / request.filename(recipe.name, recipe.export.files)
             file, more = _made(job, request, path)
             files.append(file)
             checks += more
+    names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
     found = _findings(recipe, lobes, checks, files, clock)
+    found = replace(found, missing=tuple((names[request], why) for request, why in missing.items()))
     for request in pages:
         from camgeo.capabilities.camshaft.page import page
 
@@ -145,6 +154,20 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
         path.write_text(page(recipe, lobes, _report(recipe, found, lobes)), encoding="utf-8", newline="\n")
         found = replace(found, files=(*found.files, FileResult(path, request)))
     return _Produced(found, lobes)
+
+
+def _foresee(request: FileRequest) -> None:
+    """Raise MissingExtraError where a package is missing that makes such a solid."""
+    if not SHAFT_FILES[request.kind].solid:
+        return
+    if request.format.numbers is None:
+        from camgeo.files.brep import need_kernel
+
+        need_kernel()
+    else:
+        from camgeo.files.solid import need_booleans
+
+        need_booleans()
 
 
 def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
@@ -178,8 +201,6 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
         raise recipe.error(where, str(error)) from error
     except RegionError as error:
         raise recipe.error("camshaft", f"within the tolerance, {error}") from error
-    except MissingExtraError as error:
-        raise SurroundingsError(str(error), recipe.path) from error
     if not request.format.contour:
         return FileResult(path, request, units=UNIT_MM["m"]), ()
     with job.clock.stage(f"judge {request.kind}"):

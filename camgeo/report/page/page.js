@@ -66,7 +66,7 @@ function playScene(data, begin = null) {
     const [x, y] = text.dataset.at.split(" ").map(Number);
     return { text, x, y, body: bodies[Number(text.dataset.body)] };
   });
-  const [scale, left, top] = data.view;
+  const [scale, left, top, beside] = data.view;
   const space = drawing.namespaceURI;
   const marks = data.marks.map(({ kind, x, y, text }) => {
     const mark = made("circle", { class: `mark ${kind}`, cx: x, cy: y }, drawing.querySelector(".cam"));
@@ -92,8 +92,8 @@ function playScene(data, begin = null) {
       const [bx, by, angle] = letter.body.at;
       const c = Math.cos(angle);
       const s = Math.sin(angle);
-      const lx = scale * (bx + letter.x * c - letter.y * s - left) + 13 * px;
-      const ly = scale * (top - by - letter.x * s - letter.y * c) - 13 * px;
+      const lx = scale * (bx + letter.x * c - letter.y * s - left) + beside * px;
+      const ly = scale * (top - by - letter.x * s - letter.y * c) - beside * px;
       letter.text.setAttribute("x", lx.toFixed(1));
       letter.text.setAttribute("y", ly.toFixed(1));
     }

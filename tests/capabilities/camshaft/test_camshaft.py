@@ -5,6 +5,7 @@ import json
 import math
 import pickle
 import re
+import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -18,6 +19,7 @@ from camgeo.capabilities.camshaft.diagram import WIDTH
 from camgeo.capabilities.camshaft.events import stretches
 from camgeo.capabilities.camshaft.keys import DIAGRAMS, Levels
 from camgeo.capabilities.camshaft.timing import LEFT, RIGHT
+from camgeo.cli.exit_status import SURROUNDINGS
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.recipe.loading import load_order
@@ -913,3 +915,31 @@ def test_centres_are_given_one_way(engine: str, message: str, tmp_path: Path) ->
     with pytest.raises(RecipeErrors) as caught:
         load_order(path)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["manifold3d", "OCP"])
+def test_a_solid_that_a_missing_package_would_make_is_left_out(tmp_path, monkeypatch, capsys, name):
+    """The rest is judged and placed as one set; where nothing is left nothing is written."""
+    monkeypatch.setitem(sys.modules, name, None)
+    kept, gone = ("step", "stl") if name == "manifold3d" else ("stl", "step")
+    if kept == "step":
+        pytest.importorskip("OCP", reason="a STEP file is written by Open CASCADE")
+    path = shaft(tmp_path, "recipe: intake.yaml, z: 30, at: 0", files=f"[{kept}, {gone}, csv, html]")
+    assert main(["export", str(path), "--out", str(tmp_path / "out")]) == SURROUNDINGS
+    assert f"camgeo: shaft: shaft.{gone} is left out: " in capsys.readouterr().err
+    files = ["report.json", "shaft.csv", "shaft.html", f"shaft.{kept}"]
+    assert sorted(file.name for file in (tmp_path / "out/shaft").iterdir()) == files
+    report = json.loads((tmp_path / "out/shaft/report.json").read_text("utf-8"))
+    assert report["skipped"][0]["what"] == f"shaft.{gone}"
+    assert report["skipped"][0]["missing"]
+    alone = shaft(tmp_path, "recipe: intake.yaml, z: 30, at: 0", files=f"[{gone}]")
+    assert main(["check", str(alone)]) == SURROUNDINGS
+    with pytest.raises(camgeo.SurroundingsError):
+        camgeo.export(alone, tmp_path / "none")
+    assert not (tmp_path / "none/shaft").exists()
+
+
+def test_a_camshaft_has_no_page_of_a_file(tmp_path):
+    report = camgeo.export(shaft(tmp_path, "recipe: intake.yaml, z: 30, at: 0"), tmp_path)
+    with pytest.raises(camgeo.CallError, match="a page shows the files of one cam; give the recipe of a lobe"):
+        camgeo.verify(tmp_path / "shaft.yaml", report.files[0].path, page=True)
