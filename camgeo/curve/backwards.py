@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from camgeo.curve.curve import Side
     from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,11 @@ class Backwards:
         speed, turn = self.base.series(-t, order, -side)
         sign = (-1.0) ** np.arange(order + 1)[:, None]
         return sign * speed, -sign * turn
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series."""
+        speed, turn = self.base.rates(-tau, -side)
+        return speed, -turn
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
 
     Side = int | NDArray[np.intp]
 
@@ -169,6 +170,10 @@ class Shape(Protocol):
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over the intervals [low, high] (n,), none of which spans a break."""
+        ...
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series, of a parameter that is a jet or a ball jet; of fewer orders than that."""
         ...
 
 

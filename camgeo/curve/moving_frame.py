@@ -323,6 +323,10 @@ class FramedShape(OfLaw[SourceT]):
     def _bounds(self) -> dict[tuple[bytes, bytes], Bounds]:
         return {}
 
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series, two orders fewer."""
+        return self._rates(self.figures(tau, side))
+
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         """Speed and turn from the motion's figures: two orders fewer."""
         b, a, rate = self.frame(figures)

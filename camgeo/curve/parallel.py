@@ -12,6 +12,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,11 @@ class Parallel:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
         speed, turn = self.base.series(t, order, side)
         return speed - self.distance * turn, turn
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series."""
+        speed, turn = self.base.rates(tau, side)
+        return speed - turn * self.distance, turn
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,11 @@ class SupportShape:
         turn = np.zeros_like(speed)
         turn[0] = 1.0
         return speed, turn
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series, two orders fewer."""
+        speed = self.lift.radius_on(tau, side)
+        return speed, speed * 0.0 + 1.0
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds of the radius of curvature over intervals (n,)."""

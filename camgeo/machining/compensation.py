@@ -1,4 +1,4 @@
-"""A part made different from the nominal one: edges moved for a kerf or a clearance, and scaled for shrinkage.
+"""A part made different from the nominal one: edges moved for a kerf or a clearance, scaled for shrinkage, altered.
 
 Moved is the intent: a flat face farther out, a smaller roller on the same pitch curve, faces of a pair beside their
 pivot's lines. The contour follows from it by the same formulas and is proved by the same proofs; openings are moved the
@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.family import GrownError
+from camgeo.common.errors import CallError
 from camgeo.curve.curvature import least_radius
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
+from camgeo.registry.formats import alteration
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.errors import CamgeoError
@@ -57,7 +59,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     """
     out, scale = by.out, by.scale
     try:
-        exact = design.exact.grown(out, scale)
+        exact = design.exact if out == 0.0 and scale == 1.0 else design.exact.grown(out, scale)
     except GrownError as error:
         name, radius = error.args
         what = f"the metal is enlarged by {out / recipe.mm:.6g}, "
@@ -72,6 +74,11 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         part = _part(recipe.part, out, scale)
     except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
+    try:
+        for one in by.altered:
+            exact = alteration(one.capability).alter(recipe, design, exact, one.value, scale)
+    except CallError as error:
+        raise recipe.error(field, str(error)) from error
     name = f"{recipe.name}, {by.told(recipe.mm)}"
     made = replace(recipe, name=name, cam=exact.cam, part=part)
     if exact.free:

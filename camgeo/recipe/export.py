@@ -6,7 +6,7 @@ import collections.abc
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from camgeo.recipe.machining import Compensation, build_compensation
+from camgeo.recipe.machining import Compensation, alterations, build_compensation
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS, variant
 from camgeo.schema.errors import shown
@@ -15,8 +15,8 @@ from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from camgeo.registry.formats import Alteration, Format, Variant
     from camgeo.registry.formats import Form as FileForm
-    from camgeo.registry.formats import Format, Variant
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -77,8 +77,9 @@ class FileRequest:
 
         The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one that is alike in that it is
         `<name>-<as>-<version>.<kind>`, with `-kerf` and the like behind for a part that is not nominal, and `-inch` or
-        `-mm` for a unit of its own. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
-        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind one that is not is `<name>-nominal.<kind>`.
+        `-mm` for a unit of its own; a part that a capability alters is called so in any case. Of all bodies of a
+        mechanism it is the first: `<name>-cam.stl`, `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind
+        one that is not is `<name>-nominal.<kind>`.
         """
         before = requests[: requests.index(self)] if self in requests else requests
         kin = [request for request in before if request.kind == self.kind]
@@ -89,11 +90,12 @@ class FileRequest:
             parts.append(self.as_)
             if alike and self.version:
                 parts.append(self.version)
-        if alike and self.compensation:
+        if self.compensation and (alike or self.compensation.altered):
             parts.append(self.compensation.tags)
         if alike and self.units and not self.variant:
             parts.append(self.units)
-        if len(parts) == 1 and any(request.compensation or request.units for request in alike):
+        plain = (one for one in alike if len(parts) == 1 and not (one.compensation and one.compensation.altered))
+        if any(request.compensation or request.units for request in plain):
             parts.append("nominal")
         return f"{'-'.join(parts)}.{self.format.ending}"
 
@@ -125,18 +127,18 @@ class Export:
 
 
 class Options(collections.abc.Mapping[str, Table]):
-    """Table of the options of each format, those of variants first."""
+    """Table of the options of each format, those of capabilities first."""
 
     def __init__(
-        self, formats: collections.abc.Mapping[str, Format], variants: collections.abc.Sequence[Variant]
+        self, formats: collections.abc.Mapping[str, Format], more: collections.abc.Sequence[Variant | Alteration]
     ) -> None:
         self._formats = formats
-        self._variants = variants
+        self._more = more
 
     def __getitem__(self, name: str) -> Table:
         """Table of a format; raises KeyError."""
         record = self._formats[name]
-        return Table((*(each.option for each in self._variants if each.offered(record)), *record.options.fields))
+        return Table((*(each.option for each in self._more if each.offered(record)), *record.options.fields))
 
     def __contains__(self, name: object) -> bool:
         """Whether there is such a format; no table is made."""
@@ -196,14 +198,15 @@ def export_of(
     example: str = "{dxf: {as: spline}}",
     default: str = "[dxf]",
     *,
-    variants: collections.abc.Sequence[Variant] = (),
+    more: collections.abc.Sequence[Variant | Alteration] = (),
     unfit: collections.abc.Collection[str] = (),
 ) -> Field:
     """Make the field of the files that are written, in these formats.
 
-    `variants` add options to those of formats; `unfit` are formats that are known only to say what to do instead.
+    `more` adds options of capabilities to those of formats; `unfit` are formats that are known only to say what to do
+    instead.
     """
-    options = Options(formats, variants)
+    options = Options(formats, more)
     form = Form(
         "a list of files",
         "a list of files such as [dxf, stl]" if "dxf" in formats else f"a list of files such as {default}",
@@ -247,6 +250,8 @@ def check_files(values: Values, reader: Reader) -> None:
             reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
         if request.variant:
             variant(request.variant).check(request, values, reader, path)
+        for altered in request.compensation.altered if request.compensation else ():
+            alterations()[altered.capability].check(request, values, reader, path)
         request.format.check(file, values, reader)
         request.form.check(file, values, reader)
         if request in listed[:i]:

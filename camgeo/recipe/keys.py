@@ -101,12 +101,13 @@ def recipe_table(capabilities: Collection[str] | None = None) -> Table:
 
 @cache
 def _table(capabilities: tuple[str, ...]) -> Table:
-    variants = [one.variant for one in registry.in_order(capabilities) if one.variant is not None]
+    used = registry.in_order(capabilities)
+    more = [option for one in used for option in (one.variant, one.alteration) if option is not None]
     keys = _KEYS.among(capabilities)
-    if variants:
-        keys[EXPORT.name] = export_of(FORMATS, variants=variants)
+    if more:
+        keys[EXPORT.name] = export_of(FORMATS, more=more)
     table = Table(tuple(keys.values()))
-    for capability in registry.in_order(capabilities):
+    for capability in used:
         for path, fields in capability.below.items():
             table = _with_fields(table, path.split("."), fields)
     return table

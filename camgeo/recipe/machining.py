@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.registry import registry
+from camgeo.registry.formats import Altered
 from camgeo.schema.fields import Field, Kind, Table, length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from camgeo.registry.formats import Alteration
     from camgeo.schema.reader import Reader, Values
 
 
@@ -50,12 +53,14 @@ class Compensation:
     """What a file's part is made different by: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` a share.
 
     A cut along the drawn lines takes half its width from the part, so the metal is drawn larger by that; clearance is
-    taken from it all round. What shrinks is drawn larger by 1/(1 - shrinkage) about the shaft.
+    taken from it all round. What shrinks is drawn larger by 1/(1 - shrinkage) about the shaft. `altered` is what
+    capabilities change besides.
     """
 
     kerf: float = 0.0
     clearance: float = 0.0
     shrinkage: float = 0.0
+    altered: tuple[Altered, ...] = ()
 
     @property
     def out(self) -> float:
@@ -70,13 +75,15 @@ class Compensation:
     @property
     def tags(self) -> str:
         """Name of what is compensated, for a file's name: `kerf`, `clearance-shrinkage`."""
-        return "-".join(name for name in ("kerf", "clearance", "shrinkage") if getattr(self, name))
+        own = [name for name in ("kerf", "clearance", "shrinkage") if getattr(self, name)]
+        return "-".join([*own, *(one.key for one in self.altered)])
 
     def told(self, mm: float) -> str:
         """Say what is compensated, lengths in units of `mm` mm."""
         parts = [f"{name} {value / mm:.9g}" for name in ("kerf", "clearance") if (value := getattr(self, name))]
         if self.shrinkage:
             parts.append(f"shrinkage {100.0 * self.shrinkage:.9g} percent")
+        parts += [f"{one.key} {one.value:.9g}" for one in self.altered]
         return ", ".join(parts)
 
     def entry(self, mm: float) -> dict[str, float]:
@@ -84,6 +91,7 @@ class Compensation:
         found = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
         if self.shrinkage:
             found["shrinkage"] = 100.0 * self.shrinkage
+        found |= {one.key: one.value for one in self.altered}
         moved = {"outward": self.out / mm, "scale": self.scale}
         return {**found, **{key: value for key, value in moved.items() if math.isfinite(value)}}
 
@@ -172,7 +180,18 @@ def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]
 
 def build_compensation(file: Values) -> Compensation | None:
     """Make the compensation of a file, where it has any."""
-    given = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
-    if "shrinkage" in given:
-        given["shrinkage"] /= 100.0
-    return Compensation(**given) if given else None
+    own = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
+    if "shrinkage" in own:
+        own["shrinkage"] /= 100.0
+    altered = []
+    for name, alteration in alterations().items():
+        value = alteration.chosen(file)
+        if value is not None:
+            altered.append(Altered(name, alteration.option.name, value))
+    return Compensation(**own, altered=tuple(altered)) if own or altered else None
+
+
+def alterations() -> dict[str, Alteration]:
+    """Alterations by their capability; one whose record was not read has left no value in a file."""
+    records = {name: registry.capability(name).alteration for name in registry.loaded()}
+    return {name: made for name, made in records.items() if made is not None}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.starter import Starter
-    from camgeo.registry.formats import Form, Variant
+    from camgeo.registry.formats import Alteration, Form, Variant
     from camgeo.registry.root import Root
     from camgeo.report.page.curves import Plot
     from camgeo.schema.fields import Field
@@ -279,6 +279,7 @@ class Capability:
     plots     on the page, over a turn
     tables    forms of CSV by their words
     variant   what an option of files makes of them
+    alteration what an option of files makes different of the part that they show
     left_out  what of it a run leaves out that uses it, with the reason: (recipe, requests of files, design)
     judges    files that `verify` is given and the record claims, of the suffixes that the label names; None: none
     """
@@ -307,5 +308,6 @@ class Capability:
     plots: Callable[[Recipe, Design], Sequence[Plot]] = no_plots
     tables: Callable[[], Mapping[str, Form]] = no_tables
     variant: Variant | None = None
+    alteration: Alteration | None = None
     left_out: Callable[[Recipe, Sequence[FileRequest], Design], Sequence[tuple[str, str]]] = nothing_left_out
     judges: FileJudge | None = None

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.cams.family import ExactCam
     from camgeo.common.clock import Clock
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
@@ -102,6 +103,36 @@ class Variant:
     def chosen(self, file: Values) -> bool:
         """Whether the values of a file ask for it."""
         return bool(file.get(self.option.name, self.option.default) != self.option.default)
+
+
+class Altered(NamedTuple):
+    """A number other than its default that a file gives for the option of a capability's `Alteration`."""
+
+    capability: str
+    key: str
+    value: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Alteration:
+    """What an option of a capability makes of the part that a file shows, beside kerf, clearance and shrinkage.
+
+    option    the key, a number whose default leaves the part as it is; it stands before the options of the format
+    offered   whether files of a format have the key
+    check     notes the faults of a file with another number: (request, values of the recipe, reader, path of the file)
+    alter     gives a cam altered by the number: (recipe, design, that cam, the number, scale at which it is drawn);
+              raises CallError in the words of the recipe for what cannot be altered, and as the disk does
+    """
+
+    option: Field
+    offered: Callable[[Format], bool]
+    check: Callable[[FileRequest, Values, Reader, str], None]
+    alter: Callable[[Recipe, Design, ExactCam, float, float], ExactCam]
+
+    def chosen(self, file: Values) -> float | None:
+        """The number that the values of a file give, if it alters the part."""
+        value = file.get(self.option.name)
+        return None if value is None or value == float(self.option.default) else float(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -255,6 +286,14 @@ def numbers_of(record: Format, mm: float) -> Precision:
 def variant(capability: str) -> Variant:
     """What the option of a capability makes of a file; raises KeyError for one that adds no option."""
     made = registry.capability(capability).variant
+    if made is None:
+        raise KeyError(capability)
+    return made
+
+
+def alteration(capability: str) -> Alteration:
+    """What the option of a capability makes of a file's part; raises KeyError for one that adds no such option."""
+    made = registry.capability(capability).alteration
     if made is None:
         raise KeyError(capability)
     return made

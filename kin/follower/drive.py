@@ -8,10 +8,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
+from kin.numeric.extrema import extremes
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.extrema import Extremes
+
+INSET = 1e-6  # of a stretch between two breaks: so far within it is looked at, and reckoned back from there
+ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))  # of a stretch, and where that is looked at
+LEAST = 12  # stretches
+RESOLUTION = 1e-11  # of the extent
+CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
 class Excitation(Protocol):
@@ -52,3 +64,24 @@ class Shifted:
         rows = self.sign * self.drive.rows(phi)
         rows[0] += self.offset
         return rows
+
+
+def extremes_between(first: Excitation, second: Excitation, size: float) -> Extremes:
+    """Least and greatest of second - first over a turn, in SI; `size` is that of the positions, whose digits count."""
+    ends = np.concatenate([first.breaks, second.breaks, np.arange(LEAST) * TURN / LEAST])
+    ends = distinct(np.mod(ends, TURN))
+    ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]
+    width = np.diff(ends, append=ends[0] + TURN)
+
+    def difference(phi: Array, _: Indices | None = None) -> Array:
+        rows: Array = second.rows(phi) - first.rows(phi)
+        return rows
+
+    at_low, at_high = (_carried(difference(ends + share * width), (at - share) * width) for at, share in ENDS)
+    return extremes(ends, ends + width, at_low, at_high, difference, resolution=RESOLUTION * size)
+
+
+def _carried(rows: Array, step: Array) -> Array:
+    """Value and two derivatives (3, n) a step (n,) on, to second order."""
+    f, slope, bend = rows
+    return np.stack([f + step * (slope + 0.5 * step * bend), slope + step * bend, bend])

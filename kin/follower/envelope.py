@@ -48,6 +48,10 @@ class Envelope(Protocol):
     def regular(self) -> bool:
         """Whether the contour is free of undercut, so that each point near it has one foot."""
 
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, 2 pi) at which the curvature may jump."""
+
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2), mm. Raises UnsettledError where one is not found."""
 
@@ -149,6 +153,11 @@ class FlatEnvelope:
 
     pitch: FacePitch
     out: float = 0.0
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the pitch."""
+        return self.pitch.breaks
 
     def _support(self, tau: Array, side: int = 1) -> tuple[Array, Array]:
         p, t = support_rows(self.pitch, tau, side)
@@ -293,6 +302,11 @@ class RollerEnvelope:
 
     pitch: Pitch
     radius: float
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the pitch curve."""
+        return self.pitch.breaks
 
     def points(self, parameter: Array) -> Array:
         """Points (n, 2) at the radius inside the pitch curve."""

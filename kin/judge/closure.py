@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.follower.base import Closure
+from kin.follower.drive import extremes_between
 from kin.follower.motion_error import ContactError, Play
 from kin.judge.check import Check, failed
 from kin.judge.contour_checks import beside_interference, fine, play_checks
 from kin.judge.verdict import ClosureVerdict
-from kin.numeric.angles import TURN, degrees
-from kin.numeric.distinct import distinct
+from kin.numeric.angles import degrees
 from kin.numeric.errors import UnsettledError
-from kin.numeric.extrema import extremes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,14 +27,9 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.follower.drive import Excitation
     from kin.judge.intent import ClosureIntent, Limits, SurfaceIntent
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array
 
 Surface = tuple["SurfaceIntent", "Contour"]
-INSET = 1e-6  # of a stretch between two breaks: so far within it is looked at, and reckoned back from there
-ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))  # of a stretch, and where that is looked at
-LEAST = 12  # stretches
-RESOLUTION = 1e-11  # of the extent, or of a radian
-CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
 def judge_closures(
@@ -111,24 +105,7 @@ def _rests(follower: Follower, contour: Contour) -> Excitation:
 
 def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:
     """How far one drive is beyond the other over the turn, mm or degrees: least and greatest."""
-    ends = np.concatenate([pushed.breaks, stopped.breaks, np.arange(LEAST) * TURN / LEAST])
-    ends = distinct(np.mod(ends, TURN))
-    ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]
-    width = np.diff(ends, append=ends[0] + TURN)
-
-    def left(phi: Array, _: Indices | None = None) -> Array:
-        rows: Array = stopped.rows(phi) - pushed.rows(phi)
-        return rows
-
-    at_low, at_high = (_carried(left(ends + share * width), (at - share) * width) for at, share in ENDS)
-    unit = gauge.si * size if gauge.unit == "mm" else 1.0
-    found = extremes(ends, ends + width, at_low, at_high, left, resolution=RESOLUTION * unit)
+    found = extremes_between(pushed, stopped, gauge.si * size if gauge.unit == "mm" else 1.0)
     scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
     least, most = (scale * found.least, degrees(found.least_at)), (scale * found.greatest, degrees(found.greatest_at))
     return Play(*least, *most, gauge.unit)
-
-
-def _carried(rows: Array, step: Array) -> Array:
-    """Value and two derivatives (3, n) a step (n,) on, to second order."""
-    f, slope, bend = rows
-    return np.stack([f + step * (slope + 0.5 * step * bend), slope + step * bend, bend])

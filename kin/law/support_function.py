@@ -140,6 +140,14 @@ class Lift:
         rho = p[:-2] + p[2:]
         return rho.mid, rho.rad
 
+    def radius_on(self, t: Series, side: Side = 1) -> Series:
+        """Give rho = p + p'' as a jet or ball jet of the shaft angle, two orders fewer."""
+        p = self._centred.on(t, side)
+        bend = p.derivative().derivative()
+        for _ in range(2):
+            p = p.lower()
+        return p + bend
+
     def moved(self, out: float, scale: float = 1.0) -> Lift:
         """The lift by a contour that lies `out` mm farther outside and is then drawn `scale` times as large."""
         law = self.law

@@ -16,7 +16,7 @@ from kin.contour.arcs import left
 from kin.follower.motion_error import ContactError
 from kin.numeric.angles import TURN
 from kin.numeric.feet import grid
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,6 +58,16 @@ class Metal:
         places = grid(NO_BREAKS, max(COARSE, PER_SPAN * finest))
         return Metal(follower, side, deviation, places, gauge or follower)
 
+    def raised(self, height: float) -> Metal:
+        """The metal with as much more all round, mm."""
+
+        def deviation(t: Array) -> Array:
+            rows = self.deviation(t).copy()
+            rows[0] += height
+            return rows
+
+        return replace(self, deviation=deviation)
+
     def surface(self, parameter: Array) -> tuple[Array, Array]:
         """Points (n, 2), mm, and normals (n, 2) outward of the contour."""
         frame = self.follower.envelope.frames(parameter)
@@ -74,6 +84,19 @@ class Metal:
         """
         rest = [self._resting(i, shaft) for i in range(len(self.gauge.contacts))]
         return np.stack([position for position, _ in rest]), np.stack([place for _, place in rest])
+
+    def fold(self) -> float | None:
+        """Shaft angle, rad, about which a contact does not reach the metal: it folds there; None where it reaches all.
+
+        Seen at the `places`.
+        """
+        for contact in range(len(self.gauge.contacts)):
+            angle, _ = self._touching(self.places, contact)
+            step = np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi
+            worst = int(np.argmin(step))
+            if not step[worst] >= -SETTLED:
+                return float(angle[worst])
+        return None
 
     def _touching(self, parameter: Array, contact: int) -> tuple[Array, Array]:
         return self.gauge.touching(*self.surface(parameter))[contact]

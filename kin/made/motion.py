@@ -40,18 +40,18 @@ COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 class Errors:
     """Errors of a motion at shaft angles (n,), with their standard deviations; mm or rad, derivatives by rad.
 
-    shaft (n,)     shaft angles, rad
-    rows (3, n)    error, its velocity and its acceleration; nan about breaks of the motion, where that jumps
-    sds (3, n)     standard deviations by the noise of the points
-    gain (n,)      what a mm more of metal adds to the position
-    meant (3, n)   the intended position, velocity and acceleration
+    shaft (n,)       shaft angles, rad
+    rows (3, n)      error, its velocity and its acceleration; nan about breaks of the motion, where that jumps
+    sds (3, n)       standard deviations by the noise of the points
+    gain (n,)        what a mm more of metal adds to the position
+    intended (3, n)  the intended position, velocity and acceleration
     """
 
     shaft: Array
     rows: Array
     sds: Array
     gain: Array
-    meant: Array
+    intended: Array
 
     @property
     def offset(self) -> float:
@@ -67,11 +67,11 @@ class Errors:
     @property
     def phase(self) -> tuple[float, Array]:
         """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
-        columns = np.column_stack([np.ones_like(self.shaft), -self.meant[1]])
-        if not float(np.ptp(self.meant[1])) > 0.0:
+        columns = np.column_stack([np.ones_like(self.shaft), -self.intended[1]])
+        if not float(np.ptp(self.intended[1])) > 0.0:
             return 0.0, self.remaining
-        found = np.linalg.lstsq(columns, self.rows[0], rcond=None)[0]
-        return float(found[1]), self.rows[0] - columns @ found
+        offset_and_turn = np.linalg.lstsq(columns, self.rows[0], rcond=None)[0]
+        return float(offset_and_turn[1]), self.rows[0] - columns @ offset_and_turn
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
         """Expanded uncertainty of the error (n,), k = 2; `systematic` is that of the metal, k = 2, mm, (n,) or one."""
@@ -81,8 +81,9 @@ class Errors:
     @property
     def peak_acceleration(self) -> tuple[float, float]:
         """Greatest acceleration that the part gives, and that intended, by rad^2."""
-        made = self.meant[2] + self.rows[2]
-        return float(np.nanmax(np.abs(made))), float(np.abs(self.meant[2][np.isfinite(made)]).max())
+        acceleration = self.intended[2] + self.rows[2]
+        intended = self.intended[2][np.isfinite(acceleration)]
+        return float(np.nanmax(np.abs(acceleration))), float(np.abs(intended).max())
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,40 +95,49 @@ class Play:
     sds: Array
 
 
-def metal_of(follower: Follower, side: Side, curve: Smooth, raised: float = 0.0) -> Metal:
-    """The metal of a smoothed deviation, raised all round by mm."""
+def metal_of(follower: Follower, side: Side, curve: Smooth) -> Metal:
+    """The metal of a smoothed deviation."""
+    return Metal.of(follower, side, lambda t: curve.rows(t, 1), curve.spans)
 
-    def deviation(t: Array) -> Array:
-        rows = curve.rows(t, 1)
-        rows[0] += raised
-        return rows
 
-    return Metal.of(follower, side, deviation, curve.spans)
+def step_of(curve: Smooth) -> float:
+    """Step, rad, of the differences that give derivatives of what a curve adds to a motion."""
+    return min(STEP_SHARE * TURN / curve.spans, MOST_STEP)
+
+
+def positions_about(metal: Metal, shaft: Array, step: float) -> tuple[Array, Array]:
+    """What metal adds to the intended position of each contact, and the places where they rest, (c, 5, n) each.
+
+    At five shaft angles in steps about each of those given (n,), mm or radians. Raises ContactError where a contact
+    finds no metal.
+    """
+    every = (shaft + step * np.array(OFFSETS)[:, None]).ravel()
+    positions, places = metal.positions(every)
+    shape = (len(positions), len(OFFSETS), -1)
+    return (positions - metal.follower.intended(every)).reshape(shape), places.reshape(shape)
+
+
+def derivatives_of(errors: Array, step: float) -> Array:
+    """Value and two derivatives in the middle (c, 3, n) of five values in steps (c, 5, n)."""
+    return np.stack([errors[:, 2], FIRST @ errors / step, SECOND @ errors / step**2], axis=1)
 
 
 def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array) -> list[Errors]:
     """Errors of a follower with each of its contacts on the metal; raises ContactError where one finds none."""
-    step = min(STEP_SHARE * TURN / curve.spans, MOST_STEP)
-    every = (shaft + step * np.array(OFFSETS)[:, None]).ravel()
-    metal = metal_of(follower, side, curve)
-    positions, places = metal.positions(every)
-    raised = metal_of(follower, side, curve, RAISED).positions(shaft)[0]
-    lowered = metal_of(follower, side, curve, -RAISED).positions(shaft)[0]
+    step, metal = step_of(curve), metal_of(follower, side, curve)
+    errors, places = positions_about(metal, shaft, step)
+    raised, lowered = (metal.raised(height).positions(shaft)[0] for height in (RAISED, -RAISED))
     breaks = _beside(shaft, follower.motion.breaks, BESIDE * step)
-    intended = follower.intended(every)
-    meant = follower.motion.derivatives(shaft, 2)[:3]
-    found = []
-    for k in range(len(positions)):
-        error = (positions[k] - intended).reshape(len(OFFSETS), -1)
-        rows = np.stack([error[2], FIRST @ error / step, SECOND @ error / step**2])
+    intended = follower.motion.derivatives(shaft, 2)[:3]
+    contacts = []
+    for k, rows in enumerate(derivatives_of(errors, step)):
         rows[2, breaks] = np.nan
-        place = np.unwrap(places[k].reshape(len(OFFSETS), -1), axis=0, period=TURN)
+        place = np.unwrap(places[k], axis=0, period=TURN)
         rate = np.abs(FIRST @ place / step)
         gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
-        at = place[2]
-        sds = np.stack([np.abs(gain) * rate**q * curve.deviations(at, q) for q in range(3)])
-        found.append(Errors(shaft, rows, sds, gain, meant))
-    return found
+        sds = np.stack([np.abs(gain) * rate**q * curve.deviations(place[2], q) for q in range(3)])
+        contacts.append(Errors(shaft, rows, sds, gain, intended))
+    return contacts
 
 
 def _beside(shaft: Array, breaks: Array, width: float) -> NDArray[np.bool_]:
@@ -147,7 +157,7 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
     rows = 0.5 * (pushing.rows + stopping.rows)
     sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
     gap = stopping.rows[0] - pushing.rows[0]
-    middle = Errors(pushing.shaft, rows, sds, np.maximum(np.abs(pushing.gain), np.abs(stopping.gain)), pushing.meant)
+    middle = Errors(pushing.shaft, rows, sds, np.maximum(np.abs(pushing.gain), np.abs(stopping.gain)), pushing.intended)
     return middle, Play(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
 
 
@@ -188,9 +198,8 @@ def output_errors(
     def output(first: float, second: float, reach: Array) -> tuple[Array, Array]:
         s = first * reach[0] + (1.0 - first) * (mechanism.breadth - reach[2])
         s1 = second * reach[1] + (1.0 - second) * (mechanism.breadth - reach[3])
-        shaft, made = driven(mechanism, relative, s[None], s1[None])[:, 0]
-        meant = mechanism.at(mechanism.relative(shaft), 0).output[0]
-        off = made - meant
+        shaft, position = driven(mechanism, relative, s[None], s1[None])[:, 0]
+        off = position - mechanism.at(mechanism.relative(shaft), 0).output[0]
         return shaft, off - TURN * np.round(off / TURN) if mechanism.unit == "deg" else off
 
     shaft, centred = output(CENTRED.first, CENTRED.second, ring)

@@ -16,9 +16,11 @@ import numpy as np
 
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import CamgeoError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices
@@ -81,6 +83,23 @@ class Smooth:
     def spans(self) -> int:
         """Number of spans N of the turn."""
         return len(self.coefficients)
+
+    @property
+    def pieces(self) -> Array:
+        """Coefficients (6, N) of the polynomial on each span, lowest first, by the place in it from 0 to 1."""
+        index = (np.arange(self.spans) + np.arange(WIDTH)[:, None]) % self.spans
+        pieces: Array = BASIS.T @ self.coefficients[index]
+        return pieces
+
+    def times(self, factor: float) -> Smooth:
+        """The curve so many times as high."""
+        return replace(self, coefficients=factor * self.coefficients, sigma=abs(factor) * self.sigma)
+
+    @staticmethod
+    def total(curves: Sequence[Smooth]) -> Smooth:
+        """Sum of curves on the same spans, of points that were measured independently."""
+        factor = sum((one.widened * one.sigma) ** 2 * one.factor for one in curves)
+        return Smooth(np.sum([one.coefficients for one in curves], axis=0), 1.0, 1.0, np.asarray(factor))
 
     def rows(self, t: Array, order: int = 0) -> Array:
         """Value, mm, and its derivatives by the parameter at parameters t (n,), up to `order`: (order + 1, n)."""

@@ -108,14 +108,28 @@ def probed(rng: Random, number: int) -> Attack:
     elif harm == "swap":
         head = mark.join(["y", "x"])
     text = "\n".join([*([head] if head else []), *lines])
-    words = ["verify", "cam.yaml", f"points{rng.choice(['.csv', '.txt', '.xyz', '.asc', '.dmo'])}"]
+    name = f"points{rng.choice(['.csv', '.txt', '.xyz', '.asc', '.dmo'])}"
+    words = ["verify", "cam.yaml", name]
     chosen = rng.sample(OPTIONS, rng.randrange(3))
     words += [word for option in chosen for word in option]
     recipe = RECIPES[kind] + rng.choice(["", "\nmade: {profile: 0.05}", "\nmade: {profile: 0.05, datum: none}"])
+    if rng.random() < 0.3:
+        return _corrected(rng, number, kind, (name, text))
 
     def judge(done: Done, _: Path) -> list[str]:
         if done.status == 2 and len(done.err.splitlines()) != 1 and "error: argument" not in done.err:
             return [f"lines: {len(done.err.splitlines())} lines of complaint"]
         return []
 
-    return Attack(f"points {number}", tuple(words), {"cam.yaml": recipe.encode(), words[2]: text.encode()}, judge=judge)
+    return Attack(f"points {number}", tuple(words), {"cam.yaml": recipe.encode(), name: text.encode()}, judge=judge)
+
+
+def _corrected(rng: Random, number: int, kind: str, file: tuple[str, str]) -> Attack:
+    """An export that is corrected by points as those of an earlier run."""
+    name, text = file
+    plain = rng.choice(["dxf", "svg", "{dxf: {as: arcs, kerf: 0.1}}", "{svg: {correct: 0}}"])
+    share = rng.choice(["0.8", "1", "1.5", "-1", "2", "half"])
+    run = rng.choice([name, f"[{name}, {name}]", f"{{file: {name}, align: rotation}}", "no.csv", "[]"])
+    recipe = RECIPES[kind].partition("\nexport:")[0]
+    recipe += f"\nmade: {{points: [{run}]}}\nexport: {{files: [{plain}, {{dxf: {{as: arcs, correct: {share}}}}}]}}\n"
+    return Attack(f"corrected {number}", ("export", "cam.yaml"), {"cam.yaml": recipe.encode(), name: text.encode()})

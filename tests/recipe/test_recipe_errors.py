@@ -742,11 +742,11 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[stp]", [f"18: export.files[0]: unknown file format, given 'stp'; {FORMATS}"]),
         ("[DXF]", [f"18: export.files[0]: unknown file format, given 'DXF'; {FORMATS}"]),
         (
-            "[{dxf: }]",
+            "[{csv: }]",
             [
                 (
-                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, units, tolerance, kerf, "
-                    "clearance and shrinkage, or leave the key out"
+                    "23: export.files[0].csv: nothing given; give a mapping with as, step, roller, units and "
+                    "tolerance, or leave the key out"
                 )
             ],
         ),

@@ -12,31 +12,27 @@ import numpy as np
 
 from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
 from camgeo.capabilities.made.keys import Made, datum_of
-from camgeo.capabilities.made.reading import Call, OnSurface, averaged, disc_of, sorted_out, tables_of
-from camgeo.common.errors import CallError
-from camgeo.measures.units import UNIT_NAMES
-from camgeo.synthesis.intent import closures_between, intents, permitted
+from camgeo.capabilities.made.placed import demand_discs, points_of
+from camgeo.synthesis.intent import closures_between, permitted
 from kin.judge.check import Check
 from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
-from kin.made.points import Placing, demand_alike, demand_round, profile, settled, turned_at
+from kin.made.points import profile, settled
 from kin.made.smooth import Fit, fit
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.capabilities.made.placed import DiscPoints
+    from camgeo.capabilities.made.reading import Call, OnSurface
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
-    from kin.made.points import Profile
+    from kin.made.points import Placing, Profile
     from kin.numeric.arrays import Array
-    from kin.read.points import PointTable
-
-BORE = 0.05  # of its diameter: points so near to it are on the bore
-LIFT_KINDS = "a lift is of a cam with one surface and one contact; give points x,y of this one"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,103 +88,34 @@ class PartMade:
         return tuple(surface for disc in self.discs for surface in disc.surfaces)
 
 
-def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], units: float | None, call: Call) -> PartMade:
+def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], call: Call) -> PartMade:
     """All that points tell of a part; raises CallError, and as kin does."""
-    tables, parts = tables_of(paths), intents(recipe, design)
-    scale, remarks = _scale(recipe, tables, units)
-    lifts: tuple[float, float] | None = None
-    if any(table.measured == "lift" for table in tables):
-        lifts, placed = _of_lifts(parts, tables, scale, call)
-        discs = [_disc(recipe, parts[0], placed, replace(call, align=""))]
-    else:
-        pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
-        for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
-            pieces[disc_of(path, place, len(parts)) if len(parts) > 1 else 0].append((place, table, scale))
-        lacking = [part.name for part, piece in zip(parts, pieces, strict=True) if not piece]
-        if lacking:
-            raise CallError(f"points of the disc {' and '.join(lacking)} are missing: give a file for each disc")
-        discs = [
-            _disc(recipe, part, sorted_out(part, piece, call), call) for part, piece in zip(parts, pieces, strict=True)
-        ]
-    motion, play = _motion(design, discs)
-    output = _output(parts, discs)
-    remarks += _remarks(recipe, discs, call, lifts)
-    return PartMade(tuple(discs), motion, play, output, lifts, tuple(remarks), scale)
+    points = points_of(recipe, design, paths, call.probing)
+    demand_discs(points.missing)
+    discs = [_disc(recipe, disc, call) for disc in points.discs]
+    each = {one.on.surface.name: (one.errors, one.play) for disc in discs for one in disc.surfaces}
+    motion, play = follower_motion(design, each)
+    remarks = [*points.remarks, *_remarks(recipe, discs, call, points.lifts)]
+    output = _output([disc.part for disc in discs], discs)
+    return PartMade(tuple(discs), motion, play, output, points.lifts, tuple(remarks), points.unit)
 
 
-def _scale(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
-    """Mm in a unit of the points: what their headings state, else what is given, else the recipe's with a remark."""
-    stated = {table.unit for table in tables if table.unit is not None}
-    if len(stated) > 1:
-        raise CallError("the files are in different units: give each in a call of its own")
-    if stated and units is not None and abs(next(iter(stated)) / units - 1.0) > 1e-9:
-        raise CallError(f"a heading states a unit of {next(iter(stated)):.6g} mm; leave --units out")
-    if stated or units is not None:
-        return next(iter(stated), units or 1.0), []
-    return recipe.mm, [f"no heading states a unit: the points are taken in that of the recipe, {recipe.units}; --units"]
-
-
-def _of_lifts(
-    parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, call: Call
-) -> tuple[tuple[float, float], list[OnSurface]]:
-    """Points of the metal by the lifts of an indicator."""
-    from kin.made.lifts import points_of_lifts
-
-    surface = parts[0].surfaces[0]
-    single = len(parts) == 1 and len(parts[0].surfaces) == 1 and len(surface.gauge.contacts) == 1
-    if not single or parts[0].linkage is not None:
-        raise CallError(LIFT_KINDS)
-    if any(table.measured != "lift" for table in tables):
-        raise CallError("some files have lifts and others places: give them in calls of their own")
-    if call.align == "gxy":
-        raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
-    shaft = np.radians(np.concatenate([table.columns["angle"] for table in tables]))
-    lift = np.concatenate([table.columns["lift"] for table in tables])
-    swings = surface.gauge.unit == "deg"
-    if not swings and any(table.degrees for table in tables):
-        raise CallError("its lifts are in degrees, and the follower of this cam does not swing")
-    lift = np.radians(lift) if swings else lift * scale
-    found = points_of_lifts(surface.gauge, surface.side, shaft, lift, call.ball, aligned=bool(call.align))
-    files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
-    lines = np.concatenate([table.lines for table in tables])
-    return (found.zero, found.turn), [OnSurface(surface, found.points, files, lines, len(lines))]
-
-
-def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:
-    """Raise CallError for points of the bore."""
-    bore = recipe.part.bore
-    radius = np.concatenate([np.hypot(one.points.places[:, 0], one.points.places[:, 1]) for one in points])
-    if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
-        told = f"{bore / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} across"
-        raise CallError(f"the points lie on the bore, {told}: measure the contour")
-
-
-def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], call: Call) -> DiscMade:
-    """Place, average and smooth the points of a disc, and let the followers run on each surface."""
-    _demand_outside(recipe, surfaces)
-    points = [one.points for one in surfaces]
-    demand_round(points)
-    placing = Placing()
-    if call.align:
-        placing = turned_at(points, "g")
-        if call.align != "g":
-            placing = settled([one.placed(placing) for one in points], call.align)
-        points = [one.placed(placing) for one in points]
-    demand_alike(points, aligned=bool(call.align))
-    surfaces = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
-    held = profile([one.points for one in surfaces], datum_of(recipe.of(Made), recipe.part))
+def _disc(recipe: Recipe, points: DiscPoints, call: Call) -> DiscMade:
+    """Smooth the points of a disc, and let the followers run on each surface."""
+    profiled = profile([one.points for one in points.surfaces], datum_of(recipe.of(Made), recipe.part))
     shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
-    made = []
-    for one in surfaces:
+    surfaces = []
+    for one in points.surfaces:
         deviations = one.points.deviations
         smooth = fit(deviations.parameter, deviations.e, call.spans)
         errors = contact_errors(one.surface.gauge, one.surface.side, smooth.curve, shaft)
-        made.append(SurfaceMade(one, smooth, *paired(one.surface.gauge, errors)))
+        surfaces.append(SurfaceMade(one, smooth, *paired(one.surface.gauge, errors)))
     smoothed = [
         float(np.abs(fit(one.parameter, one.e, own.fit.curve.spans).curve.rows(one.parameter)[0]).max())
-        for one, own in zip(held.deviations, made, strict=True)
+        for one, own in zip(profiled.deviations, surfaces, strict=True)
     ]
-    return DiscMade(part, tuple(made), held, placing, _uncertain(made, call), max(smoothed))
+    uncertain = _uncertain(surfaces, call)
+    return DiscMade(points.part, tuple(surfaces), profiled, points.placing, uncertain, max(smoothed))
 
 
 def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
@@ -204,13 +131,12 @@ def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
     return np.concatenate(rows)
 
 
-def _motion(design: Design, discs: Sequence[DiscMade]) -> tuple[Errors, Play | None]:
-    """Motion of the follower: of its one surface, or midway between the two that hold it."""
-    surfaces = {one.on.surface.name: one for disc in discs for one in disc.surfaces}
+def follower_motion(design: Design, each: Mapping[str, tuple[Errors, Play | None]]) -> tuple[Errors, Play | None]:
+    """Motion of the follower by that on each surface: of its one, or midway between the two that hold it."""
     for closure in closures_between(design):
-        return between(surfaces[closure.pushes].errors, surfaces[closure.stops].errors)
-    (one,) = surfaces.values()
-    return one.errors, one.play
+        return between(each[closure.pushes][0], each[closure.stops][0])
+    (motion,) = each.values()
+    return motion
 
 
 def _output(parts: Sequence[PartIntent], discs: Sequence[DiscMade]) -> OutputErrors | None:
@@ -231,7 +157,7 @@ def systematic(call: Call) -> float:
 def motion_uncertainty(made: PartMade, call: Call) -> Array:
     """Expanded uncertainty of the motion over its shaft angles (n,), mm or rad."""
     turning = 0.0 if call.axes is None else call.axes[1]
-    expanded: Array = np.hypot(made.motion.uncertainty(systematic(call)), turning * np.abs(made.motion.meant[1]))
+    expanded: Array = np.hypot(made.motion.uncertainty(systematic(call)), turning * np.abs(made.motion.intended[1]))
     return expanded
 
 
@@ -296,9 +222,9 @@ def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple
     every = [one for disc in discs for one in disc.surfaces]
     if lifts is not None:
         remarks.append("of lifts the size and a constant offset are unseen")
-    if call.align == "gxy":
+    if call.probing.align == "gxy":
         remarks.append("placed by --align best-fit, the motion shows neither eccentricity nor phase")
-    elif call.align or (lifts is not None and lifts[1]):
+    elif call.probing.align or (lifts is not None and lifts[1]):
         turn = math.degrees(discs[0].placing.turn if lifts is None else lifts[1])
         remarks.append(f"turned back by {turn:.6g} degrees by --align rotation, the motion shows no phase")
     for disc in discs:
@@ -308,7 +234,7 @@ def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple
         wanted = {"part": "", "bore": "g", "none": "gxy"}[held.datum]
         if held.free != wanted:
             remarks.append("its contour is so nearly round that a turn cannot be told from a shift")
-        if held.datum == "part" and not call.align:
+        if held.datum == "part" and not call.probing.align:
             turned = settled([one.on.points for one in disc.surfaces], "g")
             rest = disc.surfaces[0].on.points.placed(turned).deviations.e
             gain = float(np.abs(disc.surfaces[0].on.points.deviations.e).max() - np.abs(rest).max())

@@ -1,17 +1,22 @@
-"""What a recipe says of the part as made: the zone of its profile, and what fixes its axes."""
+"""What a recipe says of the part as made: the zone of its profile, what fixes its axes, and points of runs."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.made.runs import POINTS, places_of
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.capabilities.made.runs import Run
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.part import Part
-    from camgeo.schema.reader import Values
+    from camgeo.registry.formats import Format
+    from camgeo.schema.reader import Reader, Values
     from kin.made.points import Datum
 
 DATUMS = ("part", "bore", "none")
@@ -19,10 +24,14 @@ DATUMS = ("part", "bore", "none")
 
 @dataclass(frozen=True)
 class Made:
-    """How a made part is judged: width of its profile's zone, mm, and its datum; None where the recipe gives none."""
+    """How a made part is judged: width of its profile's zone, mm, and its datum; None where the recipe gives none.
+
+    `points` are those of parts that were made, run by run.
+    """
 
     profile: float | None = None
     datum: Datum | None = None
+    points: tuple[Run, ...] = ()
 
 
 def fields() -> Sequence[Field]:
@@ -31,8 +40,44 @@ def fields() -> Sequence[Field]:
     about = "what fixes the axes of the profile: part as measured, bore leaves it to turn, none to shift as well"
     datum = Field("datum", Kind.CHOICE, about, default="by the bore", choices=DATUMS)
     return (
-        replace(mapping("made", "how a made part is judged by points measured on it", zone, datum), after="verify"),
+        replace(
+            mapping("made", "how a made part is judged by points measured on it", zone, datum, POINTS), after="verify"
+        ),
     )
+
+
+CORRECT = Field(
+    "correct",
+    Kind.NUMBER,
+    "share of the summed deviations of made.points that is taken off the contour",
+    default="0",
+    at_least=0,
+    at_most=1.5,
+)
+
+
+def offered(record: Format) -> bool:
+    """Files that show the contour itself, or cut it, may be corrected."""
+    return record.contour
+
+
+def check(values: Values, reader: Reader) -> None:
+    """Note files of points that are not there."""
+    for place, file in places_of(values.get("made", {}).get("points", ())):
+        if not (Path(reader.source.file).parent / file.file).is_file():
+            remedy = "give its path as seen from the recipe's folder"
+            reader.fault_at(place, "no such file", repr(file.file), remedy)
+
+
+def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
+    """Note a corrected file without points, or of what is not corrected."""
+    place = f"{path}.{request.kind}.{CORRECT.name}"
+    if "made.points" not in reader.marks:
+        remedy = "give made.points, such as `made: {points: [run1.csv]}`, or leave it out"
+        reader.fault_at(place, "there are no measured points to correct by", None, remedy)
+    if values.get("cam", {}).get("undercut") == "trim":
+        remedy = "give undercut: refuse, or leave it out"
+        reader.fault_at(place, "a contour whose undercut is cut off is not corrected", None, remedy)
 
 
 def build(values: Values) -> Made | None:

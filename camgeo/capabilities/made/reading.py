@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.made.runs import ALIGN
 from camgeo.common.arguments import spelled
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 GRINDER = "c_deg"  # heading of the column of the work's angle in a grinder's table
-ALIGN = {"none": "", "rotation": "g", "best-fit": "gxy"}
 REPEATED = 0.02  # of the mean step: points nearer than this are one place, measured again
 FEWER = 0.8  # of the points: as many places or less, and they are repeats
 MOST_LENGTH = 1e3  # mm, of a probe and its errors
@@ -44,27 +44,41 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
 
 
 @dataclass(frozen=True)
+class Probing:
+    """How points were measured.
+
+    align   unknowns that are placed by least squares before all else: of g, x, y
+    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    units   mm in a unit of files whose headings state none; None for that of the recipe
+    """
+
+    align: str = ""
+    ball: float | None = None
+    units: float | None = None
+
+
+@dataclass(frozen=True)
 class Call:
     """What a call says of the points, mm and radians; None where it says nothing.
 
-    align        unknowns that are placed by least squares before all else: of g, x, y
-    ball         radius of the probe
     error        expanded uncertainty of a point, k = 2
     axes         of the part's axes: shift, and turn
     spans        of the smoothed deviation
     out          folder for a page, a drawing and a table
     """
 
-    align: str = ""
-    ball: float | None = None
+    probing: Probing = Probing()
     error: float | None = None
     axes: tuple[float, float] | None = None
     spans: int | None = None
     out: str | None = None
 
     @staticmethod
-    def of(options: Mapping[str, object], recipe: Recipe) -> Call:
-        """Read the options of a call; raises CallError with a line for each that makes no sense."""
+    def of(options: Mapping[str, object], recipe: Recipe, units: float | None = None) -> Call:
+        """Read the options of a call, with the unit of its files, mm.
+
+        Raises CallError with a line for each that makes no sense.
+        """
         faults: list[str] = []
 
         def length(name: str, value: object, *, least: float = 0.0) -> float | None:
@@ -111,7 +125,7 @@ class Call:
             faults.append("--out: an empty name")
         if faults:
             raise CallError(*faults)
-        return Call(ALIGN[align], ball, error, axes, spans, None if out is None else str(out))
+        return Call(Probing(ALIGN[align], ball, units), error, axes, spans, None if out is None else str(out))
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +179,7 @@ def places_of(table: PointTable, part: PartIntent, scale: float) -> tuple[Array,
     return places, directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
 
 
-def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]], call: Call) -> list[OnSurface]:
+def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]], probing: Probing) -> list[OnSurface]:
     """Give each surface of a disc its points, by a column that names it or by the nearest; repeats are averaged."""
     found = []
     gathered: dict[str, list[tuple[Array, Array | None, Indices, Indices]]] = {s.name: [] for s in part.surfaces}
@@ -186,7 +200,7 @@ def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]]
             None if any(one is None for one in normals) else np.concatenate([one for one in normals if one is not None])
         )
         places, files, lines = (np.concatenate([row[k] for row in rows]) for k in (0, 2, 3))
-        points = SurfacePoints(surface.gauge, surface.side, places, call.ball or 0.0, directions)
+        points = SurfacePoints(surface.gauge, surface.side, places, probing.ball or 0.0, directions)
         found.append(OnSurface(surface, points, files, lines, len(points)))
     return found
 

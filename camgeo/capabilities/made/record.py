@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.made.keys import Made, build, fields
+from camgeo.capabilities.made.keys import CORRECT, Made, build, check, check_corrected, fields, offered
 from camgeo.registry.capability import CallOption, Capability, FileJudge
+from camgeo.registry.formats import Alteration
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.cams.family import ExactCam
     from camgeo.checks.declared import Declared
     from camgeo.common.clock import Clock
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.capability import FileCall, Results
     from camgeo.synthesis.design import Design
@@ -49,6 +52,12 @@ def _judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Resu
     return judge(recipe, design, call, clock)
 
 
+def _examine(recipe: Recipe, design: Design, _: Sequence[FileResult], clock: Clock) -> Results:
+    from camgeo.capabilities.made.examine import examine
+
+    return examine(recipe, design, clock)
+
+
 def _shown(report: dict[str, Any], everything: bool) -> str:
     from camgeo.capabilities.made.text import shown
 
@@ -61,6 +70,19 @@ def _profile(recipe: Recipe) -> float | None:
     return None if made is None else made.profile
 
 
+def _corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
+    from camgeo.capabilities.made.correction import corrected
+
+    return corrected(recipe, design, exact, share, scale)
+
+
 CAPABILITY = Capability(
-    fields=fields, build=build, profile=_profile, checks=_checks, judges=FileJudge(_claims, OPTIONS, _judge, _shown)
+    fields=fields,
+    check=check,
+    build=build,
+    profile=_profile,
+    checks=_checks,
+    examine=_examine,
+    judges=FileJudge(_claims, OPTIONS, _judge, _shown),
+    alteration=Alteration(option=CORRECT, offered=offered, check=check_corrected, alter=_corrected),
 )

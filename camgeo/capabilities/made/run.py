@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def judge(recipe: Recipe, design: Design, given: FileCall, clock: Clock) -> Results:
+def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Results:
     """Judge points; see `FileJudge`."""
-    paths, units, options = given
-    call = Call.of(options, recipe)
+    paths, units, options = files
+    call = Call.of(options, recipe, units)
     name = escaped(str(paths[0]))
     if not design.contours:
         raise CallError(f"{name}: there is no exact contour to hold it against: a check of the recipe fails")
     if design.trimmed:
         raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
     try:
-        made = made_part(recipe, design, paths, units, call)
+        made = made_part(recipe, design, paths, call)
     except (UnlikePointsError, GapError, UnsettledError) as error:
         raise CallError(f"{', '.join(escaped(str(path)) for path in paths)}: {error}") from error
     except (ContactError, FrameError) as error:
@@ -43,10 +43,10 @@ def judge(recipe: Recipe, design: Design, given: FileCall, clock: Clock) -> Resu
             raise
         raise CallError(f"{name}: {error}") from error
     checks, verdicts = checks_of(recipe, made, call)
-    found = section(recipe, paths, made, call, verdicts)
+    report = section(recipe, paths, made, call, verdicts)
     if call.out is not None:
         from camgeo.capabilities.made.output import write  # most calls write nothing
 
         with clock.stage("write"):
-            found["written"] = write(recipe, made, found, call)
-    return Results({"made": found}, checks)
+            report["written"] = write(recipe, made, report, call)
+    return Results({"made": report}, checks)

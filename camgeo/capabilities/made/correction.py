@@ -1,0 +1,220 @@
+"""A contour corrected for what a machine makes of it: the exact one less a share of all that was measured too much.
+
+Each run of parts was made of the contour before it and is measured against the exact one. The sum of their smoothed
+deviations is what the machine adds, as far as the runs before have not taken it off already: a correction by the last
+run alone would take back what those did.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.cams.family import ExactCam
+from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.placed import demand_discs, points_of
+from camgeo.capabilities.made.reading import Probing
+from camgeo.common.errors import CallError
+from camgeo.common.terminal import escaped
+from camgeo.curve.moved import Spline, moved
+from kin.follower.motion_error import ContactError
+from kin.made.corrected import Corrected
+from kin.made.smooth import POINTS_A_SPAN, GapError, Smooth, fit
+from kin.numeric.angles import degrees
+from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.cams.family import Cam
+    from camgeo.cams.follower import Follower
+    from camgeo.cams.surface import Surface
+    from camgeo.capabilities.made.placed import Points
+    from camgeo.capabilities.made.runs import PointFile, Run
+    from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.position import Position
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.follower.base import Follower as Gauge
+    from kin.law.piecewise import Piecewise
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.made.points import Deviations
+
+
+@dataclass(frozen=True, eq=False)
+class RunMade:
+    """What the points of a run tell: the number of points on each surface by its name, and its smoothed deviation.
+
+    `curves` are means of those of the run's files; they are on the same spans in all runs, so that they can be added.
+    """
+
+    files: tuple[str, ...]
+    points: Mapping[str, int]
+    curves: Mapping[str, Smooth]
+
+
+class _FilePoints(NamedTuple):
+    """Deviations of the points in a file of a run, by surface."""
+
+    name: str
+    deviations: Mapping[str, Deviations]
+
+    def smooth(self, surface: str, spans: int | None = None) -> Smooth:
+        """Their curve; raises CallError for a gap."""
+        points = self.deviations[surface]
+        try:
+            return fit(points.parameter, points.e, spans).curve
+        except (GapError, ValueError) as error:
+            raise CallError(f"{escaped(self.name)}: {error}") from error
+
+
+def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
+    """Smoothed deviations of all runs of a recipe, each against the exact contour.
+
+    Raises CallError, naming the file, for points that are none of this part or leave a gap.
+    """
+    made = recipe.of(Made)
+    runs = [_files(recipe, design, run) for run in (() if made is None else made.points)]
+    names = [surface.name for surface in design.exact.surfaces]
+    spans = {name: _spans(name, [file for run in runs for file in run]) for name in names} if runs else {}
+    return [_run(run, spans) for run in runs]
+
+
+def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:
+    """A run out of its files."""
+    points, curves = {}, {}
+    for name, count in spans.items():
+        own = [file for file in files if name in file.deviations]
+        points[name] = sum(len(file.deviations[name].e) for file in own)
+        curves[name] = Smooth.total([file.smooth(name, count) for file in own]).times(1.0 / len(own))
+    return RunMade(tuple(file.name for file in files), points, curves)
+
+
+def _spans(surface: str, files: Sequence[_FilePoints]) -> int:
+    """Spans of a surface's curves: the most that any file calls for, and no more than each has points for."""
+    own = [file for file in files if surface in file.deviations]
+    return min(
+        max(file.smooth(surface).spans for file in own),
+        *(len(file.deviations[surface].e) // POINTS_A_SPAN for file in own),
+    )
+
+
+def _files(recipe: Recipe, design: Design, run: Run) -> list[_FilePoints]:
+    """Points of the files of a run, each placed by itself; raises CallError where a disc has none."""
+    files, missing = [], None
+    for place, file in enumerate(run):
+        points = _points(recipe, design, file, place)
+        surfaces = [one for disc in points.discs for one in disc.surfaces]
+        files.append(_FilePoints(file.file, {one.surface.name: one.points.deviations for one in surfaces}))
+        lacking = {disc.part.name for disc in points.missing}
+        missing = [disc for disc in (points.missing if missing is None else missing) if disc.part.name in lacking]
+    demand_discs(missing or ())
+    return files
+
+
+def _points(recipe: Recipe, design: Design, file: PointFile, place: int) -> Points:
+    """Points of a file, which is the `place`-th of its run."""
+    path = Path(recipe.path).parent / file.file
+    try:
+        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.units), place)
+    except CallError as error:
+        faults = [fault.removeprefix(f"{escaped(str(path))}: ") for fault in error.faults]
+        raise CallError(*(f"{escaped(file.file)}: {fault}" for fault in faults)) from error
+    except (UnsettledError, ContactError, ValueError) as error:
+        raise CallError(f"{escaped(file.file)}: {error}") from error
+
+
+def totals(recipe: Recipe, design: Design) -> dict[str, Smooth]:
+    """Sum over all runs of the smoothed deviation of each surface, by its name, mm; raises as `runs_made`."""
+    runs = runs_made(recipe, design)
+    return {name: Smooth.total([run.curves[name] for run in runs]) for name in (runs[0].curves if runs else ())}
+
+
+@dataclass(frozen=True, eq=False)
+class CorrectedCam(ExactCam):
+    """An exact cam whose surfaces lie at smooth deviations from the nominal ones, above 0 for metal too much, mm."""
+
+    exact: ExactCam
+    deviations: Mapping[str, Smooth]
+
+    @property
+    def cam(self) -> Cam:
+        """The nominal cam."""
+        return self.exact.cam
+
+    @property
+    def law(self) -> Lift | Displacement | Transmission:
+        """That of the recipe."""
+        return self.exact.law
+
+    @property
+    def judged_law(self) -> Piecewise | Transmission:
+        """That of the recipe."""
+        return self.exact.judged_law
+
+    @property
+    def follower(self) -> Follower:
+        """That of the recipe."""
+        return self.exact.follower
+
+    @property
+    def motion(self) -> Position:
+        """That of the recipe."""
+        return self.exact.motion
+
+    @property
+    def gap(self) -> float:
+        """Axial gap between discs, mm."""
+        return self.exact.gap
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The corrected surfaces."""
+        return tuple(self._corrected(surface) for surface in self.exact.surfaces)
+
+    def _corrected(self, surface: Surface) -> Surface:
+        by = Spline(surface.side * self.deviations[surface.name].pieces)
+        return replace(surface, curve=moved(surface.curve, by))
+
+    @cached_property
+    def on_metal(self) -> dict[str, Corrected]:
+        """The follower on metal that lies so, by the surface."""
+        sides = {surface.name: surface.side for surface in self.exact.surfaces}
+        gauges = self.exact.gauges.items()
+        return {name: Corrected.of(gauge, sides[name], self.deviations[name]) for name, gauge in gauges}
+
+    @cached_property
+    def gauges(self) -> dict[str, Gauge]:
+        """What kin judges them by."""
+        return dict(self.on_metal)
+
+    @cached_property
+    def running(self) -> dict[str, Gauge]:
+        """The same of the follower itself, where gauges are wider."""
+        return {name: self.on_metal[name].run_by(follower) for name, follower in self.exact.running.items()}
+
+    def grown(self, out: float, scale: float) -> ExactCam:
+        """The nominal cam grown, and as far off."""
+        curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
+        return CorrectedCam(self.exact.grown(out, scale), curves)
+
+
+def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
+    """A cam less a share of what the runs of a recipe show too much, drawn at a scale; see `Alteration`.
+
+    Raises CallError where there are sharp corners, or the follower would not reach into a hollow.
+    """
+    if not all(surface.curve.closed for surface in exact.surfaces):
+        raise CallError("a contour with sharp corners is not corrected: leave `correct` out")
+    curves = {name: total.times(-share * scale) for name, total in totals(recipe, design).items()}
+    cam = CorrectedCam(exact, curves)
+    for name, follower in cam.on_metal.items():
+        fold = follower.metal.fold()
+        if fold is not None:
+            where = f"{degrees(fold):.6g} degrees" + (f" of the {name}" if name else "")
+            remedy = "smooth what was measured over more points, or give less"
+            raise CallError(f"the corrected contour has a hollow at {where} that the follower does not reach: {remedy}")
+    return cam

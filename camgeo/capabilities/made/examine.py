@@ -1,0 +1,113 @@
+"""What points of earlier runs tell of a recipe's export: the deviations of each, and what corrected files change."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.capabilities.made.correction import runs_made
+from camgeo.capabilities.made.judge import follower_motion
+from camgeo.capabilities.made.keys import CORRECT, Made
+from camgeo.common.errors import CallError
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.registry.capability import Results
+from kin.made.motion import COVERAGE, contact_errors, paired
+from kin.made.smooth import Smooth
+from kin.numeric.angles import degrees
+from kin.numeric.feet import equal_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.capabilities.made.correction import RunMade
+    from camgeo.common.clock import Clock
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+LOOKS = 1440  # places round a contour at which a curve is looked at
+
+
+def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
+    """Give the section `made`; nothing without points. Raises RecipeErrors for points that are none of this part."""
+    made = recipe.of(Made)
+    if made is None or not made.points or not design.contours:
+        return Results()
+    if design.trimmed:
+        problem = "a contour whose undercut is cut off is not held against points"
+        raise recipe.error("made.points", problem, None, "give undercut: refuse")
+    try:
+        with clock.stage("made"):
+            runs = runs_made(recipe, design)
+    except CallError as error:
+        raise recipe.error("made.points", str(error)) from error
+    totals = {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
+    entry = {
+        "unit": UNIT_NAMES[recipe.units],
+        "runs": [_run(recipe, run) for run in runs],
+        "corrections": [
+            _correction(recipe, design, totals, share, names) for share, names in _corrected_files(recipe).items()
+        ],
+    }
+    return Results({"made": entry})
+
+
+def _run(recipe: Recipe, run: RunMade) -> dict[str, Any]:
+    """The smoothed deviation of a run: its greatest and mean size, and expanded uncertainty."""
+    t = equal_steps(LOOKS)
+    surfaces = []
+    for name, curve in run.curves.items():
+        e = curve.rows(t)[0]
+        surfaces.append(
+            {
+                "name": name,
+                "points": run.points[name],
+                "spans": curve.spans,
+                "greatest": float(e[np.argmax(np.abs(e))]) / recipe.mm,
+                "rms": float(np.sqrt(np.mean(e**2))) / recipe.mm,
+                "uncertainty": COVERAGE * float(curve.deviations(t).max()) / recipe.mm,
+            }
+        )
+    return {"files": list(run.files), "surfaces": surfaces}
+
+
+def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
+    """Names of the files that are corrected, by their share."""
+    files: dict[float, list[str]] = {}
+    for request in recipe.export.files:
+        for one in request.compensation.altered if request.compensation else ():
+            if one.key == CORRECT.name:
+                files.setdefault(one.value, []).extend(recipe.filenames(request))
+    return files
+
+
+def _correction(
+    recipe: Recipe, design: Design, totals: Mapping[str, Smooth], share: float, names: list[str]
+) -> dict[str, Any]:
+    """What a share takes off, and what that alone would do to the motion of a part that came out as it is drawn."""
+    t = equal_steps(LOOKS)
+    shaft = equal_steps(recipe.verify.angles)
+    each, greatest, uncertain = {}, 0.0, 0.0
+    for surface in design.exact.surfaces:
+        gauge, curve = design.exact.gauges[surface.name], totals[surface.name].times(-share)
+        each[surface.name] = paired(gauge, contact_errors(gauge, surface.side, curve, shaft))
+        e = curve.rows(t)[0]
+        greatest = max(greatest, float(e.max()), float(e.min()), key=abs)
+        uncertain = max(uncertain, COVERAGE * float(curve.deviations(t).max()))
+    motion, _ = follower_motion(design, each)
+    swings = design.exact.gauge.unit == "deg"
+    scale = math.degrees(1.0) if swings else 1.0 / recipe.mm
+    worst = int(np.argmax(np.abs(motion.remaining)))
+    return {
+        CORRECT.name: share,
+        "files": names,
+        "greatest": greatest / recipe.mm,
+        "uncertainty": uncertain / recipe.mm,
+        "motion": {
+            "unit": "deg" if swings else UNIT_NAMES[recipe.units],
+            "offset": scale * motion.offset,
+            "change": scale * float(motion.remaining[worst]),
+            "at_deg": degrees(float(motion.shaft[worst])),
+        },
+    }

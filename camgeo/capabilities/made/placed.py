@@ -1,0 +1,156 @@
+"""Points of the surfaces of a part, out of the files that hold them: in the drawing's axes, placed as a call asks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.made.reading import OnSurface, averaged, disc_of, sorted_out, tables_of
+from camgeo.common.errors import CallError
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.synthesis.intent import intents
+from kin.made.points import Placing, demand_alike, demand_round, settled, turned_at
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.made.reading import Probing
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.judge.intent import PartIntent
+    from kin.read.points import PointTable
+
+BORE = 0.05  # of its diameter: points so near to it are on the bore
+LIFT_KINDS = "a lift is of a cam with one surface and one contact; give points x,y of this one"
+
+
+@dataclass(frozen=True, eq=False)
+class DiscPoints:
+    """Points of one disc.
+
+    surfaces   each of its surfaces with its points; empty where no file is of this disc
+    placing    that was taken out (`align`)
+    """
+
+    part: PartIntent
+    surfaces: tuple[OnSurface, ...] = ()
+    placing: Placing = Placing()
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points of a part.
+
+    every      each disc of the part
+    lifts      zero of the readings, mm or rad, and turn of their angles, rad, of lifts alone
+    remarks    sentences
+    unit       mm in the unit of the files
+    """
+
+    every: tuple[DiscPoints, ...]
+    lifts: tuple[float, float] | None
+    remarks: tuple[str, ...]
+    unit: float
+
+    @property
+    def discs(self) -> tuple[DiscPoints, ...]:
+        """Those that have points."""
+        return tuple(disc for disc in self.every if disc.surfaces)
+
+    @property
+    def missing(self) -> tuple[DiscPoints, ...]:
+        """Those of which there is no file."""
+        return tuple(disc for disc in self.every if not disc.surfaces)
+
+
+def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Probing, first: int = 0) -> Points:
+    """Points of a part, out of files of which the first is the `first` of several calls, counted from 0.
+
+    Raises CallError for what is no file of points, and as kin does for points that are not on its contours.
+    """
+    tables, parts = tables_of(paths), intents(recipe, design)
+    scale, remarks = _scale(recipe, tables, probing.units)
+    if any(table.measured == "lift" for table in tables):
+        lifts, placed = _of_lifts(parts, tables, scale, probing)
+        return Points((_disc(recipe, parts[0], placed, ""),), lifts, tuple(remarks), scale)
+    pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
+    for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
+        pieces[disc_of(path, first + place, len(parts)) if len(parts) > 1 else 0].append((place, table, scale))
+    discs = [
+        _disc(recipe, part, sorted_out(part, piece, probing), probing.align) if piece else DiscPoints(part)
+        for part, piece in zip(parts, pieces, strict=True)
+    ]
+    return Points(tuple(discs), None, tuple(remarks), scale)
+
+
+def demand_discs(missing: Sequence[DiscPoints]) -> None:
+    """Raise CallError where there are discs without points."""
+    if missing:
+        names = " and ".join(disc.part.name for disc in missing)
+        raise CallError(f"points of the disc {names} are missing: give a file for each disc")
+
+
+def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align: str) -> DiscPoints:
+    """Place the points of a disc by the unknowns of `align`, and average those that were measured again."""
+    _demand_outside(recipe, surfaces)
+    points = [one.points for one in surfaces]
+    demand_round(points)
+    placing = Placing()
+    if align:
+        placing = turned_at(points, "g")
+        if align != "g":
+            placing = settled([one.placed(placing) for one in points], align)
+        points = [one.placed(placing) for one in points]
+    demand_alike(points, aligned=bool(align))
+    placed = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
+    return DiscPoints(part, tuple(placed), placing)
+
+
+def _scale(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
+    """Mm in a unit of the points: what their headings state, else what is given, else the recipe's with a remark."""
+    stated = {table.unit for table in tables if table.unit is not None}
+    if len(stated) > 1:
+        raise CallError("the files are in different units: give each in a call of its own")
+    if stated and units is not None and abs(next(iter(stated)) / units - 1.0) > 1e-9:
+        raise CallError(f"a heading states a unit of {next(iter(stated)):.6g} mm; leave --units out")
+    if stated or units is not None:
+        return next(iter(stated), units or 1.0), []
+    return recipe.mm, [f"no heading states a unit: the points are taken in that of the recipe, {recipe.units}; --units"]
+
+
+def _of_lifts(
+    parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing
+) -> tuple[tuple[float, float], list[OnSurface]]:
+    """Points of the metal by the lifts of an indicator."""
+    from kin.made.lifts import points_of_lifts
+
+    surface = parts[0].surfaces[0]
+    single = len(parts) == 1 and len(parts[0].surfaces) == 1 and len(surface.gauge.contacts) == 1
+    if not single or parts[0].linkage is not None:
+        raise CallError(LIFT_KINDS)
+    if any(table.measured != "lift" for table in tables):
+        raise CallError("some files have lifts and others places: give them in calls of their own")
+    if probing.align == "gxy":
+        raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
+    shaft = np.radians(np.concatenate([table.columns["angle"] for table in tables]))
+    lift = np.concatenate([table.columns["lift"] for table in tables])
+    swings = surface.gauge.unit == "deg"
+    if not swings and any(table.degrees for table in tables):
+        raise CallError("its lifts are in degrees, and the follower of this cam does not swing")
+    lift = np.radians(lift) if swings else lift * scale
+    lifts = points_of_lifts(surface.gauge, surface.side, shaft, lift, probing.ball, aligned=bool(probing.align))
+    files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
+    lines = np.concatenate([table.lines for table in tables])
+    return (lifts.zero, lifts.turn), [OnSurface(surface, lifts.points, files, lines, len(lines))]
+
+
+def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:
+    """Raise CallError for points of the bore."""
+    bore = recipe.part.bore
+    radius = np.concatenate([np.hypot(one.points.places[:, 0], one.points.places[:, 1]) for one in points])
+    if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
+        across = f"{bore / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} across"
+        raise CallError(f"the points lie on the bore, {across}: measure the contour")

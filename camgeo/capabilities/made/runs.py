@@ -1,0 +1,123 @@
+"""Key `made.points`: the files of points of each run of parts, in the order in which they were made."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.motions.lift_table import read_path
+from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, length, mapping
+from camgeo.schema.scalars import MOST_TEXT
+from camgeo.schema.yaml_source import Mapping, Sequence, described, join
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    import collections.abc
+
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
+
+ALIGN = {"none": "", "rotation": "g", "best-fit": "gxy"}
+"""What `align` frees: unknowns of a placing by least squares."""
+UNITS = {"mm": 1.0, "inch": 25.4}
+
+
+@dataclass(frozen=True)
+class PointFile:
+    """A file of points, its path as seen from the recipe.
+
+    units   mm in its unit where its heading states none; None for that of the recipe
+    align   unknowns that are placed by least squares: of g, x, y
+    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    error   expanded uncertainty (k = 2) of a point, mm
+    """
+
+    file: str
+    units: float | None = None
+    align: str = ""
+    ball: float | None = None
+    error: float | None = None
+
+
+Run = tuple[PointFile, ...]
+
+
+_FILE = Form(
+    "the path of a file",
+    "the path of a file of points, such as run1.csv",
+    read_path,
+    lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
+)
+POINT_FILE = Table(
+    (
+        Field("file", Kind.OWN, "its path as seen from the recipe", required=True, form=_FILE),
+        Field("units", Kind.CHOICE, "unit of a file whose heading states none", default="the recipe's", choices=UNITS),
+        Field("align", Kind.CHOICE, "how the points are placed by least squares", default="none", choices=ALIGN),
+        mapping(
+            "probe",
+            "what measured them",
+            length("radius", "radius of the ball whose centres they are; of lifts, of its roller"),
+            length("error", "expanded uncertainty (k = 2) of a point along its normal"),
+        ),
+    )
+)
+
+
+def _read(reader: Reader, field: Field, node: Node, path: str) -> tuple[Run, ...] | None:
+    """Read runs: a file each, or a list of files that are taken together."""
+    runs = []
+    for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
+        below = join(path, i)
+        nodes = [(item, below)]
+        if isinstance(item, Sequence):
+            nodes = [(one, join(below, k)) for k, one in enumerate(reader.items(field, item, below, MOST_FILES))]
+        files = [_point_file(reader, field, one, place) for one, place in nodes]
+        runs.append(tuple(one for one in files if one is not None))
+    return tuple(runs) or None
+
+
+def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFile | None:
+    if isinstance(node, Mapping):
+        values: Values | None = reader.field(Field("", Kind.TABLE, "", table=POINT_FILE), node, path)
+        if values is None or "file" not in values:
+            return None
+        probe = values.get("probe", {})
+        units, align = UNITS.get(values.get("units", "")), ALIGN[values.get("align", "none")]
+        return PointFile(values["file"], units, align, probe.get("radius"), probe.get("error"))
+    if isinstance(node, Sequence):
+        reader.fault(node.mark, path, "not the path of a file", described(node), reader.wanted(field))
+        return None
+    name = read_path(reader, field, node, path)
+    return None if name is None else PointFile(name)
+
+
+def _schema(_: Field) -> Schema:
+    from camgeo.schema.json_schema import table_schema
+
+    one = {"anyOf": [{"type": "string", "minLength": 1, "maxLength": MOST_TEXT}, table_schema(POINT_FILE)]}
+    some = {"type": "array", "items": one, "minItems": 1, "maxItems": MOST_FILES}
+    return {"type": "array", "items": {"anyOf": [one, some]}, "minItems": 1, "maxItems": MOST_FILES}
+
+
+POINTS = Field(
+    "points",
+    Kind.OWN,
+    "files of points of parts, in the order made, each from the export before it; of one run in a list",
+    form=Form(
+        "a list of files of points",
+        "a list of files of points such as [run1.csv, [run2a.csv, run2b.csv]]",
+        _read,
+        _schema,
+        tables={"file": POINT_FILE},
+        group="the points",
+    ),
+)
+
+
+def places_of(runs: collections.abc.Sequence[Run]) -> list[tuple[str, PointFile]]:
+    """Each file of the runs with its place below `made.points`."""
+    return [
+        (f"made.points[{i}]" + (f"[{k}]" if len(run) > 1 else ""), file)
+        for i, run in enumerate(runs)
+        for k, file in enumerate(run)
+    ]

@@ -1,0 +1,139 @@
+"""A curve moved along its normals by a distance that varies: what is made in place of another for what a machine does.
+
+With f over the curve's parameter the point is ``c + f N``, N the outward normal, and its derivative
+``(sigma + f omega) T + f' N``: its speed is the length of that, and its tangent turns as T does less the angle by which
+it leaves T.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds, Curve, Frame, Shape
+from camgeo.curve.parallel import Parallel
+from camgeo.curve.rates import bounds_of, cut
+from kin.numeric import elementary
+from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
+from kin.numeric.feet import equal_steps
+from kin.numeric.jet import Jet, horner
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
+
+NEAR = 1e-9  # rad: of a knot and a parameter that are one
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """A periodic function over a turn, mm: on each of N equal spans a polynomial.
+
+    `pieces` (k, N) has the coefficients of each span, lowest first, by the place in it, which runs from 0 to 1.
+    """
+
+    pieces: Array
+
+    @property
+    def knots(self) -> Array:
+        """Where spans begin (N,), rad."""
+        count = self.pieces.shape[1]
+        return equal_steps(count)
+
+    def on(self, tau: Series, side: Side = 1) -> Series:
+        """The function as a jet or ball jet of the parameter, whose points or intervals lie in a span each."""
+        count = self.pieces.shape[1]
+        width = TURN / count
+        middle = tau.c[0] if isinstance(tau, Jet) else tau.mid[0]
+        begin = np.floor((middle + NEAR * np.asarray(side)) / width)
+        place = (tau - begin * width) * (1.0 / width)
+        value: Series = horner(self.pieces[:, np.mod(begin, count).astype(np.intp)], place)
+        return value
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Curve `by` outside `base` along its normals."""
+
+    base: Shape
+    by: Spline
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        return self.base.period
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Breaks of the base, and knots that are none of these."""
+        breaks, knots = np.asarray(self.base.breaks, dtype=np.float64), self.by.knots
+        if len(breaks):
+            apart = np.abs(np.mod(knots[:, None] - breaks + np.pi, TURN) - np.pi).min(axis=1)
+            knots = knots[apart > NEAR]
+        return distinct(np.concatenate([breaks, knots]))
+
+    @property
+    def repeats(self) -> int:
+        """No equal parts."""
+        return 1
+
+    @property
+    def steady(self) -> Array:
+        """No stretch of constant speed and turn (m, 2)."""
+        return np.full((len(self.breaks), 2), np.nan)
+
+    @property
+    def radii(self) -> Array:
+        """No stretch that is a circular arc (m,)."""
+        return np.full(len(self.breaks), np.nan)
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(t, side)
+        off, slope = self.by.on(Jet.variable(t, 1), side).c
+        along = at.speed + off * at.turn
+        tangent = along[:, None] * at.tangent + slope[:, None] * at.normal
+        speed, turn = self.series(t, 1, side)
+        point = at.point + off[:, None] * at.normal
+        return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.rates(Jet.variable(t, order + 3), side)
+        return speed.c[: order + 1], turn.c[: order + 1]
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        return bounds_of(self._figures, low, high, self._rates)
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series, of an order fewer than the base's."""
+        return self._rates(self._figures(tau, side))
+
+    def _figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        """Speed and turn of the base, and the distance."""
+        speed, turn = self.base.rates(tau, side)
+        return speed, turn, self.by.on(tau, side)
+
+    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        speed, turn, off = figures
+        out = off.derivative()
+        order = min(speed.order, turn.order, out.order)
+        turn, out = cut(turn, order), cut(out, order)
+        along = cut(speed, order) + cut(off, order) * turn
+        square = along**2 + out**2
+        away = out.derivative() * cut(along, order - 1) - cut(out, order - 1) * along.derivative()
+        return elementary.sqrt(square), cut(turn, order - 1) - away * cut(square, order - 1) ** -1
+
+
+def moved(curve: Curve, by: Spline) -> Curve:
+    """A whole curve moved along its normals; one that is a roller's contour is again a parallel of a pitch curve."""
+    shape, out = curve.shape, Moved(curve.shape, by)
+    if isinstance(shape, Parallel):
+        return Curve.whole(Parallel(Parallel(out, -shape.distance), shape.distance))
+    return Curve.whole(out)

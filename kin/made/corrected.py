@@ -1,0 +1,270 @@
+"""What judges a part that is meant to lie off the exact contour: metal corrected for what a machine does to it.
+
+The contour is that metal, and the motion that it is meant to give is contact on it. Both are found beside the exact
+follower: what a contact feels of a file is taken less what it would feel of the metal beyond the exact contour. So the
+motion that is left is held against the recipe's, and play against none, as of a part that is not corrected.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import cross, dot, left
+from kin.follower.base import Closure, Follower
+from kin.follower.drive import extremes_between
+from kin.follower.envelope import Frames
+from kin.follower.motion_error import Judged, Play, motion_error, with_steps
+from kin.made.motion import derivatives_of, metal_of, positions_about, step_of
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.feet import Feet, equal_steps, gauss
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.contour import Contour
+    from kin.follower.base import IntendedMotion, Rests
+    from kin.follower.drive import Excitation
+    from kin.law.contacts import Side
+    from kin.made.metal import Metal
+    from kin.made.smooth import Smooth
+    from kin.numeric.arrays import Array
+
+NEWTON_STEPS = 6  # from the exact contour's foot: the last changes nothing
+DIFFERENCE = 1e-3  # rad, of a place on the metal: above rounding, far below a span
+LIMIT_ANGLES = 720  # shaft angles at which the effect of a tolerance is found
+
+
+@dataclass(frozen=True, eq=False)
+class MetalEnvelope:
+    """The contour of corrected metal over the exact contour's parameter, or its parallel `inside` of it, mm."""
+
+    metal: Metal
+    curve: Smooth
+    inside: float = 0.0
+
+    @property
+    def regular(self) -> bool:
+        """Whether the exact contour is."""
+        return self.metal.follower.envelope.regular
+
+    @property
+    def extent(self) -> float:
+        """That of the exact contour."""
+        return self.metal.follower.envelope.extent
+
+    def frames(self, parameter: Array) -> Frames:
+        """Points, outward normals and their rates."""
+        t = np.asarray(parameter, dtype=float)
+        exact = self.metal.follower.envelope.frames(t)
+        off, slope, bend = self.metal.side * self.curve.rows(t, 2)
+        along = exact.speed + off * exact.turn
+        speed = np.hypot(along, slope)
+        normal = (along[:, None] * exact.normals - slope[:, None] * left(exact.normals)) / speed[:, None]
+        after, before = (self._along(t + step) for step in (DIFFERENCE, -DIFFERENCE))
+        turn = exact.turn - (bend * along - slope * (after - before) / (2.0 * DIFFERENCE)) / speed**2
+        points = exact.points + off[:, None] * exact.normals - self.inside * normal
+        return Frames(points, normal, speed - self.inside * turn, turn)
+
+    def _along(self, t: Array) -> Array:
+        exact = self.metal.follower.envelope.frames(t)
+        along: Array = exact.speed + self.metal.side * self.curve.rows(t)[0] * exact.turn
+        return along
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the exact contour."""
+        return self.metal.follower.envelope.breaks
+
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2), mm."""
+        return self.frames(parameter).points
+
+    def feet(self, points: Array) -> Feet:
+        """Feet of points (n, 2), from those on the exact contour by Newton's method."""
+        t = self.metal.follower.envelope.feet(points).parameter
+        for _ in range(NEWTON_STEPS):
+            frame = self.frames(t)
+            away = points - frame.points
+            t = t + dot(away, left(frame.normals)) / (frame.speed + dot(away, frame.normals) * frame.turn)
+        frame = self.frames(t)
+        excess = dot(points - frame.points, frame.normals)
+        return Feet(t, excess, frame.normals, frame.turn / (frame.speed + excess * frame.turn))
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature (m,), mm."""
+        t = self.metal.places
+        frame = self.frames(t)
+        return t, frame.speed / np.where(frame.turn == 0.0, np.finfo(float).tiny, frame.turn)
+
+    def area_and_perimeter(self) -> tuple[float, float]:
+        """Enclosed area, mm^2, and length, mm, by quadrature between the splines' knots."""
+        t, weight = gauss(np.concatenate([self.breaks, equal_steps(self.curve.spans)]))
+        frame = self.frames(t)
+        tangent = left(frame.normals)
+        return float(0.5 * weight @ (frame.speed * cross(frame.points, tangent))), float(weight @ frame.speed)
+
+    def inset(self, distance: float) -> MetalEnvelope:
+        """Give the parallel contour inside."""
+        return replace(self, inside=self.inside + distance)
+
+
+class _Beyond(NamedTuple):
+    """What a contact that rests on a contour does beyond what it does on corrected metal, in SI, as an excitation."""
+
+    drive: Excitation
+    follower: Corrected
+    contact: int
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the contour, of the law and of the metal."""
+        return np.concatenate([self.drive.breaks, self.follower.motion.breaks, self.follower.metal_breaks])
+
+    @property
+    def smooth(self) -> bool:
+        """As the contour is."""
+        return self.drive.smooth
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        outwards = self.follower.contacts[self.contact].sense  # own positions grow outwards
+        rows: Array = self.drive.rows(phi) - outwards * self.follower.si * self.follower.added(phi)[self.contact]
+        return rows
+
+
+@dataclass(frozen=True, eq=False)
+class _Meant:
+    """The intended motion as an excitation, in SI."""
+
+    follower: Follower
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the law."""
+        return self.follower.motion.breaks
+
+    @property
+    def smooth(self) -> bool:
+        """Whether velocity is one at all breaks: it is, of laws that cams are made of."""
+        return True
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        rows: Array = self.follower.si * self.follower.motion.derivatives(phi, 2)[:3]
+        return rows
+
+
+@dataclass(frozen=True, eq=False)
+class Corrected(Follower):
+    """A follower on metal that is meant to lie at the smooth deviation `curve` from the exact contour of a gauge.
+
+    `exact` is the follower itself, whose contacts these are: the gauge, or one that has a clearance to it.
+    """
+
+    exact: Follower
+    metal: Metal
+    curve: Smooth
+
+    @staticmethod
+    def of(gauge: Follower, side: Side, curve: Smooth) -> Corrected:
+        """Make it of a gauge, the side of its contour on which the metal lies, and the deviation of the metal."""
+        return Corrected(gauge.contacts, gauge, metal_of(gauge, side, curve), curve)
+
+    def run_by(self, follower: Follower) -> Corrected:
+        """Another follower of that motion on the same metal."""
+        return replace(self, contacts=follower.contacts, exact=follower)
+
+    @property
+    def motion(self) -> IntendedMotion:
+        """That of the recipe, which the metal's own change is taken out to be held against."""
+        return self.exact.motion
+
+    @property
+    def rests(self) -> Rests:
+        """Those of the recipe's motion."""
+        return self.exact.rests
+
+    @cached_property
+    def envelope(self) -> MetalEnvelope:
+        """The contour of the metal."""
+        return MetalEnvelope(self.metal, self.curve)
+
+    @property
+    def closure(self) -> Closure | None:
+        """Play beyond that on the metal, by which a contour within the tolerance moves both contacts at most."""
+        closure = self.exact.closure
+        if closure is None:
+            return None
+        return Closure(lambda tolerance: sum(self._limits(tolerance)), closure.name, closure.tight, lever=2.0)
+
+    @property
+    def lever(self) -> float:
+        """That of the follower."""
+        return self.exact.lever
+
+    def shaft_angle(self, parameter: Array) -> Array:
+        """Shaft angle at which the exact contour is touched there (n,)."""
+        return self.exact.shaft_angle(parameter)
+
+    def drives(self, contour: Contour) -> Sequence[Excitation]:
+        """What each contact feels of a contour, less what the change of the metal adds to it."""
+        return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
+
+    def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
+        """See `Follower`."""
+        return self.exact.pressed(contour, phi)
+
+    def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
+        """See `Follower`."""
+        return self.exact.touching(points, normals)
+
+    def added(self, shaft: Array) -> Array:
+        """What the change of the metal adds to each contact's position, and two derivatives by the shaft angle.
+
+        (c, 3, n) at shaft angles (n,), mm or radians.
+        """
+        step = step_of(self.curve)
+        errors, _ = positions_about(self.metal, shaft, step)
+        return derivatives_of(errors, step)
+
+    @cached_property
+    def metal_breaks(self) -> Array:
+        """Shaft angles at which a contact stands on a break of the contour."""
+        points, normals = self.metal.surface(self.metal.follower.envelope.breaks)
+        angles = [angle for angle, _ in self.metal.gauge.touching(points, normals)]
+        return np.mod(np.concatenate(angles), TURN)
+
+    def judge(self, contour: Contour, phi: Array) -> Judged:
+        """Motion beyond that on the metal, and play beyond it; see `Follower`."""
+        rests, meant = self.resting(contour), _Meant(self.exact)
+        size = self.si * float(np.abs(contour.vertices).max()) if self.unit == "mm" else 1.0
+        each = [extremes_between(meant, rest, size).worst for rest in rests]
+        worst, at = max(each)
+        every = with_steps(phi)
+        errors = np.stack([rest.rows(every)[0] - meant.rows(every)[0] for rest in rests]) / self.si
+        motion = motion_error((worst / self.si, at), errors, None, self.unit)
+        if len(rests) == 1:
+            return Judged(motion, None)
+        pushing, stopping = rests if self.contacts[0].sense > 0 else reversed(rests)
+        gap = extremes_between(pushing, stopping, size)
+        scale = math.degrees(1.0) if self.unit == "deg" else 1.0 / self.si
+        least, most = ((scale * gap.least, degrees(gap.least_at)), (scale * gap.greatest, degrees(gap.greatest_at)))
+        return Judged(motion, Play(*least, *most, self.unit))
+
+    def motion_limit(self, tolerance: float) -> float:
+        """Greatest motion error, mm or degrees, of a contour within `tolerance` of the metal."""
+        return max(self._limits(tolerance))
+
+    def _limits(self, tolerance: float) -> list[float]:
+        """How far each contact moves at most, mm or degrees, as all metal is raised or lowered by a tolerance."""
+        shaft = equal_steps(LIMIT_ANGLES)
+        here, _ = self.metal.positions(shaft)
+        moved = [self.metal.raised(height).positions(shaft)[0] - here for height in (tolerance, -tolerance)]
+        scale = math.degrees(1.0) if self.unit == "deg" else 1.0
+        most: list[float] = (scale * np.abs(np.stack(moved)).max(axis=(0, 2))).tolist()
+        return most
