@@ -133,6 +133,18 @@ def solids(count: float) -> Callable[[], object]:
     return work
 
 
+def large(length: float) -> Callable[[], object]:
+    """Make and judge the STL of two discs, the second arm so long, mm; the size is the edges of both."""
+    recipe = load(RECIPES / "conjugate-arm.yaml").replace("cam.conjugate.length", length)
+
+    def work() -> int:
+        with tempfile.TemporaryDirectory() as folder:
+            files = export(recipe, Path(folder), only=("stl",)).report["files"]
+        return sum(int(file["pieces"]) for file in files)
+
+    return work
+
+
 def judged(name: str) -> Callable[[float], Callable[[], object]]:
     """Judge a polygon with so many vertices, on the exact contour of a shipped recipe, at 3600 angles."""
     recipe = load(RECIPES / f"{name}.yaml")
@@ -217,6 +229,7 @@ def growing() -> Iterator[Row]:
     yield Row("polygon, disc-roller, 1e-3 to 1e-9 mm, edges", edges, polygons("disc-roller"))
     decades = (1e3, 1e4, 1e5, 1e6)
     yield Row("STL of a ring, edges", decades, solids)
+    yield Row("STL of a pair whose second arm is 3e3 to 3e4 mm long, edges", (3e3, 1e4, 2e4, 3e4), large)
     for name in ("shu-wu", "disc-roller", "disc-flat", "w-figure-5", "w-figure-9"):
         yield Row(f"judge, {name}, pieces", decades, judged(name))
     few = (10.0, 30.0, 100.0, 300.0, 1000.0)
@@ -226,6 +239,8 @@ def growing() -> Iterator[Row]:
         for form in ("", "arcs", "polygon", "spline", "export"):
             sizes = (2.0, 4.0, 10.0, 20.0, 50.0, 100.0)
             yield Row(f"segments, {name}, {form or 'design'}", sizes, made(segments(cam, over, bent), form))
+    breaks = (59.0, 119.0, 239.0, 479.0)
+    yield Row("breaks of a disc roller's points, polygon", breaks, made(lambda count: points(count + 1.0), "polygon"))
     sizes = (3.0, 7.0, 19.0, 49.0, 99.0, 199.0)
     for name, make in (
         ("support", harmonics),

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.contour.arcs import Arcs, circle, cross, dot, left, right
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,49 +70,76 @@ def extent(pieces: Arcs) -> float:
     return float(np.abs(pieces.start).max())
 
 
-def first_contact(obstacle: Arcs, guide: Guide, phi: Array, share: float = 1.0) -> tuple[Array, Indices]:
-    """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
+@dataclass(frozen=True, eq=False)
+class Search:
+    """An obstacle made ready for searches at any shaft angles: what the centre can meet, and from which angles.
 
-    From within if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,)
-    in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of
-    piece and angle that can meet. Where nothing is met, as by rounding at the joints of walls along the centre's own
-    path, the slack, `share` of the guide's own, is widened.
+    `obstacle` is the dilated contour, `pieces` are its short ones within reach (k,), `owner` the piece each is part of
+    (k,). Each is met from shaft angles of `low` to `low` + `width` (k,), rad. `slack`, mm, is `share` of the guide's.
     """
-    slack = share * guide.slack(extent(obstacle))
-    pieces, owner = shortened(obstacle, guide)
-    within = within_reach(pieces, guide, slack)
-    pieces, owner = pieces.take(within), owner[within]
-    middle, reach = angles_of(pieces, guide, slack)
-    turn = 2.0 * np.pi
-    order = np.argsort(np.mod(phi, turn), kind="stable")
-    angle = np.mod(phi, turn)[order]
-    low = np.mod(middle - reach, turn)
-    ring = np.concatenate([angle, angle + turn])
-    first = np.searchsorted(ring, low, side="left")
-    count = np.minimum(np.searchsorted(ring, low + 2.0 * reach, side="right") - first, len(angle))
-    best = np.full(len(angle), -np.inf)
-    met = np.full(len(angle), -1)
-    total = np.cumsum(count)
-    begin = 0
-    while begin < len(pieces):
-        end = max(begin + 1, int(np.searchsorted(total, total[begin] - count[begin] + PAIRS_AT_ONCE, side="right")))
-        chosen = np.arange(begin, end)
-        piece = np.repeat(chosen, count[chosen])
-        number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
-        index = (first[piece] + number) % len(angle)
-        height = meet(pieces.take(piece), guide, angle[index], slack)
-        np.maximum.at(best, index, height)
-        won = (height == best[index]) & np.isfinite(height) & (height != 0.0)
-        met[index[won]] = piece[won]
-        begin = end
-    radius, piece_met = np.full(len(angle), np.nan), np.full(len(angle), -1)
-    touched = met >= 0
-    radius[order[touched]] = guide.away * best[touched]
-    piece_met[order[touched]] = owner[met[touched]]
-    missed = np.flatnonzero(piece_met < 0)
-    if share < WIDER and len(missed):
-        radius[missed], piece_met[missed] = first_contact(obstacle, guide, phi[missed], WIDER)
-    return radius, piece_met
+
+    obstacle: Arcs
+    guide: Guide
+    share: float
+    slack: float
+    pieces: Arcs
+    owner: Indices
+    low: Array
+    width: Array
+
+    @staticmethod
+    def of(obstacle: Arcs, guide: Guide, share: float = 1.0) -> Search:
+        """Prepare an obstacle: the cost grows with its pieces."""
+        slack = share * guide.slack(extent(obstacle))
+        pieces, owner = shortened(obstacle, guide)
+        within = within_reach(pieces, guide, slack)
+        pieces, owner = pieces.take(within), owner[within]
+        middle, reach = angles_of(pieces, guide, slack)
+        low = np.mod(middle - reach, 2.0 * np.pi)
+        return Search(obstacle, guide, share, slack, pieces, owner, low, 2.0 * reach)
+
+    def first(self, phi: Array) -> tuple[Array, Indices]:
+        """Find where the centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
+
+        From within if the guide counts inwards. `phi` (n,) are shaft angles. Returns r (n,) in mm and the index of the
+        piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can
+        meet. Where nothing is met, as by rounding at the joints of walls along the centre's own path, the slack is
+        widened.
+        """
+        turn, guide = 2.0 * np.pi, self.guide
+        order = np.argsort(np.mod(phi, turn), kind="stable")
+        angle = np.mod(phi, turn)[order]
+        ring = np.concatenate([angle, angle + turn])
+        first = np.searchsorted(ring, self.low, side="left")
+        count = np.minimum(np.searchsorted(ring, self.low + self.width, side="right") - first, len(angle))
+        best = np.full(len(angle), -np.inf)
+        met = np.full(len(angle), -1)
+        total = np.cumsum(count)
+        begin = 0
+        while begin < len(self.pieces):
+            end = max(begin + 1, int(np.searchsorted(total, total[begin] - count[begin] + PAIRS_AT_ONCE, side="right")))
+            chosen = np.arange(begin, end)
+            piece = np.repeat(chosen, count[chosen])
+            number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
+            index = (first[piece] + number) % len(angle)
+            height = meet(self.pieces.take(piece), guide, angle[index], self.slack)
+            np.maximum.at(best, index, height)
+            won = (height == best[index]) & np.isfinite(height) & (height != 0.0)
+            met[index[won]] = piece[won]
+            begin = end
+        radius, piece_met = np.full(len(angle), np.nan), np.full(len(angle), -1)
+        touched = met >= 0
+        radius[order[touched]] = guide.away * best[touched]
+        piece_met[order[touched]] = self.owner[met[touched]]
+        missed = np.flatnonzero(piece_met < 0)
+        if self.share < WIDER and len(missed):
+            radius[missed], piece_met[missed] = Search.of(self.obstacle, guide, WIDER).first(phi[missed])
+        return radius, piece_met
+
+
+def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
+    """Search an obstacle once, as `Search.first` does."""
+    return Search.of(obstacle, guide).first(phi)
 
 
 def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:

@@ -19,7 +19,7 @@ import numpy as np
 from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
-from kin.follower.contact import dilated, first_contact, shortened
+from kin.follower.contact import Search, dilated, shortened
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch, leeway
@@ -64,6 +64,13 @@ class OfRoller:
     smooth: ClassVar[bool] = False  # the roller may rest in a hollow
 
     @cached_property
+    def _search(self) -> Search:
+        return Search.of(self.obstacle, self.guide)
+
+    def _touched(self, phi: Array) -> tuple[Array, Indices]:
+        return touched(self._search, phi, self.turned)
+
+    @cached_property
     def breaks(self) -> Array:
         """Where the roller passes from piece to piece; two passages within a millionth of an interval may be lost."""
         ends = self.guide.shaft_angle(np.concatenate([self.obstacle.start, self.obstacle.ends])) - self.turned
@@ -71,19 +78,19 @@ class OfRoller:
         width = np.diff(ends, append=ends[:1] + TURN)
         ends, width = ends[width > 1e-12], width[width > 1e-12]
         low, high = ends + INSET * width, ends + (1.0 - INSET) * width
-        piece = _touched(self.obstacle, self.guide, low, self.turned)[1]
-        leaps = piece != _touched(self.obstacle, self.guide, high, self.turned)[1]
+        piece = self._touched(low)[1]
+        leaps = piece != self._touched(high)[1]
         low, high, piece = low[leaps], high[leaps], piece[leaps]
         for _ in range(HALVINGS if len(low) else 0):
             middle = 0.5 * (low + high)
-            same = _touched(self.obstacle, self.guide, middle, self.turned)[1] == piece
+            same = self._touched(middle)[1] == piece
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return np.sort(np.mod(np.concatenate([ends, low]), TURN))
 
     def rows(self, phi: Array) -> Array:
         """See `Excitation`."""
         guide, angle = self.guide, phi + self.turned
-        r, piece = _touched(self.obstacle, self.guide, phi, self.turned)
+        r, piece = self._touched(phi)
         met = self.obstacle.take(piece)
         position = guide.position(r)
         x = guide.centre(angle, position)
@@ -95,7 +102,7 @@ class OfRoller:
     def pressed(self, phi: Array) -> tuple[Array, Array]:
         """Pressure angle, rad, and radius of curvature of the path of the roller's centre, mm, (n,) each."""
         angle = phi + self.turned
-        r, piece = _touched(self.obstacle, self.guide, phi, self.turned)
+        r, piece = self._touched(phi)
         met = self.obstacle.take(piece)
         position = self.guide.position(r)
         outward = right(met.tangent) + met.curvature[:, None] * (self.guide.centre(angle, position) - met.start)
@@ -308,7 +315,7 @@ def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, se
     if len(obstacle) <= MOST_PIECES:
         pieces, _ = shortened(obstacle, guide)
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *_touched(pieces, guide, phi), offset, sense)
+    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), offset, sense)
 
 
 def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
@@ -341,11 +348,12 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
         ends = one.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
         looked = np.concatenate([looked, phi[np.argsort(error)[-CLOSER:]], ends[np.isfinite(ends)]])
     worst = 0.0, 0.0
+    searches = [Search.of(one.pieces, one.guide) for one in rollers]
     for _ in range(ROUNDS):
         meant = law.rows(looked)
         errors = [
-            np.abs(one.guide.position(_touched(one.pieces, one.guide, looked)[0]) - one.meant(meant.copy())[0])
-            for one in rollers
+            np.abs(one.guide.position(touched(search, looked)[0]) - one.meant(meant.copy())[0])
+            for one, search in zip(rollers, searches, strict=True)
         ]
         error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
@@ -359,9 +367,9 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     return worst
 
 
-def _touched(obstacle: Arcs, guide: Guide, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
+def touched(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
     """Distance from the shaft of a roller held in contact, and the piece it meets, at shaft angles phi (n,)."""
-    r, piece = first_contact(obstacle, guide, phi + turned)
+    r, piece = search.first(phi + turned)
     if (piece < 0).any():
         raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))
     return r, piece
@@ -369,7 +377,7 @@ def _touched(obstacle: Arcs, guide: Guide, phi: Array, turned: float = 0.0) -> t
 
 def held_position(obstacle: Arcs, guide: Guide, phi: Array) -> Array:
     """Position of a roller held in contact, mm or radians (n,). ContactError where it meets nothing."""
-    return guide.position(_touched(obstacle, guide, phi)[0])
+    return guide.position(touched(Search.of(obstacle, guide), phi)[0])
 
 
 def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:

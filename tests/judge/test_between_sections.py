@@ -183,16 +183,40 @@ def test_leans_of_single_walls_and_of_all(
     assert not found or {"thickness", "chamfer", "set-screw"} & set(found)
 
 
+LEANS = [(2e-5, True), (2e-5, False), (1e-4, True), (1e-4, False)]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["ply", "3mf"])
-@pytest.mark.parametrize(("amount", "single"), [(2e-5, True), (1e-4, True), (1e-4, False)])
-def test_leans_in_other_formats(tmp_path: Path, suffix: str, amount: float, single: bool) -> None:
+@pytest.mark.parametrize(("amount", "single"), LEANS)
+def test_leans_in_other_formats(
+    solid: tuple[str, Path, Path], tmp_path: Path, suffix: str, amount: float, single: bool
+) -> None:
     """The bound is that of a format's own numbers: single precision in a PLY, decimals of a 3MF that are finer."""
-    for kind in ("plain", "groove", "camshaft"):
-        (tmp_path / kind).mkdir()
-        recipe, path = exported(kind, tmp_path / kind)
-        spoilt = leaning(path, tmp_path / kind / f"lean.{suffix}", WALLS[kind][1], amount, single=single)
-        assert ("thickness" in failing(recipe, spoilt)) is (amount > 3e-5 or suffix == "3mf")
+    kind, recipe, path = solid
+    found = failing(recipe, leaning(path, tmp_path / f"lean.{suffix}", WALLS[kind][1], amount, single=single))
+    assert bool(found) is (amount > 3e-5 or suffix == "3mf")
+    assert not found or {"thickness", "chamfer", "set-screw"} & set(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("amount", "single"), [(0.0, False), *LEANS])
+def test_leans_in_a_glb_that_is_turned_z_up(
+    solid: tuple[str, Path, Path], tmp_path: Path, amount: float, single: bool
+) -> None:
+    """A glTF is in metres with y upward, in single precision; what another program makes of it is judged as an STL."""
+    kind, recipe, path = solid
+    leans = trimesh.load(leaning(path, tmp_path / "lean.ply", WALLS[kind][1], amount, single=single) if amount else path)
+    x, y, z = leans.vertices.T
+    leans.vertices = 1e-3 * np.column_stack([x, z, -y])
+    leans.export(tmp_path / "lean.glb")
+    turned = trimesh.load(tmp_path / "lean.glb").to_geometry()
+    x, z, y = 1e3 * turned.vertices.T
+    turned.vertices = np.column_stack([x, -y, z])
+    turned.export(tmp_path / "lean.stl")
+    found = failing(recipe, tmp_path / "lean.stl")
+    assert bool(found) is (amount > 3e-5)
+    assert not found or {"thickness", "chamfer", "set-screw"} & set(found)
 
 
 @pytest.mark.parametrize("out", [0.0, 0.05])
