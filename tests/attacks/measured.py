@@ -117,8 +117,10 @@ def probed(rng: Random, number: int) -> Attack:
         return _corrected(rng, number, kind, (name, text))
 
     def judge(done: Done, _: Path) -> list[str]:
-        if done.status == 2 and len(done.err.splitlines()) != 1 and "error: argument" not in done.err:
-            return [f"lines: {len(done.err.splitlines())} lines of complaint"]
+        # a stage that a busy machine takes long for is said too
+        lines = [line for line in done.err.splitlines() if not line.endswith(" s ...")]
+        if done.status == 2 and len(lines) != 1 and "error: argument" not in done.err:
+            return [f"lines: {len(lines)} lines of complaint"]
         return []
 
     return Attack(f"points {number}", tuple(words), {"cam.yaml": recipe.encode(), name: text.encode()}, judge=judge)

@@ -175,7 +175,9 @@ def test_no_home_folder(recipe: Path, tmp_path: Path, home: str | None) -> None:
     recipe.write_text(RECIPE + "export: {files: [dxf]}\n", encoding="utf-8")
     for call in (["export", str(recipe), "--out", out], ["report", str(recipe), "--out", out, "--picture", "png"]):
         done = run(*call, env=surroundings)
-        assert (done.returncode, done.stderr) == (0, b"")
+        # a stage that a busy machine takes long for is said too
+        complaints = [line for line in done.stderr.splitlines() if not line.endswith(b" s ...")]
+        assert (done.returncode, complaints) == (0, [])
 
 
 def test_a_home_folder_of_another_s_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -206,7 +206,9 @@ def test_leans_in_a_glb_that_is_turned_z_up(
 ) -> None:
     """A glTF is in metres with y upward, in single precision; what another program makes of it is judged as an STL."""
     kind, recipe, path = solid
-    leans = trimesh.load(leaning(path, tmp_path / "lean.ply", WALLS[kind][1], amount, single=single) if amount else path)
+    leans = trimesh.load(
+        leaning(path, tmp_path / "lean.ply", WALLS[kind][1], amount, single=single) if amount else path
+    )
     x, y, z = leans.vertices.T
     leans.vertices = 1e-3 * np.column_stack([x, z, -y])
     leans.export(tmp_path / "lean.glb")
