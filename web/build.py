@@ -120,7 +120,14 @@ def python_of_pyodide() -> str | None:
     kept = sorted(known.glob(f"{name}.*/bin/python3"))
     candidates = [*filter(None, [shutil.which(f"python{name}")]), *map(str, kept)]
     ask = f"import sys; sys.exit(sys.version_info[:2] != {MINOR})"
-    return next((path for path in candidates if subprocess.run([path, "-c", ask], check=False).returncode == 0), None)
+    return next(
+        (
+            path
+            for path in candidates
+            if subprocess.run([path, "-c", ask], check=False, stderr=subprocess.DEVNULL).returncode == 0
+        ),
+        None,
+    )
 
 
 def packed() -> bytes:

@@ -11,35 +11,46 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
+import numpy as np
+import yaml
+
 import camgeo
 from camgeo.api.report import explained
 from camgeo.capabilities.follow.command import summary
 from camgeo.capabilities.follow.library import shown
+from camgeo.checks.declared import declaration
+from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.keys import read_values, recipe_table
+from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.report.page import tables
+from camgeo.schema.change import changed
+from camgeo.schema.edit import spelled
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.quantity import parted, units_for
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, join, scalars
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from camgeo.api.design import Design
     from camgeo.api.report import Report
+    from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeError
-    from camgeo.schema.fields import Field
+    from camgeo.schema.fields import Field, Table
+    from kin.numeric.arrays import Array
 
 FOLDER = "/tmp/recipe"  # noqa: S108 - of the browser's own file system; the recipe, its tables, somebody's file
 OUT = "/tmp/out"  # noqa: S108 - the same
 PAGE = FileRequest("html")
+ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
 Path(FOLDER).mkdir(parents=True, exist_ok=True)
 
@@ -90,13 +101,15 @@ def design(name: str, text: str) -> dict[str, Any]:
     if scene["linked"]:
         report["linkage"] = True
     failed = [check for check in report["checks"] if not check["ok"]]
+    held = [check for check in report["checks"] if check["ok"]]
     return {
         **output,
+        "units": recipe.units,
         "scene": scene,
         "ok": exact.ok,
         "name": recipe.name,
         "verdict": "every check of the design holds" if exact.ok else tables.failing(report["checks"]),
-        "checks": tables.checks(report),
+        "checks": tables.checks({**report, "checks": held}),
         "failed": [_explained(check, report, recipe) for check in failed],
     }
 
@@ -111,12 +124,15 @@ def _recipe(name: str, text: str) -> Recipe:
 
 def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> dict[str, Any]:
     """A check that fails in words, with the line of the recipe's field that it hangs on."""
-    head, *rows = explained(check, report, recipe, "").splitlines()
-    told = {row.strip().partition(" ")[0]: row.strip().partition(" ")[2].strip() for row in rows}
-    place = re.match(r":(\d+):(\d+) (.*)", told.pop("recipe", ""))
+    head, *rows = explained(check, report, recipe).splitlines()
+    parts = {name: text.strip() for name, _, text in (row.strip().partition(" ") for row in rows)}
+    place = re.fullmatch(r".*?:(\d+):(\d+) (.*)", parts.get("recipe", ""))
     line, column, path = (int(place[1]), int(place[2]), place[3]) if place else (0, 0, "")
-    text = "; ".join(filter(None, (told.get("found"), told.get("remedy"))))
-    return {"line": line, "column": column, "path": path, "head": head, "text": text, "at_deg": check["at_deg"]}
+    text = "; ".join(filter(None, (parts.get("found"), parts.get("remedy"))))
+    declared = declaration(check["name"])
+    over = "relative" if "linkage" in report and declared is not None and declared.in_frame else "shaft"
+    button = "" if check["at_deg"] is None else tables.place_button(check["at_deg"], over)
+    return {"line": line, "column": column, "path": path, "head": head, "text": text, "place": button}
 
 
 # --- form -------------------------------------------------------------------------------------------------------------
@@ -129,9 +145,7 @@ def fields(source: Source) -> list[dict[str, Any]]:
     """
     if not isinstance(source.root, Mapping):
         return []
-    capabilities = registry.by_words(words_of(source.root))
-    reader = Reader(source, READERS, recipe_table(capabilities))
-    read_values(reader, capabilities)
+    reader = _read(source, source.root)
     nodes = list(scalars(source.root))
     shared = Counter(id(node) for _, node in nodes)
     entries = [
@@ -141,6 +155,14 @@ def fields(source: Source) -> list[dict[str, Any]]:
         for entry in _entry(reader, path, node)
     ]
     return sorted([*entries, *_files(reader)], key=lambda entry: entry["start"])
+
+
+def _read(source: Source, root: Mapping) -> Reader:
+    """A reader that has read a recipe, with all of its faults."""
+    capabilities = registry.by_words(words_of(root))
+    reader = Reader(source, READERS, recipe_table(capabilities))
+    read_values(reader, capabilities)
+    return reader
 
 
 def _files(reader: Reader) -> Iterator[dict[str, Any]]:
@@ -221,6 +243,102 @@ def _utf16(text: str, index: int) -> int:
     return len(text[:index].encode("utf-16-le")) // 2
 
 
+def more(name: str, text: str) -> dict[str, Any]:
+    """The fields that a recipe could have besides its own."""
+    source = Source.of(text, name)
+    if not isinstance(source.root, Mapping):
+        return {"more": []}
+    table = recipe_table()
+    reader = Reader(source, READERS, table)
+    read_values(reader, registry.recorded())
+    return {"more": list(_absent(reader, source.root, table))}
+
+
+def _absent(reader: Reader, node: Mapping, table: Table, path: str = "") -> Iterator[dict[str, Any]]:
+    """The fields that the mappings of a recipe could have besides, with what each is and what it is by default."""
+    given = entries(node)
+    chosen = [set(names) for name, names in table.alternatives if name in given]
+    rivals = {name for name, names in table.alternatives for name in (name, *names)}
+    for field in table.fields:
+        below = join(path, field.name)
+        held = given.get(field.name)
+        if held is None and (field.name not in rivals or any(field.name in names for names in chosen)):
+            yield {"path": below, "about": field.about, "default": field.default, "wanted": reader.wanted(field)}
+        elif isinstance(held, Mapping):
+            tables = field.form.tables if field.form else None
+            kind = entries(held).get("kind")
+            inner = tables.get(kind.text) if tables and isinstance(kind, Scalar) else field.table
+            if inner is not None:
+                yield from _absent(reader, held, inner, below)
+
+
+def added(name: str, text: str, path: str, value: str) -> dict[str, Any]:
+    """The text of a recipe with one more field, whose value is written as YAML."""
+    try:
+        plain = yaml.safe_load(value)
+    except yaml.YAMLError:
+        return {"faults": [_sentence(f"{path}: {value} is no value of YAML: check quotes and brackets")]}
+    return {"text": changed(Source.of(text, name), path, plain)}
+
+
+def converted(name: str, text: str, units: Length) -> dict[str, Any]:
+    """The text of a recipe in another unit of length: the cam stays the same one.
+
+    Values that carry their own unit stay, formulas are divided or multiplied as a whole.
+    """
+    before = _recipe(name, text)
+    source = before.source()
+    assert isinstance(source.root, Mapping)
+    reader = _read(source, source.root)
+    factor = before.mm / UNITS[units]
+    powers = {before.units: 1, f"square {before.units}": 2}
+    new = text
+    for path, node in sorted(scalars(source.root), key=lambda pair: pair[1].mark, reverse=True):
+        field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
+        if field is None or (field.kind is not Kind.FORMULA and path not in reader.numbers):
+            continue
+        kind = Kind.LENGTH if field.kind is Kind.FORMULA and field.unit is None else field.unit or field.kind
+        power = powers.get(reader.unit(kind), 0)
+        if not power or parted(node.text)[1]:
+            continue
+        start, end = source.index(node.mark), source.index(node.end)
+        if field.kind is Kind.FORMULA:
+            scale = f"{max(factor, 1.0 / factor) ** power:.9g}"
+            number = f"({node.text}){'*' if factor > 1.0 else '/'}{scale}"
+        else:
+            number = _brief(read_number(node.text) * factor**power)
+        new = new[:start] + new[start:end].replace(node.text, number) + new[end:]
+    new = changed(Source.of(new, name), "units", units)
+    try:
+        same = _alike(before, _recipe(name, new))
+    except camgeo.CamgeoError:
+        same = False
+    if same:
+        return {"text": new}
+    return {"faults": [_sentence("not all of these numbers can be converted: give lengths their unit, such as 12 mm")]}
+
+
+def _brief(value: float) -> str:
+    """A number with as few digits as keep it within 2e-8 of its size, so that 36 mm are 36 mm again."""
+    shorter = (float(f"{value:.{digits}g}") for digits in range(1, 10))
+    return spelled(next(number for number in (*shorter, value) if abs(number - value) <= 2e-8 * abs(value)))
+
+
+def _alike(first: Recipe, second: Recipe) -> bool:
+    """Whether two recipes make the same cam, to a millionth of its size."""
+    one, other = camgeo.design(first), camgeo.design(second)
+    pairs = list(zip(_points(one), _points(other), strict=True))
+    turn = np.linspace(0.0, 2.0 * np.pi, 720)
+    pairs.append((one.motion(turn), other.motion(turn)))
+    return all(bool(np.allclose(a, b, rtol=ALIKE, atol=ALIKE * float(np.abs(a).max() + 1.0))) for a, b in pairs)
+
+
+def _points(cam: Design) -> list[Array]:
+    """Points of each contour of a cam, mm."""
+    runs = [(curve, np.linspace(run.low, run.high, 90)) for _, curve in cam.exact.contours for run in curve.runs]
+    return [curve.sample(along).point for curve, along in runs]
+
+
 # --- files ------------------------------------------------------------------------------------------------------------
 
 
@@ -234,7 +352,7 @@ def make(name: str, text: str) -> dict[str, Any]:
     folder = report.path
     if folder is None:
         raise AssertionError(report)
-    files = sorted(path for path in folder.iterdir() if path.is_file())
+    files = sorted(folder.iterdir(), key=lambda path: (path.name == REPORT, path.name))
     page = next(path for path in files if path.suffix == ".html")
     output = _judged(report, page.read_text("utf-8"))
     kept = files if report.ok else [path for path in files if path.suffix in {".html", ".json"}]
@@ -296,4 +414,12 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     return output
 
 
-CALLS: dict[str, Callable[..., dict[str, Any]]] = {"design": design, "make": make, "verify": verify, "follow": follow}
+CALLS: dict[str, Callable[..., dict[str, Any]]] = {
+    "design": design,
+    "more": more,
+    "added": added,
+    "converted": converted,
+    "make": make,
+    "verify": verify,
+    "follow": follow,
+}

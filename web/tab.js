@@ -146,10 +146,12 @@ async function designed(name, text) {
   if (!answer || recipe.text !== text) return;
   showFaults(answer.faults, answer.trace);
   if (answer.fields.length || !answer.faults.length) {
-    recipe.fields = answer.fields;
+    recipe.fields = answer.fields.filter(({ path }) => path !== "units"); // the unit is changed with all lengths
     showForm();
   }
+  if (byId("add").open) showMore();
   tab.classList.toggle("stale", Boolean(answer.faults.length));
+  if (answer.units) byId("unit").value = answer.units;
   if (!answer.scene) return;
   const verdict = byId("verdict");
   verdict.textContent = answer.verdict;
@@ -204,7 +206,8 @@ function showFaults(faults, trace) {
 function showFailed(failed) {
   byId("failed").replaceChildren(
     ...failed.map((check) => {
-      const row = element("div", { className: "failed" }, element("b", {}, check.head), ` ${check.text} `);
+      const row = element("div", { className: "failing" }, element("b", {}, check.head), ` ${check.text} `);
+      row.insertAdjacentHTML("beforeend", check.place);
       if (check.line) {
         const button = element("button", { type: "button" }, `${check.path}, line ${check.line}`);
         button.addEventListener("click", () => goTo(check.line, check.column));
@@ -446,6 +449,55 @@ function partner(field) {
 
 byId("form").addEventListener("submit", (event) => event.preventDefault());
 
+// --- fields that are not there yet, and the unit ----------------------------------------------------------------------
+
+let possible = [];
+async function showMore() {
+  const { name, text } = recipe;
+  const answer = await work.ask("more", { name, text });
+  if (!answer || recipe.text !== text) return;
+  if (!answer.more) return; // a text that is no recipe yet: its fault stands there already
+  const list = byId("add-path");
+  const chosen = list.value;
+  possible = answer.more;
+  const groups = new Map();
+  for (const { path } of possible) {
+    const top = path.includes(".") ? path.split(".")[0] : "recipe";
+    if (!groups.has(top)) groups.set(top, element("optgroup", { label: top }));
+    groups.get(top).append(new Option(label(path), path));
+  }
+  list.replaceChildren(...groups.values());
+  if (possible.some(({ path }) => path === chosen)) list.value = chosen;
+  showAbout();
+}
+
+function showAbout() {
+  const field = possible.find(({ path }) => path === byId("add-path").value);
+  byId("add-about").textContent = field ? `${field.about}; ${field.wanted}${field.default ? `; default: ${field.default}` : ""}` : "";
+}
+
+// asks for another text of the recipe, and takes it
+async function rewritten(call, input) {
+  const { name, text } = recipe;
+  const answer = await work.ask(call, { name, text, ...input }, encodedTables());
+  if (!answer || recipe.text !== text) return false;
+  if (answer.faults) showFaults(answer.faults, answer.trace);
+  else loaded({ ...kept(), text: answer.text });
+  return !answer.faults;
+}
+
+byId("add").addEventListener("toggle", () => byId("add").open && showMore());
+byId("add-path").addEventListener("change", showAbout);
+byId("add-it").addEventListener("click", async () => {
+  const value = byId("add-value").value.trim().replace(/^([+-]?\d+),(\d+)$/, "$1.$2");
+  if (value && (await rewritten("added", { path: byId("add-path").value, value }))) byId("add-value").value = "";
+});
+byId("add-value").addEventListener("keydown", (event) => event.key === "Enter" && byId("add-it").click());
+byId("unit").addEventListener("change", async () => {
+  const wanted = byId("unit").value;
+  if (!(await rewritten("converted", { units: wanted }))) byId("unit").value = wanted === "mm" ? "inch" : "mm";
+});
+
 // --- address --------------------------------------------------------------------------------------------------------
 
 async function through(bytes, stream) {
@@ -560,13 +612,12 @@ async function long(words, call, input, files) {
   return answer;
 }
 
-function showJudged(answer, head) {
+function showJudged(answer, head, rejected = "") {
   const judged = byId("judged");
   judged.hidden = false;
   byId("judged-head").textContent = head;
   const missing = (answer.missing || []).map(({ what, why }) => `\n${what} is left out: ${why}`).join("");
-  const rejected = answer.ok ? "" : "\nA check fails, so no file to make it from is given out; the page below shows which.";
-  byId("outcome").textContent = `${answer.verdict}${rejected}${missing}`;
+  byId("outcome").textContent = `${answer.verdict}${rejected && !answer.ok ? `\n${rejected}` : ""}${missing}`;
   downloads(byId("files"), answer.files);
   byId("page").srcdoc = answer.page;
   byId("page").hidden = !answer.page;
@@ -580,7 +631,7 @@ byId("make").addEventListener("click", async () => {
   const answer = await long("making and judging…", "make", { name, text }, encodedTables());
   if (!answer) return;
   if (answer.faults) showFaults(answer.faults, answer.trace);
-  else showJudged(answer, "Made and judged");
+  else showJudged(answer, "Made and judged", "A check fails, so no file to make it from is given out; the page below shows which.");
 });
 
 byId("stop").addEventListener("click", () => {

@@ -160,6 +160,8 @@ class Reader:
                 continue
             if name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
+            elif name.isdecimal() and is_empty(entries(node)[name]):  # {rise: 12,5}
+                self.fault(key.mark, below, "a number cut at its comma", None, "a decimal takes a point, not a comma")
             else:
                 if other := _other_measure(name, entries(node)[name], known):
                     self.fault(key.mark, below, "unknown key", None, other)

@@ -823,3 +823,9 @@ def test_a_faulty_thickness_is_not_called_missing() -> None:
 )
 def test_other_fields(line: str, message: str) -> None:
     assert told(f"{line}\n{SUPPORT}") == [f"c.yaml:{message}"]
+
+
+def test_a_decimal_comma_within_braces_is_named() -> None:
+    """YAML ends the value there, and reads the rest as a key."""
+    (message,) = told("cam:\n  kind: support\n  fourier: {mean: 25,5}\n")
+    assert message.endswith("cam.fourier.5: a number cut at its comma; a decimal takes a point, not a comma")

@@ -88,6 +88,38 @@ class Tab:
         """Press a button by its id."""
         self.ask(f"byId({name!r}).click()")
 
+    def press(self, name: str) -> None:
+        """Press a button that changes the recipe, and wait for what comes of it."""
+        self.click(name)
+        self.settle()
+
+    def judged(self, name: str) -> None:
+        """Press a button that makes or judges files, and wait for the judged page."""
+        before = self.ask("Number(document.body.dataset.judged || 0)")
+        self.click(name)
+        self.wait(f"Number(document.body.dataset.judged || 0) > {before} || byId('faults').textContent")
+        assert not self.text_of("faults"), self.text_of("faults")
+
+    @property
+    def text(self) -> str:
+        """The recipe."""
+        text: str = self.ask("byId('text').value")
+        return text
+
+    def load(self, name: str, text: str, tables: dict[str, str] | None = None) -> None:
+        """Begin with a recipe, as a starter does."""
+        self.ask(f"loaded({json.dumps({'name': name, 'text': text, 'tables': tables or {}})})")
+        self.settle()
+
+    def choose(self, name: str, value: str) -> None:
+        """Choose a value of a list by its id."""
+        self.ask(f"byId({name!r}).value = {value!r}; byId({name!r}).dispatchEvent(new Event('change'))")
+
+    def tick(self, path: str, word: str) -> None:
+        """Tick or untick a word of a list."""
+        self.ask(f"document.querySelector({_row(path)!r}).querySelector('[value=\"{word}\"]').click()")
+        self.settle()
+
     def write(self, text: str) -> None:
         """Put a text in the place of the recipe's, as if it were typed, and wait for what comes of it."""
         self._put("byId('text')", text, "input")

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
+from zipfile import ZipFile
 
 import pytest
 from support import tab
 from support.browser import Browser
+from support.meshfiles import text, triangles_in
+from support.pages import wait
+from support.places import RECIPES, SHIPPED
+from support.starters import OF_CAMS
+
+import camgeo
+from camgeo.recipe.starter import starter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
+
+TEXTS = {name: starter(name) for name in OF_CAMS} | {path.name: path.read_text("utf-8") for path in SHIPPED}
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
 
@@ -41,3 +53,257 @@ def test_it_loads_from_its_own_server_alone_and_without_complaint(page: tab.Tab)
     assert page.text_of("verdict") == "every check of the design holds"
     assert page.browser.problems == []
     assert {url for url in page.browser.requests if not url.startswith((page.address, "data:", "about:"))} == set()
+
+
+CHECKS = """(async () => {{
+  const answer = await work.ask("design", {{ name: {}, text: {} }}, {});
+  if (!answer.scene) return JSON.stringify(answer.faults);
+  const {{ checks, plots }} = answer.scene;
+  return JSON.stringify([checks.map(({{ name, ok, value }}) => [name, ok, value]), plots.map((plot) => plot.title)]);
+}})()"""
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_starters_and_shipped_recipes_have_the_figures_that_they_have_here(page: tab.Tab, name: str) -> None:
+    recipe = TEXTS[name]
+    tables = {path.name: path.read_text("utf-8") for path in RECIPES.glob("*.csv") if path.name in recipe}
+    files = ",".join(
+        f"{json.dumps(key)}: new TextEncoder().encode({json.dumps(value)})" for key, value in tables.items()
+    )
+    checks, rows = json.loads(page.ask(CHECKS.format(json.dumps("x"), json.dumps(recipe), f"{{{files}}}")))
+    path = RECIPES / name
+    scene = camgeo.design(camgeo.load(path if path.exists() else recipe)).scene()
+    here = scene["checks"]
+    assert [check[:2] for check in checks] == [[check["name"], check["ok"]] for check in here]
+    for (_, _, there), check in zip(checks, here, strict=True):
+        assert there == pytest.approx(check["value"], rel=1e-9, abs=1e-9)
+    assert titles == [plot["title"] for plot in scene["plots"]]
+
+
+def test_a_slider_moves_its_number_alone_and_what_belongs_to_it(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.slide("cam.base_radius", 41.5)
+    assert page.text == TEXTS["disc-roller"].replace("base_radius: 36 ", "base_radius: 41.5 ")
+    page.slide("cam.motion[0].over", 90)
+    assert "over: 90," in page.text
+    assert "{dwell: 70}" in page.text  # the turn stays whole
+    page.slide("cam.motion[0].rise", 16)
+    assert "{return: 16," in page.text  # and the follower comes back
+    assert page.text_of("verdict") == "every check of the design holds"
+    for _ in range(3):
+        page.press("undo")
+    assert page.text == TEXTS["disc-roller"]
+    page.press("redo")
+    assert "41.5" in page.text
+
+
+def test_boxes_take_commas_units_and_words(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.enter("cam.base_radius", "1,5 in")
+    assert "base_radius: 1.5 in " in page.text
+    page.enter("cam.motion[0].law", "cycloidal")
+    assert "{rise: 20, over: 110, law: cycloidal}" in page.text
+    page.tick("export.files", "3mf")
+    page.tick("export.files", "csv")
+    assert "files: [dxf, svg, stl, html, 3mf]" in page.text
+    assert page.text_of("verdict") == "every check of the design holds"
+    page.load("support", TEXTS["support"])
+    page.enter("cam.p", "26 + 2*cos(3*t)")
+    assert "26 + 2*cos(3*t)" in page.text
+    assert page.text_of("faults") == ""
+
+
+def test_the_unit_changes_all_lengths(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.choose("unit", "inch")
+    page.wait("recipe.text.includes('units: inch')")
+    page.settle()
+    assert "base_radius: 1.41732" in page.text
+    assert page.ask("document.querySelector('[data-path=\"cam.base_radius\"] .unit').textContent") == "in"
+    page.choose("unit", "mm")
+    page.wait("recipe.text.includes('units: mm')")
+    page.settle()
+    assert "base_radius: 36" in page.text
+
+
+def test_a_broken_recipe_has_its_faults_at_their_lines(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.write(page.text.replace("cycloidal", "cycloidl").replace("bore: 10", "bore: [10"))
+    assert "line 39: YAML cannot be read" in page.text_of("faults")
+    page.write(TEXTS["disc-roller"].replace("cycloidal", "cycloidl").replace("base_radius: 36", "base_radius: 36 ell"))
+    assert page.text_of("verdict") == "2 faults in the recipe"
+    assert "did you mean cycloidal" in page.text_of("faults")
+    lines = page.ask("[...document.querySelectorAll('#lines .bad')].map((one) => one.textContent).join(' ')")
+    assert lines == "8 19"
+    page.ask("document.querySelector('#faults button').click()")
+    assert page.ask("document.activeElement.id") == "text"
+    assert page.ask("recipe.text.slice(byId('text').selectionStart).startsWith('36 ell')")
+    page.write("")
+    assert "the recipe is empty" in page.text_of("faults")
+    page.write(TEXTS["disc-roller"])
+    assert page.text_of("verdict") == "every check of the design holds"
+
+
+def test_a_cam_that_undercuts_says_where_and_what_would_do(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.slide("cam.follower.radius", 18)
+    page.slide("cam.motion[0].over", 60)
+    page.slide("cam.base_radius", 7)
+    assert page.text_of("verdict") == "2 checks of 4 fail"
+    assert "would be free of it" in page.text_of("failed")
+    assert page.ask("document.querySelectorAll('#drawing .mark.failed').length") == 2
+    page.ask("document.querySelector('#failed .go').click()")
+    assert float(page.ask("document.documentElement.dataset.degrees")) == pytest.approx(51.08, abs=0.01)
+
+
+def test_files_are_made_judged_and_downloaded(page: tab.Tab, tmp_path: Path) -> None:
+    page.load("support", TEXTS["support"])
+    page.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    page.judged("make")
+    assert page.text_of("outcome").startswith("support: ok")
+    names = page.ask("[...document.querySelectorAll('#files a')].map((one) => one.download).join(' ')").split()
+    assert names == [*(f"support.{end}" for end in ("csv", "dxf", "html", "stl", "svg")), "report.json", "support.zip"]
+    page.ask("document.querySelectorAll('#files a')[6].click()")
+    wait((tmp_path / "support.zip").is_file)
+    with ZipFile(tmp_path / "support.zip") as archive:
+        assert sorted(archive.namelist()) == sorted(f"support/{name}" for name in [*names[:-1], "support.yaml"])
+        archive.extractall(tmp_path)
+    assert camgeo.verify(tmp_path / "support/support.yaml", tmp_path / "support/support.dxf").ok
+    assert json.loads((tmp_path / "support/report.json").read_text("utf-8"))["ok"]
+    assert page.browser.problems == []
+
+
+def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) -> None:
+    report = camgeo.export(camgeo.load(TEXTS["disc-roller"]), tmp_path, only=["dxf"])
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.drop("somebody's cam.dxf", (report.path / "recipe.dxf").read_bytes())
+    page.judged("verify")
+    assert page.text_of("outcome").startswith("disc-roller: ok")
+    page.enter("cam.base_radius", "36.2")
+    page.judged("verify")
+    assert "FAILED" in page.text_of("outcome")
+    page.ask("byId('roller').value = '9'; byId('offset').value = '8,0'")
+    page.judged("follow")
+    assert "lift 20 mm" in page.text_of("followed-words")
+    page.ask("document.querySelector('#followed-files button').click()")
+    page.wait("recipe.text.includes('reading: 0.01')")
+    page.settle()
+    assert page.text_of("verdict") == "every check of the design holds"
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "words"),
+    [
+        ("cam.dxf", b"no drawing at all", "cam.dxf"),
+        ("cam.stl", bytes(84), "cam.stl"),
+        ("cam.pdf", b"%PDF-1.7", "give one of .dxf"),
+    ],
+)
+def test_a_wrong_file_is_told(page: tab.Tab, name: str, data: bytes, words: str) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.drop(name, data)
+    page.click("follow")
+    page.wait("byId('faults').textContent")
+    assert words in page.text_of("faults")
+    page.slide("cam.base_radius", 40)
+    assert page.text_of("verdict") == "every check of the design holds"
+
+
+def test_a_file_of_five_megabytes_is_judged(page: tab.Tab, tmp_path: Path) -> None:
+    recipe = TEXTS["disc-roller"].replace("files: [dxf, svg, stl, csv, html]", "files: [{stl: {tolerance: 4e-6}}]")
+    report = camgeo.export(camgeo.load(recipe), tmp_path)
+    data = text(tmp_path / "large.stl", triangles_in(report.path / "recipe.stl")).read_bytes()
+    assert len(data) > 5e6
+    page.load("disc-roller", recipe)
+    page.drop("large.stl", data)
+    page.choose("units", "mm")
+    page.judged("verify")
+    assert page.text_of("outcome").startswith("disc-roller: ok")
+    page.choose("units", "")
+
+
+def test_what_is_too_large_is_refused_before_it_is_read(page: tab.Tab) -> None:
+    page.ask("taken([{ name: 'huge.stl', size: 1e9 }])")
+    assert "1000 MB" in page.text_of("faults")
+
+
+def test_stop_ends_the_worker_and_another_one_goes_on(page: tab.Tab) -> None:
+    page.load("four-bar", TEXTS["four-bar"])
+    page.click("make")
+    page.click("stop")
+    page.wait("byId('busy').textContent === 'stopped'")
+    page.settle()
+    page.slide("linkage.ground", 81)
+    assert "81" in page.text_of("form") or "ground: 81" in page.text
+    assert page.ask("document.body.dataset.answered") == str(page.ask("asked"))
+
+
+def test_a_reload_and_a_link_keep_the_recipe_with_its_tables(page: tab.Tab) -> None:
+    tables = {"disc-table.csv": (RECIPES / "disc-table.csv").read_text("utf-8")}
+    page.load("disc-table", TEXTS["disc-table.yaml"], tables)
+    assert page.text_of("faults") == ""
+    page.click("link")
+    page.wait("location.hash.length > 100")
+    link = page.ask("location.hash")
+    page.browser.call("Page.reload")
+    page.wait("window.recipe === undefined && document.body?.dataset.loaded && Number(document.body.dataset.shown) > 0")
+    page.settle()
+    assert page.text == TEXTS["disc-table.yaml"]
+    assert page.text_of("faults") == ""
+    page.load("support", TEXTS["support"])
+    page.wait(f"location.hash !== {link!r}")  # the address follows
+    page.ask(f"location.hash = {link!r}")
+    page.wait("recipe.name === 'disc-table'")
+    page.settle()
+    assert page.text_of("faults") == ""
+    page.ask("location.hash = '#r=cut'")
+    page.wait("byId('faults').textContent")
+    assert "cut short" in page.text_of("faults")
+
+
+def test_two_tabs_know_nothing_of_each_other(page: tab.Tab) -> None:
+    page.load("support", TEXTS["support"])
+    page.ask("""(() => {
+      const other = document.createElement("iframe");
+      other.id = "other";
+      other.src = location.pathname;
+      document.body.append(other);
+    })()""")
+    page.wait("Number(byId('other').contentDocument?.body?.dataset.shown) > 0")
+    page.slide("part.bore", 12)
+    assert page.ask("byId('other').contentDocument.getElementById('text').value.includes('kind: disc')")
+    assert "bore: 12" in page.text
+    page.ask("byId('other').remove()")
+
+
+NAMELESS = """[...document.querySelectorAll("input, select, textarea, button, iframe")]
+  .filter((one) => !one.hidden && !(one.labels?.length || one.ariaLabel || one.title || one.textContent.trim()))
+  .map((one) => one.outerHTML).join(" ")"""
+
+
+@pytest.mark.parametrize("width", [390, 768, 1000, 1280, 1920])
+@pytest.mark.parametrize("dark", [False, True])
+def test_nothing_overflows_and_everything_has_a_name(page: tab.Tab, width: int, *, dark: bool) -> None:
+    page.browser.size(width, 800, dark=dark)
+    page.load("disc-roller", TEXTS["disc-roller"])
+    assert page.ask("document.documentElement.scrollWidth") <= width
+    assert page.ask(NAMELESS) == ""
+    page.browser.size(1280, 800)
+
+
+def test_the_keyboard_reaches_everything(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.ask("byId('undo').focus()")
+    reached = set()
+    for _ in range(80):
+        page.browser.key("Tab")
+        reached.add(page.ask("document.activeElement.id"))
+        if page.ask("document.activeElement.id") == "text":
+            page.browser.key("Escape")
+    assert {"open", "save", "link", "unit", "text", "make", "choose"} <= reached
+    assert any(name.startswith("slide-") for name in reached)
+    page.ask("byId('text').focus()")
+    before = page.text
+    page.browser.key(" ")
+    page.settle()
+    assert len(page.text) == len(before) + 1  # a blank is written, and does not play

@@ -1,0 +1,127 @@
+"""What the page's worker asks of camgeo, asked here: fields and their places, units, faults, the policy of the page."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import pytest
+from support.places import SHIPPED, script
+from support.starters import OF_CAMS
+
+import camgeo
+from camgeo.recipe.starter import starter
+from camgeo.schema.yaml_source import Source, scalars
+
+live = script("live")
+TEXTS = {name: starter(name) for name in OF_CAMS} | {f"{path.stem}.yaml": path.read_text("utf-8") for path in SHIPPED}
+
+
+def part(text: str, field: dict[str, Any]) -> str:
+    """What stands at a field's place, counted as browsers do."""
+    return text.encode("utf-16-le")[2 * field["start"] : 2 * field["end"]].decode("utf-16-le")
+
+
+def put(text: str, field: dict[str, Any], value: str) -> str:
+    data = text.encode("utf-16-le")
+    return (data[: 2 * field["start"]] + value.encode("utf-16-le") + data[2 * field["end"] :]).decode("utf-16-le")
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_every_value_stands_where_its_field_says_and_another_one_leaves_all_else(name: str) -> None:
+    text = TEXTS[name]
+    fields = live.fields(Source.of(text, name))
+    assert sum(field["kind"] == "number" for field in fields) >= 3
+    before = {path: node.text for path, node in scalars(Source.of(text, name).root)}
+    for field in fields:
+        path = field["path"]
+        shown = part(text, field)
+        assert shown.strip("'\"") == field["text"]
+        if field["kind"] == "number":
+            after = {path: node.text for path, node in scalars(Source.of(put(text, field, "7.25"), name).root)}
+            assert {where for where in after if after[where] != before[where]} <= {path}
+            assert after[path].startswith("7.25")
+            assert float(shown) == field["value"] or "/" in shown or "*" in shown or "pi" in shown
+
+
+def test_numbers_have_units_and_bounds_words_have_their_choices() -> None:
+    text = (
+        "cam: {kind: disc, base_radius: 1.5 in, follower: {kind: roller, radius: '9'}, motion: [{rise: 20, over: 180,"
+    )
+    text += " law: cycloidal}, {return: 20, over: 180, law: cycloidal}]}\nabout: ein Nocken – 𝛼\npart: {bore: 8}\n"
+    fields = {field["path"]: field for field in live.fields(Source.of(text, "x"))}
+    assert (fields["cam.base_radius"]["unit"], part(text, fields["cam.base_radius"])) == ("in", "1.5")
+    assert (fields["cam.follower.radius"]["unit"], part(text, fields["cam.follower.radius"])) == ("mm", "9")
+    assert fields["cam.motion[0].over"]["unit"] == "degrees"
+    assert "modified-sine" in fields["cam.motion[1].law"]["choices"]
+    assert part(text, fields["part.bore"]) == "8"  # behind a character of two units
+
+
+@pytest.mark.parametrize("name", OF_CAMS)
+def test_a_recipe_in_inches_makes_the_same_cam_and_comes_back(name: str) -> None:
+    text = TEXTS[name]
+    inch = live.converted(name, text, "inch")["text"]
+    assert re.search(r"^units: inch", inch, re.MULTILINE)
+    first, second = (camgeo.design(camgeo.load(one)) for one in (text, inch))
+    assert second.motion(1.0) == pytest.approx(first.motion(1.0), rel=1e-6, abs=1e-6)
+    back = live.converted(name, inch, "mm")["text"]
+    values = [{path: node.text for path, node in scalars(Source.of(one, name).root)} for one in (text, back)]
+    formulas = {field["path"] for field in live.fields(Source.of(text, name)) if field["kind"] == "text"}
+    assert {path for path in values[0] if values[0][path] != values[1][path]} <= formulas
+
+
+def test_what_cannot_be_converted_is_said_and_left() -> None:
+    text = next(path for path in SHIPPED if path.stem == "disc-table").read_text("utf-8")
+    table = next(path for path in SHIPPED if path.stem == "disc-table").with_suffix(".csv").read_text("utf-8")
+    (live.Path(live.FOLDER) / "disc-table.csv").write_text(table, "utf-8")
+    assert "not all of these numbers" in live.converted("x", text, "inch")["faults"][0]["text"]
+
+
+def test_faults_have_line_and_column() -> None:
+    answer = json.loads(live.answer("design", json.dumps({"name": "x", "text": "cam: {kind: disk}\nunits: ell\n"})))
+    assert [(fault["line"], fault["column"]) for fault in answer["faults"]] == [(1, 13), (2, 8)]
+    assert "did you mean disc" in answer["faults"][0]["text"]
+    assert answer["fields"] == [] or all(field["path"] != "cam.kind" for field in answer["fields"])
+
+
+def test_a_fault_of_its_own_is_told_and_not_raised() -> None:
+    answer = json.loads(live.answer("design", json.dumps({"name": "x"})))
+    assert answer["faults"][0]["text"] == "camgeo has failed"
+    assert "TypeError" in answer["trace"]
+
+
+def test_a_check_that_fails_comes_with_its_remedy_and_the_line_of_its_field() -> None:
+    text = TEXTS["disc-roller"] + "limits: {pressure-angle: {at_most: 20}}\n"
+    answer = live.design("x", text)
+    (failed,) = answer["failed"]
+    assert failed["line"] == text.count("\n")
+    assert failed["path"] == "limits.pressure-angle.at_most"
+    assert "a larger base radius" in failed["text"]
+    assert 'data-deg="226.42' in failed["place"]
+
+
+def test_fields_that_are_not_there_are_offered_and_added() -> None:
+    text = TEXTS["disc-roller"]
+    offered = {field["path"]: field for field in live.more("x", text)["more"]}
+    assert {"limits", "part.keyway", "cam.follower.arm", "dynamics"} <= set(offered)
+    assert not {"cam.base_radius", "cam.sizing"} & set(offered)
+    added = live.added("x", text, "limits", "{pressure-angle: {at_most: 45}}")["text"]
+    assert added.replace("limits: {pressure-angle: {at_most: 45}}\n", "") == text
+    assert camgeo.design(camgeo.load(added)).ok
+    assert "no value of YAML" in live.added("x", text, "limits", "{a: [}")["faults"][0]["text"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["disc-roller", "four-bar", "disc-groove", "double-roller"])
+def test_the_policy_lets_every_judged_page_in(name: str) -> None:
+    build = script("build")
+    policies = {build.policy(build.first_page(TEXTS[one])) for one in (name, "support")}
+    assert len(policies) == 1
+
+
+def test_a_failed_set_gives_no_file_to_make_from() -> None:
+    text = TEXTS["support"].replace("[dxf, svg, stl, csv, html]", "[dxf]") + "limits: {size: {at_most: 20}}\n"
+    answer = live.make("failed", text)
+    assert not answer["ok"]
+    assert {file["name"].rpartition(".")[2] for file in answer["files"]} == {"html", "json", "zip"}
