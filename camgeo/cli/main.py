@@ -132,6 +132,12 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
+    for folder, label in registry.labels().items():
+        for name, text in label.sources.items():
+            source = partial(_source, folder)
+            new.add_argument(
+                f"--{name}", dest="sources", type=source, action="append", default=[], metavar="FILE", help=text
+            )
     of_module("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
     of_module("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
@@ -158,6 +164,11 @@ def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
     command.add_argument("--tolerance", type=_length, metavar="E", help=tolerance)
     command.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
     command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
+
+
+def _source(folder: str, text: str) -> tuple[str, str]:
+    """Give the capability that makes a recipe out of a file, and the file's name."""
+    return folder, name_of(text)
 
 
 def _length(text: str) -> str:
@@ -382,6 +393,10 @@ def _new(arguments: argparse.Namespace) -> int:
     from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.starter import STARTERS, starter, starters_for
 
+    sources: list[tuple[str, str]] = arguments.sources
+    for folder in dict.fromkeys(folder for folder, _ in sources):
+        files = [name for one, name in sources if one == folder]
+        return _new_from(folder, files, arguments.kind, arguments.file)
     kind: str | None = arguments.kind
     if kind is None or (arguments.file is None and kind not in STARTERS and starters_for(kind)):
         names = tuple(STARTERS) if kind is None else starters_for(kind)
@@ -403,6 +418,37 @@ def _new(arguments: argparse.Namespace) -> int:
     except SurroundingsError as error:
         _complain(str(error))
         return SURROUNDINGS
+    return OK
+
+
+def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str | None) -> int:
+    """Make a recipe out of files, by the capability of a folder, and another recipe; see `Label.sources`."""
+    from camgeo.cli.new_file import demand_new, write_new
+    from camgeo.common.errors import CallError, SurroundingsError
+    from camgeo.schema.errors import RecipeErrors
+
+    if recipe is None or name is None or name == "-":
+        _complain("give a recipe that says what follows the cam, and a new file: camgeo new --from FILE RECIPE FILE")
+        return WRONG
+    try:
+        demand_new(name)
+        started = import_module(f"{registry.PACKAGE}.{folder}.start").started
+        made = started([Path(source) for source in sources], Path(recipe), name)
+        write_new({name: made.text, **{str(Path(name).with_name(other)): text for other, text in made.beside.items()}})
+    except (CallError, RecipeErrors) as error:
+        for line in str(error).splitlines():
+            _complain(line)
+        return WRONG
+    except FileNotFoundError as error:
+        _complain(f"{escaped(str(error.filename))}: the file does not exist")
+        return WRONG
+    except OSError as error:
+        _complain(f"{escaped(str(error.filename))}: {error.strerror}")
+        return SURROUNDINGS
+    except SurroundingsError as error:
+        _complain(str(error))
+        return SURROUNDINGS
+    say("\n".join([f"{escaped(name)}:", *(f"  {line}" for line in made.lines)]))
     return OK
 
 

@@ -25,6 +25,8 @@ class Label(NamedTuple):
     roots     keys of the top level that make a text a recipe of another kind, which the record reads, see `Root`
     suffixes  of files that `verify` may be given for it, where its record claims them, see `FileJudge`
     names     names that it adds to the library, each with the module of the folder that has it
+    sources   options of `camgeo new` by which it makes a recipe out of files, each with its help; the function
+              `started` of the folder's module `start` is given the files, the path of a recipe and the new one's name
     """
 
     rank: int
@@ -38,3 +40,4 @@ class Label(NamedTuple):
     roots: tuple[str, ...] = ()
     suffixes: tuple[str, ...] = ()
     names: Mapping[str, str] = NONE
+    sources: Mapping[str, str] = NONE

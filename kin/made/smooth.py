@@ -172,8 +172,9 @@ def fit(t: Array, e: Array, spans: int | None = None) -> Fit:
 def _gross(value: Array) -> NDArray[np.bool_]:
     """Points that stand out from the median of those beside them, before there is a curve, which they would bend."""
     beside = np.stack([np.roll(value, k) for k in range(-FELLOWS - 1, FELLOWS + 2)])
-    off = np.abs(value - np.median(beside, axis=0))
-    gross: NDArray[np.bool_] = off > max(GROSS * OUTLIER * float(np.median(off)), TRIFLE)
+    off = np.abs(value - np.median(beside, axis=0))  # nothing on a slope, however the points scatter
+    scatter = float(np.median(np.abs(value - 0.5 * (np.roll(value, 1) + np.roll(value, -1)))))
+    gross: NDArray[np.bool_] = off > max(GROSS * OUTLIER * scatter, TRIFLE)
     return gross
 
 

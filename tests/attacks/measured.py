@@ -113,8 +113,8 @@ def probed(rng: Random, number: int) -> Attack:
     chosen = rng.sample(OPTIONS, rng.randrange(3))
     words += [word for option in chosen for word in option]
     recipe = RECIPES[kind] + rng.choice(["", "\nmade: {profile: 0.05}", "\nmade: {profile: 0.05, datum: none}"])
-    if rng.random() < 0.3:
-        return _corrected(rng, number, kind, (name, text))
+    if rng.random() < 0.5:
+        return rng.choice([_corrected, _started])(rng, number, kind, (name, text))
 
     def judge(done: Done, _: Path) -> list[str]:
         # a stage that a busy machine takes long for is said too
@@ -135,3 +135,13 @@ def _corrected(rng: Random, number: int, kind: str, file: tuple[str, str]) -> At
     recipe = RECIPES[kind].partition("\nexport:")[0]
     recipe += f"\nmade: {{points: [{run}]}}\nexport: {{files: [{plain}, {{dxf: {{as: arcs, correct: {share}}}}}]}}\n"
     return Attack(f"corrected {number}", ("export", "cam.yaml"), {"cam.yaml": recipe.encode(), name: text.encode()})
+
+
+def _started(rng: Random, number: int, kind: str, file: tuple[str, str]) -> Attack:
+    """A recipe made of points; what says the follower has a base radius and a motion, or not."""
+    name, text = file
+    recipe = RECIPES[kind]
+    if rng.random() < 0.5:
+        recipe = recipe.replace("base_radius: 40, ", "")
+    words = ["new", "--from", name, "cam.yaml", rng.choice(["new.yaml", "new.yaml", "cam.yaml", "-"])]
+    return Attack(f"started {number}", tuple(words), {"cam.yaml": recipe.encode(), name: text.encode()})

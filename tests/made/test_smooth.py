@@ -107,3 +107,12 @@ def test_a_gap_is_refused():
     assert fit(t, np.cos(t)).curve.spans <= 18
     with pytest.raises(GapError, match="more than two of 36 spans"):
         fit(t, np.cos(t), 36)
+
+
+def test_points_on_slopes_are_no_outliers_however_little_they_scatter():
+    """Where most points are their neighbours' median, these still scatter as all do."""
+    t = np.arange(720) * np.pi / 360.0
+    e = 0.05 * np.abs(np.sin(t)) ** 3 + np.random.default_rng(1).normal(0.0, 2e-5, 720)
+    assert not fit(t, e).outliers.any()
+    e[100] += 0.004
+    assert np.flatnonzero(fit(t, e).outliers).tolist() == [100]

@@ -72,7 +72,7 @@ def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Pr
     Raises CallError for what is no file of points, and as kin does for points that are not on its contours.
     """
     tables, parts = tables_of(paths), intents(recipe, design)
-    scale, remarks = _scale(recipe, tables, probing.units)
+    scale, remarks = scale_of(recipe, tables, probing.units)
     if any(table.measured == "lift" for table in tables):
         lifts, placed = _of_lifts(parts, tables, scale, probing)
         return Points((_disc(recipe, parts[0], placed, ""),), lifts, tuple(remarks), scale)
@@ -109,7 +109,7 @@ def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align
     return DiscPoints(part, tuple(placed), placing)
 
 
-def _scale(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
+def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
     """Mm in a unit of the points: what their headings state, else what is given, else the recipe's with a remark."""
     stated = {table.unit for table in tables if table.unit is not None}
     if len(stated) > 1:

@@ -168,9 +168,9 @@ def disc_of(path: Path, place: int, discs: int) -> int:
     return number
 
 
-def places_of(table: PointTable, part: PartIntent, scale: float) -> tuple[Array, Array | None]:
-    """Points (n, 2), mm, and normals of a table, in the drawing's axes as if not mirrored."""
-    sign = np.array([1.0, -1.0 if part.mirrored else 1.0])
+def places_of(table: PointTable, scale: float, *, mirrored: bool) -> tuple[Array, Array | None]:
+    """Points (n, 2), mm, and normals of a table, in the drawing's axes as if that were not mirrored."""
+    sign = np.array([1.0, -1.0 if mirrored else 1.0])
     columns = table.columns
     places = np.column_stack([columns["x"], columns["y"]]) * (scale * sign)
     if "nx" not in columns:
@@ -184,7 +184,7 @@ def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]]
     found = []
     gathered: dict[str, list[tuple[Array, Array | None, Indices, Indices]]] = {s.name: [] for s in part.surfaces}
     for file, table, scale in pieces:
-        places, directions = places_of(table, part, scale)
+        places, directions = places_of(table, scale, mirrored=part.mirrored)
         owner = _owners(part, table, places)
         for rank, surface in enumerate(part.surfaces):
             own = owner == rank

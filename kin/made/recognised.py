@@ -1,0 +1,320 @@
+"""The motion of a measured cam as a programme: dwells, and strokes each by the law that fits it best.
+
+The follower runs on the smoothed metal (`measured_motion`). Dwells are stretches that rest within a reading; between
+them, and between turning points, are strokes. Boundaries and levels are fitted together by least squares: first each
+stroke alone, by every law of the catalogue, then all at once by the best ones. What is left is form rather than noise,
+with as many independent values as it changes its sign: its scatter gives the uncertainties.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.follower.follower import follower_of
+from kin.follower.measured import MeasuredMotion
+from kin.law.piecewise import Piecewise
+from kin.law.segment import Constant
+from kin.law.sources.laws import NAMES, named
+from kin.made.metal import Metal
+from kin.made.motion import COVERAGE, contact_errors
+from kin.made.points import SurfacePoints
+from kin.made.smooth import fit
+from kin.numeric.angles import TURN
+from kin.numeric.feet import equal_steps
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.follower.base import Follower
+    from kin.law.contacts import Contact, Guide, Side, Touch, Unit
+    from kin.law.programme import Law
+    from kin.made.smooth import Smooth
+    from kin.numeric.arrays import Array, Indices
+
+STEPS = 1440  # shaft angles of a turn
+ROUNDS = 25  # of Gauss and Newton
+SETTLED = 1e-9  # of a turn, and of the stroke: a step that changes nothing
+DIFFERENCE = 1e-6  # rad, and of the stroke: of numerical derivatives
+NEARLY = 1.5  # times the least residual: a law that fits no worse may be the one
+LEAST_STROKE = 4.0  # readings: less is no stroke
+SECANT_STEPS = 20
+ROUNDING = 1e-11  # mm or rad of a position
+
+
+@dataclass(frozen=True, eq=False)
+class PointMotion:
+    """The motion that the metal of points gives a follower, over STEPS equal shaft angles; mm or rad.
+
+    gauge         the follower meant to stand still, on a circle
+    curve         smoothed distance of the metal from that circle, mm
+    position (n,) where the gauge stands on the metal, from its zero
+    sd            standard deviation of that, greatest over the turn
+    outliers      points that were left out
+    """
+
+    gauge: Follower
+    side: Side
+    curve: Smooth
+    position: Array
+    sd: float
+    outliers: int
+
+    @property
+    def shaft(self) -> Array:
+        """Shaft angles (n,)."""
+        return equal_steps(len(self.position))
+
+    def lifted_circle(self, level: float) -> float:
+        """How much larger than the gauge's circle one is, mm, on which it stands at a level."""
+
+        def stands(height: float) -> float:
+            metal = Metal.of(self.gauge, self.side, lambda t: np.stack([np.full_like(t, height), np.zeros_like(t)]))
+            return float(metal.positions(np.zeros(1))[0][0, 0] - self.gauge.intended(np.zeros(1))[0]) - level
+
+        before, here = 0.0, 0.1 * self.side
+        low, off = stands(before), stands(here)
+        for _ in range(SECANT_STEPS):
+            if abs(off) < ROUNDING or off == low:
+                break
+            before, here, low = here, here - off * (here - before) / (off - low), off
+            off = stands(here)
+        return self.side * here
+
+
+def measured_motion(
+    contact: Contact[Guide, Touch], side: Side, points: tuple[Array, Array | None, float], spans: int | None = None
+) -> PointMotion:
+    """Let a follower of one contact run on the metal of points, their normals or None, and the radius of their ball.
+
+    Raises ContactError where it finds no metal, GapError for a gap, ValueError as `fit` does.
+    """
+    still = Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN)
+    gauge = follower_of([contact], still, side)
+    places, directions, ball = points
+    deviations = SurfacePoints(gauge, side, places, ball, directions).deviations
+    smooth = fit(deviations.parameter, deviations.e, spans)
+    (errors,) = contact_errors(gauge, side, smooth.curve, equal_steps(STEPS))
+    return PointMotion(
+        gauge, side, smooth.curve, errors.rows[0], float(errors.sds[0].max()), int(smooth.outliers.sum())
+    )
+
+
+class Stroke(NamedTuple):
+    """A stroke between boundaries `first` and `last` and between their levels, as indices; its law.
+
+    `others` are laws that fit nearly as well, `residual` the root mean square of what the law leaves, mm or rad.
+    """
+
+    first: int
+    last: int
+    low: int
+    high: int
+    law: str
+    others: tuple[str, ...]
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class Programme:
+    """A motion as strokes with dwells between; mm or rad, angles rad.
+
+    boundaries (m,)   shaft angles at which strokes begin and end, in the order of the turn
+    levels (k,)       positions at which they do
+    strokes           in order
+    uncertainty       expanded (k = 2), of boundaries and of levels
+    residual (n,)     what the motion is off
+    """
+
+    boundaries: Array
+    levels: Array
+    strokes: tuple[Stroke, ...]
+    uncertainty: tuple[Array, Array]
+    residual: Array
+
+    @property
+    def greatest(self) -> float:
+        """Greatest size of what is left."""
+        return float(np.abs(self.residual).max())
+
+    def written(self, motion: PointMotion, boundaries: Array, levels: Array) -> Programme:
+        """The same strokes between other boundaries and levels."""
+        residual = motion.position - _model(motion.shaft, boundaries, levels, self.strokes)
+        return replace(self, boundaries=boundaries, levels=levels, residual=residual)
+
+
+def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | None:
+    """The programme of a motion whose dwells rest within a reading, mm or rad; None where there is no stroke."""
+    position, nothing = motion.position, np.zeros(len(motion.position))
+    rows = np.stack([position, nothing, nothing])
+    least, most = (float(position.min()), 0.0), (float(position.max()), 0.0)
+    rests = MeasuredMotion(unit, motion.shaft, rows, nothing, nothing, least, most).dwells(reading)
+    places = _places(position, [(rest.begin, rest.end, rest.level) for rest in rests], LEAST_STROKE * reading)
+    if len(places) < 2:  # a turn of one level
+        return None
+    boundaries = np.array([end for begin, end, _ in places for end in ((begin, end) if end > begin else (begin,))])
+    levels = np.array([level for _, _, level in places])
+    strokes, at = [], 0
+    for k, (begin, end, _) in enumerate(places):
+        at += int(end > begin)
+        strokes.append(Stroke(at, (at + 1) % len(boundaries), k, (k + 1) % len(places), "", (), 0.0))
+        at += 1
+    laws = tuple(_by_law(motion, stroke, boundaries, levels, places) for stroke in strokes)
+    rough = _fitted(motion, boundaries, levels, laws)
+    laws = tuple(_by_law(motion, stroke, rough.boundaries, rough.levels, places) for stroke in strokes)
+    return _fitted(motion, rough.boundaries, rough.levels, laws)
+
+
+def _places(
+    position: Array, rests: Sequence[tuple[float, float, float]], least: float
+) -> list[tuple[float, float, float]]:
+    """Dwells, and turning points between them as dwells of no length: begin, end, level; in the order of the turn."""
+    shaft = equal_steps(len(position))
+    if not rests:
+        lowest = int(np.argmin(position))
+        rests = [(float(shaft[lowest]), float(shaft[lowest]), float(position[lowest]))]
+    places = list(rests)
+    for k, (_, end, level) in enumerate(rests):
+        following = rests[(k + 1) % len(rests)][0]
+        length = (following - end) % TURN or TURN
+        inside = np.flatnonzero((np.mod(shaft - end, TURN) > 0.0) & (np.mod(shaft - end, TURN) < length))
+        inside = inside[np.argsort(np.mod(shaft[inside] - end, TURN))]
+        places += _turns(position, shaft, inside, level, least)
+    return sorted(places, key=lambda place: place[0] % TURN)
+
+
+def _turns(
+    position: Array, shaft: Array, inside: Indices, level: float, least: float
+) -> list[tuple[float, float, float]]:
+    """Turning points of a stretch that begins at a level: extremes from which it comes back by `least`."""
+    turns, best, rising = [], None, 0
+    last = level
+    for i in inside.tolist():
+        here = float(position[i])
+        if rising == 0:
+            if abs(here - last) >= least:
+                rising, best = (1 if here > last else -1), i
+            continue
+        if best is None or (here - position[best]) * rising >= 0.0:
+            best = i
+        elif (position[best] - here) * rising >= least:
+            turns.append((float(shaft[best]), float(shaft[best]), float(position[best])))
+            rising, best = -rising, i
+    return turns
+
+
+def _law_of(name: str, u: Array, *, falls: bool) -> Array:
+    """Displacement of a law at shares of its stroke (n,); a fall runs it backwards."""
+    law: Law = named(name)
+    share = np.clip(u, 0.0, 1.0)
+    moved: Array = law.derivatives(1.0 - share if falls else share, 0)[0]
+    return 1.0 - moved if falls else moved
+
+
+def _model(shaft: Array, boundaries: Array, levels: Array, strokes: Sequence[Stroke]) -> Array:
+    """Position at shaft angles (n,)."""
+    position = np.empty_like(shaft)
+    for k, stroke in enumerate(strokes):
+        following = strokes[(k + 1) % len(strokes)]
+        begin = boundaries[stroke.first]
+        length = np.mod(boundaries[stroke.last] - begin, TURN) or TURN
+        reach = np.mod(boundaries[following.first] - begin, TURN) or TURN
+        away = np.mod(shaft - begin, TURN)
+        own = away <= reach
+        low, high = levels[stroke.low], levels[stroke.high]
+        moved = _law_of(stroke.law, away[own] / length, falls=bool(high < low))
+        position[own] = low + (high - low) * moved
+    return position
+
+
+def _by_law(
+    motion: PointMotion, stroke: Stroke, boundaries: Array, levels: Array, places: Sequence[tuple[float, float, float]]
+) -> Stroke:
+    """A stroke with the law that fits it best, each tried with ends of its own where dwells are beside it."""
+    before, after = places[stroke.low], places[stroke.high]
+    begin, end = boundaries[stroke.first], boundaries[stroke.last]
+    length = np.mod(end - begin, TURN) or TURN
+    lead, tail = (0.5 * (place[1] - place[0]) for place in (before, after))
+    away = np.mod(motion.shaft - begin + lead, TURN)
+    own = away <= lead + length + tail
+    shaft, position = away[own] - lead, motion.position[own]
+    free = np.array([lead > 0.0, tail > 0.0])
+    falls = bool(levels[stroke.high] < levels[stroke.low])
+    residuals = {}
+    for name in NAMES:
+
+        def off(ends: Array, name: str = name) -> Array:
+            u = (shaft - ends[0]) / max(float(ends[1] - ends[0]), 1e-3)
+            moved = _law_of(name, u, falls=falls)
+            columns = np.column_stack([1.0 - moved, moved])
+            level = np.linalg.lstsq(columns, position, rcond=None)[0]
+            left: Array = position - columns @ level
+            return left
+
+        ends = np.array([0.0, length])
+        here = off(ends)
+        for _ in range(ROUNDS):
+            slopes = np.zeros((len(shaft), 2))
+            for k in np.flatnonzero(free):
+                step = np.zeros(2)
+                step[k] = 1e-4
+                slopes[:, k] = (off(ends + step) - off(ends - step)) / 2e-4
+            if not free.any():
+                break
+            change = np.zeros(2)
+            change[free] = np.linalg.lstsq(slopes[:, free], -here, rcond=None)[0]
+            change = np.clip(change, -0.1 * length, 0.1 * length)
+            new = off(ends + change)
+            if not float(new @ new) < float(here @ here):
+                break
+            ends, here = ends + change, new
+            if float(np.abs(change).max()) < SETTLED * TURN:
+                break
+        residuals[name] = math.sqrt(float(here @ here) / len(here))
+    order = sorted(residuals, key=lambda name: residuals[name])
+    best = residuals[order[0]]
+    others = tuple(name for name in order[1:] if residuals[name] <= NEARLY * max(best, motion.sd))
+    return stroke._replace(law=order[0], others=others, residual=best)
+
+
+def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tuple[Stroke, ...]) -> Programme:
+    """Fit boundaries and levels all at once, by Gauss and Newton."""
+    m, stroke_height = len(boundaries), float(np.ptp(levels))
+    values = np.concatenate([boundaries, levels])
+    scale = np.concatenate([np.ones(m), np.full(len(levels), stroke_height)])
+
+    def off(at: Array) -> Array:
+        residual: Array = motion.position - _model(motion.shaft, at[:m], at[m:], strokes)
+        return residual
+
+    def slopes(at: Array) -> Array:
+        columns = []
+        for k in range(len(at)):
+            step = np.zeros(len(at))
+            step[k] = DIFFERENCE * scale[k]
+            columns.append((off(at + step) - off(at - step)) / (2.0 * DIFFERENCE))
+        return np.column_stack(columns)
+
+    here = off(values)
+    for _ in range(ROUNDS):
+        change = np.linalg.lstsq(slopes(values), -here, rcond=None)[0]
+        share = 1.0
+        while share > SETTLED:
+            new = off(values + share * change * scale)
+            if float(new @ new) < float(here @ here):
+                break
+            share *= 0.5
+        else:
+            break
+        values, here = values + share * change * scale, new
+        if float(np.abs(change).max()) < SETTLED:
+            break
+    columns = slopes(values)
+    independent = int(np.count_nonzero(np.sign(here) != np.sign(np.roll(here, 1))))  # waves count by their half waves
+    free = max(min(independent, motion.curve.spans) - len(values), 1)
+    covariance = float(here @ here) / free * np.linalg.pinv(columns.T @ columns)
+    expanded = COVERAGE * np.sqrt(np.diag(covariance)) * scale
+    return Programme(values[:m], values[m:], strokes, (expanded[:m], expanded[m:]), here)

@@ -1,0 +1,173 @@
+"""`camgeo new --from`: recipes of cams that were measured, exported and verified against the points."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from support.measured import RECIPES, bump, disc, nothing, points, surfaces, table
+
+import camgeo
+from camgeo.cli.main import main
+
+KINDS = [
+    "roller on a stem",
+    "knife edge on a stem",
+    "shoe on a stem",
+    "roller on a trailing arm",
+    "roller on a leading arm",
+    "ring",
+    "flat",
+    "tilted flat",
+    "flat on an arm",
+]
+
+
+def bare(text):
+    """A recipe that says neither base radius nor motion."""
+    return re.sub(r", motion: \[.*\]", "", text.replace("base_radius: 40, ", ""))
+
+
+def start(folder, text, deviation=nothing, noise=0.0005, recipe=None):
+    ((_, part, surface),) = surfaces(text)
+    (folder / "points.csv").write_text(table(points(part, surface, deviation, noise)), "utf-8")
+    (folder / "bare.yaml").write_text(bare(text) if recipe is None else recipe, "utf-8")
+    return main(["new", "--from", str(folder / "points.csv"), str(folder / "bare.yaml"), str(folder / "new.yaml")])
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
+    assert start(tmp_path, RECIPES[kind]) == 0
+    lines = capsys.readouterr().out
+    ((_, _, meant),) = surfaces(RECIPES[kind])
+    assert "verified against the points: profile 0.00" in lines
+    assert "cycloidal leaves" in lines
+    text = (tmp_path / "new.yaml").read_text("utf-8")
+    assert text.count("law: cycloidal") == 2
+    (base,) = re.findall(r"base_radius: ([0-9.]+)", text)
+    assert float(base) == pytest.approx(40.0, abs=0.001)
+    ((_, _, surface),) = surfaces(text)
+    t = np.linspace(0.0, 2.0 * np.pi, 500)
+    assert surface.gauge.envelope.points(t) == pytest.approx(meant.gauge.envelope.points(t), abs=0.002)
+    assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
+    assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.007
+
+
+def test_round_numbers_are_written_where_the_points_let_them_be(tmp_path):
+    start(tmp_path, RECIPES["roller on a stem"])
+    recipe = camgeo.load(tmp_path / "new.yaml")
+    assert recipe.cam.base_radius == 40.0
+    assert (
+        "[{rise: 8, over: 120, law: cycloidal}, {dwell: 40}, {return: 8, over: 140, law: cycloidal}, {dwell: 60}]"
+        in (tmp_path / "new.yaml").read_text("utf-8")
+    )
+
+
+def test_comments_and_other_keys_stay(tmp_path):
+    text = "# my cam\n" + bare(RECIPES["flat"]) + "\nexport: {tolerance: 0.002}  # as asked\n"
+    assert start(tmp_path, RECIPES["flat"], recipe=text) == 0
+    new = (tmp_path / "new.yaml").read_text("utf-8")
+    assert new.startswith("# my cam\n")
+    assert "# as asked" in new
+
+
+def test_what_a_recipe_says_of_motion_and_base_gives_way(tmp_path):
+    other = RECIPES["roller on a stem"].replace("base_radius: 40", "base_radius: 35").replace("rise: 8", "rise: 3")
+    assert start(tmp_path, RECIPES["roller on a stem"], recipe=other.replace("return: 8", "return: 3")) == 0
+    assert "rise: 8, over: 120" in (tmp_path / "new.yaml").read_text("utf-8")
+
+
+def test_inches_and_a_shaft_that_turns_the_other_way(tmp_path):
+    text = disc(
+        "kind: roller, radius: 0.4",
+        "[{rise: 0.3, over: 120, law: modified-sine}, {dwell: 60}, "
+        "{return: 0.3, over: 110, law: modified-sine}, {dwell: 70}]",
+    ).replace("base_radius: 40", "base_radius: 1.5")
+    text = f"units: inch\nrotation: ccw\n{text.replace('bore: 12', 'bore: 0.5')}"
+    assert start(tmp_path, text, recipe=re.sub(r", motion: \[.*\]", "", text.replace("base_radius: 1.5, ", ""))) == 0
+    new = (tmp_path / "new.yaml").read_text("utf-8")
+    assert "base_radius: 1.5" in new
+    assert new.count("law: modified-sine") == 2
+
+
+def test_a_worn_cam_becomes_a_table(tmp_path, capsys):
+    """A groove worn 0.2 mm deep beside the top of the rise: no law has it."""
+    assert start(tmp_path, RECIPES["roller on a stem"], bump(-0.2, 5.0)) == 0
+    lines = capsys.readouterr().out
+    assert re.search(
+        r"the motion is a table, new-lift\.csv, within 0\.02 mm: the laws that fit best leave 0\.[0-9]+ mm", lines
+    )
+    rows = (tmp_path / "new-lift.csv").read_text("utf-8").splitlines()
+    assert rows[0] == "angle,lift"
+    assert len(rows) == 722
+    assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
+    assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.06
+
+
+def test_a_turn_that_begins_within_a_stroke_becomes_a_table(tmp_path, capsys):
+    text = RECIPES["roller on a stem"]
+    ((_, part, surface),) = surfaces(text)
+    places = points(part, surface)
+    c, s = np.cos(np.radians(50.0)), np.sin(np.radians(50.0))
+    (tmp_path / "points.csv").write_text(table(places @ np.array([[c, -s], [s, c]])), "utf-8")
+    (tmp_path / "bare.yaml").write_text(bare(text), "utf-8")
+    assert (
+        main(["new", "--from", str(tmp_path / "points.csv"), str(tmp_path / "bare.yaml"), str(tmp_path / "new.yaml")])
+        == 0
+    )
+    assert "the turn begins within a stroke: turn the points" in capsys.readouterr().out
+
+
+def test_laws_that_fit_alike_are_named(tmp_path, capsys):
+    """Noise of 20 um leaves the laws of two cosines and of a trapezoid alike."""
+    text = RECIPES["roller on a stem"].replace("cycloidal", "gutman-13")
+    assert start(tmp_path, text, noise=0.02) == 0
+    assert re.search(
+        r", .*(freudenstein|modified-trapezoid).* hardly more: look at which it was", capsys.readouterr().out
+    )
+
+
+BAD = {
+    "a yoke": (RECIPES["yoke"], None, "cam.base_radius: unknown key; it belongs under cam of kind "),
+    "a groove": (RECIPES["groove"], None, "a recipe is made of points of a cam with one contact"),
+    "lifts": (
+        bare(RECIPES["flat"]),
+        "angle,lift\n" + "\n".join(f"{k},{k % 7}" for k in range(360)),
+        "lifts tell no base",
+    ),
+    "few points": (bare(RECIPES["flat"]), "x,y\n1,2\n3,4\n", "points"),
+    "a fault": (bare(RECIPES["flat"]).replace("bore: 12", "bore: x"), None, "part.bore: "),
+    "no cam": ("part: {bore: 12}\n", None, "cam"),
+}
+
+
+@pytest.mark.parametrize("name", list(BAD))
+def test_bad_input_is_told_and_nothing_is_written(name, tmp_path, capsys):
+    recipe, data, told = BAD[name]
+    ((_, part, surface),) = surfaces(RECIPES["flat"])
+    (tmp_path / "points.csv").write_text(data or table(points(part, surface)), "utf-8")
+    (tmp_path / "bare.yaml").write_text(recipe, "utf-8")
+    before = set(tmp_path.iterdir())
+    assert (
+        main(["new", "--from", str(tmp_path / "points.csv"), str(tmp_path / "bare.yaml"), str(tmp_path / "new.yaml")])
+        == 2
+    )
+    assert told in capsys.readouterr().err
+    assert set(tmp_path.iterdir()) == before
+
+
+def test_files_that_are_there_or_not_there(tmp_path, capsys):
+    assert start(tmp_path, RECIPES["flat"]) == 0
+    assert start(tmp_path, RECIPES["flat"]) == 2
+    assert "exists already" in capsys.readouterr().err
+    for source, recipe in (("none.csv", "bare.yaml"), ("points.csv", "none.yaml")):
+        words = ["new", "--from", str(tmp_path / source), str(tmp_path / recipe), str(tmp_path / "other.yaml")]
+        assert main(words) == 2
+        assert f"{tmp_path / next(each for each in (source, recipe) if 'none' in each)}: the file does not exist" in (
+            capsys.readouterr().err
+        )
+    assert main(["new", "--from", str(tmp_path / "points.csv")]) == 2
+    assert "give a recipe that says what follows the cam" in capsys.readouterr().err
+    assert not (tmp_path / "other.yaml").exists()
