@@ -18,7 +18,7 @@ from camgeo.capabilities.dynamics.figures import (
 )
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.checks.remedies import worst
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import downward, upward
 
 if TYPE_CHECKING:
     from camgeo.checks.remedies import Entry
@@ -51,10 +51,15 @@ def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     spring = next((path for path in held if path in recipe.marks), "")
     if figure in {FORCE_LEAST, LEAST_FORCE}:
         return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
-    if value < bound or figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
+    if figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
         return ""
-    less = f"a smaller {spring}, less mass or load" if spring else "less mass or load"
+    raised = value < bound
+    forces = "more mass or load" if raised else "less mass or load"
+    forces = f"a {'greater' if raised else 'smaller'} {spring}, {forces}" if spring else forces
     if figure == PRESSURE:  # with the root of force over width
-        wider = f"contacts {upward((value / bound) ** 2)} times as wide (part.thickness, less chamfer, a deeper groove)"
-        return f"{wider}, a larger radius, {less}"
-    return f"a longer guide, or {less}" if figure == GUIDE_FORCE else less
+        share = (value / bound) ** 2
+        if raised:
+            return f"contacts {downward(share)} times as wide (part.thickness, a chamfer), a smaller radius, {forces}"
+        wider = f"contacts {upward(share)} times as wide (part.thickness, less chamfer, a deeper groove)"
+        return f"{wider}, a larger radius, {forces}"
+    return f"a {'shorter' if raised else 'longer'} guide, or {forces}" if figure == GUIDE_FORCE else forces

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 OF_BODIES = Need("a file with `parts: all`", lambda _, given: "parts: all" in given)
-CLEARANCE = "clearance"
+CLEARANCE, COLLISION = "clearance", "collision"
 FIGURES = {
     CLEARANCE: Figure(
         "least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
     ),
-    "collision": Figure(
+    COLLISION: Figure(
         "least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
     ),
 }
@@ -63,9 +63,13 @@ def _checks() -> Sequence[Declared]:
     return CHECKS
 
 
-def _remedy(_: Recipe, figure: str, value: float, bound: float) -> str:
-    if figure != CLEARANCE:
+def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    if figure not in FIGURES:
         return ""
+    if figure == COLLISION and value <= 0.0:
+        from camgeo.capabilities.mechanism.checks import slimmer
+
+        return slimmer(recipe)
     return f"a {'larger' if value < bound else 'smaller'} mechanism.clearance"
 
 

@@ -11,6 +11,7 @@ from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
+from camgeo.report.failure import failure
 from camgeo.synthesis.expected_checks import foreseen
 
 if TYPE_CHECKING:
@@ -104,6 +105,20 @@ def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     assert "deg" in told
     assert not (tmp_path / "out" / "wide").exists()
     assert (tmp_path / "out" / "wide.rejected" / "wide-frame.stl").exists()
+
+
+@pytest.mark.slow
+def test_bodies_that_meet_are_kept_apart_by_smaller_sizes() -> None:
+    """Those that the recipe gives are named, by the check and by a limit of the same; and smaller they do not meet."""
+    text = f"{FOUR_BAR}limits: {{collision: {{at_least: 0.01}}}}\nmechanism: {{wall: 22, pin: 4, bar: 10}}\n"
+    recipe, words = load_text(text, "wide.yaml"), "smaller mechanism.wall, mechanism.bar and mechanism.pin"
+    report = pipeline.check(recipe).report
+    failed = {check["name"]: check for check in report["checks"] if not check["ok"]}
+    assert set(failed) == {"collision", "limit:collision"}
+    assert f"remedy   {words}\n" in failure(failed["collision"], report, recipe)
+    assert failed["limit:collision"]["detail"] == f"{words} would satisfy it"
+    slimmer = text.replace("wall: 22, pin: 4, bar: 10", "wall: 6, pin: 3.5, bar: 8")
+    assert pipeline.check(load_text(slimmer, "slim.yaml")).ok
 
 
 @pytest.mark.slow
