@@ -232,6 +232,12 @@ def _plain(name: str) -> Format:
     return replace(record, options=Table(kept))
 
 
+def _only(item: Field, *names: str) -> Field:
+    """Give a mapping with some of its keys."""
+    fields = () if item.table is None else item.table.fields
+    return replace(item, table=Table(tuple(each for each in fields if each.name in names)))
+
+
 DIAGRAMS = ("timing", "bars", "cam-wheel", "crank-wheel", "shaft")
 OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
 
@@ -265,7 +271,7 @@ SHAFT = Table(
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
         CAMSHAFT,
         export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]", unfit=OF_A_LOBE),
-        CORE.field("verify"),
+        _only(CORE.field("verify"), "angles"),  # the motion of a lobe is judged as its own recipe has it
     )
 )
 

@@ -11,7 +11,7 @@ from camgeo.registry import registry
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.overlays import Stage, overlaid
-from camgeo.report.page.scene import Body, Scene, Shape, pivot
+from camgeo.report.page.scene import CONTACTS, Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
@@ -196,7 +196,7 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
         if recipe.linkage is not None:
             bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
         stage = Stage(view_of(recipe, design), driven.cam, driven.theta, reach, size)
-        bodies += overlaid(recipe.export.overlays, stage)
+        bodies = _under_contacts(overlaid(recipe.export.overlays, stage), bodies)
         return (
             Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),
@@ -210,8 +210,17 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
     discs = _discs(design, drawn, bore, size, -SHAFT)
-    bodies += overlaid(recipe.export.overlays, Stage(view, -SHAFT, SHAFT, reach, size))
+    stage = Stage(view, -SHAFT, SHAFT, reach, size)
+    bodies = _under_contacts(overlaid(recipe.export.overlays, stage), bodies)
     return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
+
+
+def _under_contacts(overlays: Sequence[Body], bodies: list[Body]) -> list[Body]:
+    """Return bodies with overlays above all but the contacts, whose normals lie on lines of instant centres."""
+    if not overlays:
+        return bodies
+    contacts = [body for body in bodies if body.kind == CONTACTS]
+    return [*(body for body in bodies if body.kind != CONTACTS), *overlays, *contacts]
 
 
 _Drawing: TypeAlias = "tuple[list[Body], list[curves.Plot]]"

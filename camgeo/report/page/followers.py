@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
-from camgeo.report.page.scene import STEPS, Body, Label, Shape, arrow, pin, pivot, poses, still
+from camgeo.report.page.scene import CONTACTS, STEPS, Body, Label, Shape, arrow, pin, pivot, poses, still
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def edge_ahead(ring: Ring) -> float:
 
 def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
     """Return a contact with the direction in which it pushes, the arrow longer by what it runs `within` a roller."""
-    return Body(name, "contacts", arrow(6.0 * size + within, size), poses(x, y, direction))
+    return Body(name, CONTACTS, arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
 def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]:

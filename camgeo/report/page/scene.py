@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 STEPS = 720  # places of a turn; between them a page interpolates
+CONTACTS = "contacts"  # the kind of bodies that show where the cam is touched, and its normal
 OVERLAYS = "overlays"  # the kind of bodies that a recipe asks for beside the mechanism
 SEEN = 24  # a body's extent is taken from every so many places
 

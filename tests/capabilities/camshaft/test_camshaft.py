@@ -23,6 +23,7 @@ from camgeo.cli.exit_status import SURROUNDINGS
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.recipe.loading import load_order
+from camgeo.recipe.starter import starter
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.judge.camshaft import verify_camshaft
@@ -886,6 +887,15 @@ def test_a_slip_in_the_word_camshaft_is_named(word: str, tmp_path: Path) -> None
     path.write_text("cma: {kind: disc}\n", encoding="utf-8")
     with pytest.raises(RecipeErrors, match=r"cma: unknown key; did you mean cam\?"):
         load_order(path)
+
+
+@pytest.mark.parametrize("key", ["motion_error", "output_error"])
+def test_what_a_lobe_is_permitted_stands_in_its_own_recipe(key: str, tmp_path: Path) -> None:
+    path = shaft(tmp_path, TWO)
+    path.write_text(path.read_text().replace("verify: {", f"verify: {{{key}: 0.1, "), encoding="utf-8")
+    with pytest.raises(RecipeErrors, match=rf"verify\.{key}: unknown key; the keys here are angles"):
+        load_order(path)
+    assert key not in starter("camshaft")
 
 
 def test_separation_and_advance_are_the_centres_that_they_make(tmp_path: Path) -> None:
