@@ -10,8 +10,8 @@ import pytest
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.schema.errors import RecipeErrors
 from camgeo.report.failure import failure
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 
 if TYPE_CHECKING:
