@@ -191,7 +191,8 @@ def _headed(heading: list[str], rows: _Rows) -> PointTable:
     if not wanted or missing:
         lacking = f"a column {' and '.join(missing)} is missing" if wanted else "no columns of measured points"
         told = ", ".join(heading)
-        message = f"{lacking} in its heading {_short(told)}; x,y or radius,angle or angle_deg,lift are read, or of a grinder's table c_deg and x or lift"
+        readable = "x,y or radius,angle or angle_deg,lift are read, or of a grinder's table c_deg and x or lift"
+        message = f"{lacking} in its heading {_short(told)}; {readable}"
         raise ReadError("unsupported", message, rows.path)
     prefixes = surfaces if first else [""]
     groups = [_group(known, prefix, wanted) for prefix in prefixes]
