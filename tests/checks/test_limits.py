@@ -118,6 +118,11 @@ HAVE = {
     **dict.fromkeys(("margin", "shaft-rate", "output-error"), LINKED + VERIFY),
     **dict.fromkeys(("clearance", "collision"), SET),
     **dict.fromkeys(("budget-worst", "budget-rss"), SPLIT),  # needs: budget
+    # needs: valve
+    **dict.fromkeys(
+        ("valve-lift", "valve-duration", "valve-velocity", "valve-acceleration", "valve-seating"),
+        LOBE + "valve: {ratio: 1.6, lash: 0.3}\n",
+    ),
 }
 
 
@@ -607,6 +612,7 @@ def test_the_schema_knows_every_limit() -> None:
     more = {"pressure-angle": {"on_return"}, **{f"peak-{one}-at-speed": {"rpm"} for one in ("velocity", "jerk")}}
     more["peak-acceleration-at-speed"] = {"rpm"}
     more |= {name: {"at_lift"} for name in ("duration", "lobe-centre", "ramp-velocity", "lift-area")}
+    more |= {name: {"at_lift"} for name in ("valve-duration", "valve-seating")}  # needs: valve
     for name, bounds in schema["properties"].items():
         assert set(bounds["properties"]) == {"at_least", "at_most"} | more.get(name, set())
         assert bounds["minProperties"] == 1
