@@ -125,8 +125,8 @@ def samples(
     solids: Sequence[str] = SOLIDS,
 ) -> list[Sample]:
     """Make the files of a recipe."""
-    requests = [FileRequest(kind, as_, "R2010" if kind == "dxf" else None) for kind, as_ in drawings]  # type: ignore[arg-type] # they are
-    requests += [FileRequest(kind) for kind in solids]  # type: ignore[arg-type] # they are
+    requests = [FileRequest(kind, as_) for kind, as_ in drawings]
+    requests += [FileRequest(kind) for kind in solids]
     recipe = replace(recipe, export=replace(recipe.export, files=tuple(requests)), dynamics=None, sweep=None)
     outcome = pipeline.export(recipe, folder)
     if not outcome.ok or outcome.folder is None:

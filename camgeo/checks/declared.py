@@ -150,6 +150,10 @@ def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
     return file.form.ground or _contour(scene, file)
 
 
+def _of_a_wheel(_: Scene, file: FileRequest) -> bool:
+    return file.form.ground and "roller" not in file.own
+
+
 def _drawing(_: Scene, file: FileRequest) -> bool:
     return file.format.contour and not file.format.solid
 
@@ -340,7 +344,7 @@ SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="pa
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)
-NORMALS = Declared("normals", ("mm",), of_file=lambda _, file: file.as_ == "grinding", field="export.tolerance")
+NORMALS = Declared("normals", ("mm",), of_file=_of_a_wheel, field="export.tolerance")
 STATED_ERROR = Declared("stated-error", ("mm",), of_file=lambda _, file: file.form.ground)
 MOTION = Declared(
     "motion",

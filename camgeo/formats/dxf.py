@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
+VERSION = "R2010"  # unless a recipe gives another
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1027"}
 UNITS = {1.0: ("mm", 4, 1), 25.4: ("inch", 1, 0)}  # mm a unit: name, $INSUNITS, $MEASUREMENT
 APPLICATION = "CAMGEO"  # under this name each entity of the reference carries what it is, as extended data
@@ -100,7 +101,7 @@ def write_dxf(
     *,
     reference: Sequence[Reference] = (),
     mm: float = 1.0,
-    version: str = "R2010",
+    version: str = VERSION,
     name: str = "",
     about: str = "",
     remarks: Sequence[str] = (),
@@ -322,7 +323,7 @@ def _draw(
             remarks=remarks,
             reference=_reference(job, job.tolerance(request)),
             mm=recipe.mm,
-            version=request.version or "R2010",
+            version=request.own.get("version", VERSION),
             name=recipe.name,
             about=recipe.about,
         )
@@ -397,12 +398,13 @@ FORMAT = Format(
                 "version",
                 Kind.CHOICE,
                 "version of the format; R12 has no splines",
-                default="R2010",
-                choices=("R12", "R2000", "R2010", "R2013"),
+                default=VERSION,
+                choices=tuple(VERSIONS),
             ),
             *OF_DRAWING,
         ),
     ),
+    named=("version",),
     forms={
         name: Form(name=name, surfaces=2, discs=2, pieces=pieces, listed=("as", "version"))
         for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))

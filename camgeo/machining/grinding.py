@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
+ROLLER = "roller"  # option of the table of a roller's lift, which one of a wheel's places does not have
 CELLS = 16_384  # intervals of the turn over which the second derivative is bounded
 SHARE = 0.99  # of the tolerance that straight joins may take, the rest being for the table's digits
 TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
@@ -77,7 +78,7 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
     degrees, unit = 360.0 * np.arange(count + 1) / count, "in" if recipe.units == "inch" else "mm"
     length = _exact_length(2.0 * wheel.radius, recipe)
     head = [f"{recipe.name}: {{}}; c_deg: direction of its centre from the shaft, as the part is drawn"]
-    if request.as_ == "lift":
+    if ROLLER in request.own:
         zero = _zero(path)
         lift = np.where(np.abs(distance - zero) < NOTHING * far, 0.0, distance - zero)
         rows = [degrees, _closed(lift / recipe.mm)]
@@ -97,7 +98,7 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
 
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
     """How kin is to take tables of a recipe."""
-    request = next((request for request in recipe.export.files if request.as_ == "lift"), None)
+    request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:
         return Grinding(recipe.wheel)
     wheel = _Wheel.of(recipe, request, recipe.field_of(request))
@@ -160,11 +161,11 @@ class _Wheel(NamedTuple):
     @staticmethod
     def of(recipe: Recipe, request: FileRequest, field: str) -> _Wheel:
         """That of a request, `field` its path."""
-        lift = request.as_ == "lift"
-        radius, where = (request.roller, f"{field}.csv.roller") if lift else (recipe.wheel, "manufacture.wheel")
-        if radius is None:
-            raise recipe.error(where, "missing", None, "give its diameter")
-        return _Wheel(radius, where)
+        if ROLLER in request.own:
+            return _Wheel(0.5 * request.own[ROLLER], f"{field}.csv.{ROLLER}")
+        if recipe.wheel is None:
+            raise recipe.error("manufacture.wheel", "missing", None, "give its diameter")
+        return _Wheel(recipe.wheel, "manufacture.wheel")
 
 
 def _refused(recipe: Recipe, wheel: _Wheel, why: str, largest: float) -> RecipeErrors:
@@ -187,9 +188,9 @@ def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequen
         where = f"{field}.csv.tolerance" if request.tolerance is not None else "export.tolerance"
         raise recipe.error(where, what, _length(tolerance, recipe), f"give at least {least} {recipe.units}")
     step = next(tick for tick in range(ticks, 0, -1) if 360 * TICKS % tick == 0) / TICKS
-    if request.step is None:
+    if "step" not in request.own:
         return round(360.0 / step)
-    count = round(2.0 * math.pi / request.step)
+    count = round(2.0 * math.pi / float(request.own["step"]))
     left = _left(360.0 / count, bend)
     if left > tolerance:
         what = f"joined by straight lines rows so far apart leave {_length(left, recipe)}, beyond the tolerance"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import collections.abc
 from functools import partial
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from camgeo.recipe.machining import Compensation, alterations, build_compensation
+from camgeo.recipe.machining import COMPENSATION, Compensation, alterations, build_compensation
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS, variant
 from camgeo.schema.errors import shown
@@ -29,24 +29,24 @@ Length: TypeAlias = Literal["mm", "inch"]
 class FileRequest:
     """One file to write.
 
-    `kind` is its format, `as_` the form; `version` is of DXF; `tolerance` (mm) stands in for the export's own; a part
-    that is made different from the nominal one has its `compensation`. `variant` names the capability whose option
-    makes the file something else than the cam, empty for the cam. `units` is the file's own unit, None for the
-    format's (`told_in`). `step`, rad, is that of a grinder's table, `roller` the radius, mm, of the one whose lift is
-    tabled. `overlays` are what a page shows besides, `own` the options that its format alone has.
+    `kind` is its format, `as_` the form; `tolerance` (mm) stands in for the export's own; a part that is made different
+    from the nominal one has its `compensation`. `variant` names the capability whose option makes the file something
+    else than the cam, empty for the cam. `units` is the file's own unit, None for the format's (`told_in`).
+    `options` has by their names those that its format has besides, lengths in mm and angles in rad.
     """
 
     kind: str
     as_: str | None = None
-    version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
     variant: str = ""
     units: Length | None = None
-    step: float | None = None
-    roller: float | None = None
-    overlays: tuple[str, ...] = ()
-    own: object = None
+    options: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """Options that its format alone has, by their names."""
+        return dict(self.options)
 
     @property
     def format(self) -> Format:
@@ -76,10 +76,10 @@ class FileRequest:
         """Name the file among all `requests` of recipe `name`: no later one renames it.
 
         The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one that is alike in that it is
-        `<name>-<as>-<version>.<kind>`, with `-kerf` and the like behind for a part that is not nominal, and `-inch` or
-        `-mm` for a unit of its own; a part that a capability alters is called so in any case. Of all bodies of a
-        mechanism it is the first: `<name>-cam.stl`, `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind
-        one that is not is `<name>-nominal.<kind>`.
+        `<name>-<as>-<option>.<kind>` by the options that its format names, such as `R12` of DXF, with `-kerf` and the
+        like behind for a part that is not nominal, and `-inch` or `-mm` for a unit of its own; a part that a capability
+        alters is called so in any case. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
+        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind one that is not is `<name>-nominal.<kind>`.
         """
         before = requests[: requests.index(self)] if self in requests else requests
         kin = [request for request in before if request.kind == self.kind]
@@ -88,8 +88,7 @@ class FileRequest:
         alike = [request for request in kin if request.as_ == self.as_]
         if kin and self.as_:
             parts.append(self.as_)
-            if alike and self.version:
-                parts.append(self.version)
+            parts += [str(self.own[option]) for option in self.format.named if alike and option in self.own]
         if self.compensation and (alike or self.compensation.altered):
             parts.append(self.compensation.tags)
         if alike and self.units and not self.variant:
@@ -123,7 +122,8 @@ class Export:
     @property
     def overlays(self) -> tuple[str, ...]:
         """What pages show over the mechanism, each once."""
-        return tuple(dict.fromkeys(name for request in self.files for name in request.overlays))
+        names = (name for request in self.files for name in request.own.get("overlays", ()))
+        return tuple(dict.fromkeys(names))
 
 
 class Options(collections.abc.Mapping[str, Table]):
@@ -263,6 +263,8 @@ def check_files(values: Values, reader: Reader) -> None:
 
 
 TOLERANCE = 0.001  # mm
+SHARED = frozenset({"as", "tolerance", "units", *(item.name for item in COMPENSATION)})
+"""Options of files that a request has fields of its own for."""
 
 
 def requests(files: list[Values]) -> tuple[FileRequest, ...]:
@@ -271,19 +273,16 @@ def requests(files: list[Values]) -> tuple[FileRequest, ...]:
 
 
 def _request(kind: str, file: Values) -> FileRequest:
-    chosen = {**FORMATS[kind].chosen, **file}
+    record = FORMATS[kind]
+    chosen = {**record.chosen, **file}
     return FileRequest(
         kind,
         chosen.get("as"),
-        chosen.get("version"),
         chosen.get("tolerance"),
         build_compensation(file),
         next((name for name, other in _variants().items() if other.chosen(file)), ""),
         chosen.get("units"),
-        chosen.get("step"),
-        None if "roller" not in chosen else 0.5 * chosen["roller"],
-        chosen.get("overlays", ()),
-        FORMATS[kind].own(file),
+        tuple((name, chosen[name]) for name in record.options.keys if name in chosen and name not in SHARED),
     )
 
 

@@ -103,17 +103,17 @@ COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one 
 MANUFACTURE = Table(
     (
         length("cutter", "diameter of the cutter that mills the contour"),
-        length("feed", "feed along the contour, a minute; needed by gcode"),
-        length("plunge", "feed downwards, a minute; needed by gcode"),
+        length("feed", "feed along the contour, a minute; needed by a milling program"),
+        length("plunge", "feed downwards, a minute; needed by a milling program"),
         Field(
             "spindle",
             Kind.NUMBER,
-            "speed of the spindle, turns a minute; needed by gcode",
+            "speed of the spindle, turns a minute; needed by a milling program",
             above=0,
             at_most=MOST_RPM,
         ),
-        length("depth_of_cut", "greatest depth of one pass; needed by gcode"),
-        length("safe_height", "height above the stock at which the cutter moves fast; needed by gcode"),
+        length("depth_of_cut", "greatest depth of one pass; needed by a milling program"),
+        length("safe_height", "height above the stock at which the cutter moves fast; needed by a milling program"),
         length("lead_in", "radius of the arcs on which the cutter comes and leaves", default="half the cutter"),
         Field(
             "direction",

@@ -132,7 +132,7 @@ _CORE = {
             "motion": _DWELLS.format("24"),
         },
         {"part": {"thickness": "12", "bore": "20"}},
-        unfit=("track", "length", "angle", "arm", "hub", "set_screw", "mechanism"),
+        unfit=("track", "length", "angle", "arm", "hub", "set_screw"),
     ),
     "disc-ring": Starter(
         "A ring for a roller that runs inside it, on a stem.",
@@ -144,7 +144,7 @@ _CORE = {
             "motion": _DWELLS.format("12"),
         },
         {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
-        unfit=(*OF_A_DISC, "conjugate", "mechanism"),
+        unfit=(*OF_A_DISC, "conjugate"),
     ),
     "disc-groove": Starter(
         "A disc with a groove that pushes a roller on a stem out and back.",
@@ -241,17 +241,21 @@ def starter(kind: str) -> str:
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = STARTERS[kind]
     given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
-    lines = _lines(_recipe(chosen) if chosen.root == CAM else root(chosen.root).table(), given, "")
+    lines = _lines(_recipe(kind, chosen) if chosen.root == CAM else root(chosen.root).table(), given, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 
-def _recipe(chosen: Starter) -> Table:
-    """Make the table of a recipe with this kind of cam and of linkage; if there is none, without what needs one."""
+def _recipe(name: str, chosen: Starter) -> Table:
+    """Make the table of a starter's recipe, with its kinds of cam and linkage; without a linkage, none of its keys."""
     linkage = chosen.more.get("linkage")
     kinds = {"cam": _with_forms(_kinded("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):
         kinds["linkage"] = _kinded("the kind of linkage", LINKAGES, str(linkage["kind"]))
-    fields = (replace(item, table=kinds.get(item.name, item.table)) for item in recipe_table().fields)
+    fields = (
+        replace(item, table=kinds.get(item.name, item.table))
+        for item in recipe_table().fields
+        if name not in item.unshown
+    )
     if linkage:
         return Table(tuple(fields))
     unfit = {*chosen.unfit, "dwell", "output_error"}

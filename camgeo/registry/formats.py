@@ -39,11 +39,6 @@ def no_fault(_file: Values, _values: Values, _reader: Reader, /) -> None:
     """Note nothing."""
 
 
-def no_options(_file: Values, /) -> object:
-    """Have no options of its own."""
-    return None
-
-
 def foresee_nothing(_job: Job, _request: FileRequest, /) -> None:
     """Refuse nothing."""
 
@@ -142,7 +137,7 @@ class Form:
     surfaces  greatest number of surfaces that it holds of a cam of one disc; a cam of more is refused
     discs     the same of discs on one shaft
     pieces    what a piece of its contour is called in reports
-    listed    options that a report tells: attributes of the request by their keys
+    listed    options that a report tells
     ground    whether it is a table by which a lobe is ground, whose contour is judged
     check     notes what a recipe that asks for it lacks: (values of the file, values of the recipe, reader)
     make      writes and judges it, where the format has no one way for all its forms
@@ -174,7 +169,7 @@ class Format:
     suffix    ending of its files' names without the dot, where that is not the name
     tail      word behind the recipe's name in its files' names
     options   keys of one file
-    own       makes of the options of one file those that no other format has, for the request's `own`
+    named     options of its own that tell files of one form apart, in their names
     forms     by their words after the key `as`; by the empty word for a format without that key
     check     notes the faults between its options and others: (values of the file, values of the recipe, reader)
 
@@ -206,7 +201,7 @@ class Format:
     suffix: str = ""
     tail: str = ""
     options: Table = Table(())
-    own: Callable[[Values], object] = no_options
+    named: tuple[str, ...] = ()
     forms: Mapping[str, Form] = field(default_factory=lambda: WHOLE)
     check: Callable[[Values, Values, Reader], None] = no_fault
     contour: bool = True
@@ -243,8 +238,8 @@ class Format:
 
     @property
     def chosen(self) -> Values:
-        """Form and version of a file whose options do not say."""
-        return {item.name: item.default for item in self.options.fields if item.name in {"as", "version"}}
+        """Form of a file whose options do not say, and what else its name has."""
+        return {item.name: item.default for item in self.options.fields if item.name in {"as", *self.named}}
 
     def form(self, word: str | None) -> Form:
         """Form by its word, for None that which is chosen by default; of an unknown word one that holds one surface."""

@@ -168,8 +168,8 @@ def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
     mm = recipe.mm
     if file.body != "cam":
         entry["body"] = file.body
-    told = {"as": file.request.as_, "version": file.request.version}
-    entry |= {key: told[key] for key in file.request.form.listed}
+    options = {"as": file.request.as_, **file.request.own}
+    entry |= {key: options.get(key) for key in file.request.form.listed}
     if file.request.compensation is not None:
         entry["compensation"] = file.request.compensation.entry(mm)
     entry |= {

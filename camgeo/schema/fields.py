@@ -94,7 +94,7 @@ class Form(Generic[R]):
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `after` is the core's key behind which that of a capability stands.
+    `after` is the core's key behind which that of a capability stands, `unshown` are starters that it is of no use to.
     """
 
     name: str
@@ -115,6 +115,7 @@ class Field:
     form: Form[Any] | None = None  # of a field of Kind.OWN
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     after: str = ""
+    unshown: Collection[str] = ()
 
     @property
     def noun(self) -> str:

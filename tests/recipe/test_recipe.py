@@ -94,8 +94,8 @@ verify: {angles: 720, motion_error: 0.002}
         export=Export(
             0.001,
             (
-                FileRequest("dxf", "arcs", "R2010", None),
-                FileRequest("dxf", "spline", "R2013", 0.001),
+                FileRequest("dxf", "arcs", options=(("version", "R2010"),)),
+                FileRequest("dxf", "spline", 0.001, options=(("version", "R2013"),)),
                 FileRequest("stl", tolerance=0.01),
                 FileRequest("csv", "motion"),
             ),
@@ -115,7 +115,7 @@ def test_defaults() -> None:
         rotation="cw",
         cam=SupportCam(FormulaShape("25", 1.0), (0.0, 0.0), "refuse"),
         part=Part(None, None),
-        export=Export(0.001, (FileRequest("dxf", "arcs", "R2010", None),)),
+        export=Export(0.001, (FileRequest("dxf", "arcs", options=(("version", "R2010"),)),)),
         verify=Verify(3600, None),
         path=Path("case.yaml"),
     )
@@ -305,19 +305,15 @@ def test_the_name_is_the_stem_of_the_file() -> None:
     assert read(b"cam: {kind: support, p: 9}", "far/away/cam.v2.yaml").name == "cam.v2"
 
 
-def request(*args: str | None) -> FileRequest:
-    return FileRequest(*args)
-
-
 def test_file_names_tell_apart_what_differs() -> None:
-    arcs, r12 = request("dxf", "arcs", "R2010"), request("dxf", "arcs", "R12")
-    spline, stl, table = request("dxf", "spline", "R2010"), request("stl"), request("csv")
+    arcs, r12 = (FileRequest("dxf", "arcs", options=(("version", version),)) for version in ("R2010", "R12"))
+    spline, stl, table = FileRequest("dxf", "spline"), FileRequest("stl"), FileRequest("csv")
     every = (arcs, r12, spline, stl, table)
     assert arcs.filename("x", (arcs, stl, table)) == "x.dxf"
     names = [r.filename("x", every) for r in every]
     for count in range(1, len(every) + 1):  # what is added behind renames nothing
         assert [r.filename("x", every[:count]) for r in every[:count]] == names[:count]
-    solids = FileRequest("stl", units="inch"), request("stl")
+    solids = FileRequest("stl", units="inch"), FileRequest("stl")
     assert [r.filename("x", solids) for r in solids] == ["x.stl", "x-nominal.stl"]
     three = (arcs, spline, stl)
     assert [r.filename("x", three) for r in three] == ["x.dxf", "x-spline.dxf", "x.stl"]
@@ -423,12 +419,12 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     apart = [file.compensation for file in files if file.compensation is not None]
     assert any(one.kerf for one in apart)
     assert any(one.shrinkage for one in apart)
-    assert any(file.overlays for file in files)
+    assert any(file.own.get("overlays") for file in files)
     assert [name for name, recipe in recipes.items() if recipe.cam.undercut == "trim"] == ["disc-trim"]
     tables = {"motion", "contacts", "inspection", "grinding", "lift", "trace"}
     tables.add("forces")  # needs: dynamics
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", *tables, None}
-    assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
+    assert {file.own.get("version") for file in files} == {"R12", "R2000", "R2010", "R2013", None}
     assert {recipe.units for recipe in recipes.values()} == {"mm", "inch"}
     assert {recipe.rotation for recipe in recipes.values()} == {"cw", "ccw"}
     parts = [part for recipe in recipes.values() for part in (recipe.cam, getattr(recipe.cam, "route", None))]

@@ -111,7 +111,7 @@ class Workshop:
         return self._made[name]
 
     def _export(self, recipe, as_, tolerance, out):
-        files = (FileRequest("dxf", as_, "R2010", tolerance), FileRequest("csv"))
+        files = (FileRequest("dxf", as_, tolerance), FileRequest("csv"))
         recipe = replace(recipe, export=replace(recipe.export, files=files))
 
         def fill(folder):

@@ -57,7 +57,7 @@ PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", d
 
 def fields() -> tuple[Field, ...]:
     """The key of the sizes."""
-    return (replace(MECHANISM, after="limits"),)
+    return (replace(MECHANISM, after="limits", unshown=("disc-conjugate", "disc-ring")),)
 
 
 def build(values: Values) -> MechanismAsked:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from camgeo.capabilities.sheet.dxf import annotation
 from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed, free, notes_at, title_block
 from camgeo.capabilities.sheet.lettering import unknown, wrapped
-from camgeo.capabilities.sheet.options import Sheet
+from camgeo.capabilities.sheet.options import Sheet, build_sheet
 from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, table_of, table_pages
 from camgeo.capabilities.sheet.part import Drawn, loops_of, number
 from camgeo.capabilities.sheet.pdf import write_pdf
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Run
 
-ARCS = FileRequest("dxf", "arcs", "R2010", units="mm")
+ARCS = FileRequest("dxf", "arcs", units="mm")
 
 
 def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
@@ -38,12 +38,13 @@ def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
 
     Nothing is drawn where no cam is made. Raises RecipeErrors for what cannot be drawn.
     """
-    if run.job is None or not isinstance(request.own, Sheet):
+    if run.job is None:
         return Made(())
     jobs = run.job.single
     paths = [path.with_name(name_of_disc(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
     pairs = enumerate(zip(jobs, paths, strict=True))
-    drawings = [_made(run, job, request, there, sheet=request.own, rank=rank) for rank, (job, there) in pairs]
+    sheet = build_sheet(request.own)
+    drawings = [_made(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]
     judged = drawings[0] if len(drawings) == 1 else run.job.closed(ARCS, drawings)
     return Made((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
 

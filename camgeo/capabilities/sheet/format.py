@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.sheet.options import OPTIONS, build_sheet, check_sheet
+from camgeo.capabilities.sheet.options import OPTIONS, check_sheet
 from camgeo.registry.formats import Format
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ FORMAT = Format(
     suffix="pdf",
     tail="sheet",
     options=OPTIONS,
-    own=build_sheet,
     check=check_sheet,
     contour=False,
     part=False,

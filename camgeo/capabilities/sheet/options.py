@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from camgeo.common.rounding import NOISE
 from camgeo.schema.fields import Field, Kind, Table, length
@@ -120,9 +120,6 @@ def check_sheet(file: Values, _: Values, reader: Reader) -> None:
             reader.fault_at(f"{file['path']}.sheet.step", "does not divide 360 degrees", None, remedy)
 
 
-def build_sheet(file: Values) -> Sheet:
+def build_sheet(options: Mapping[str, Any]) -> Sheet:
     """Make the drawing of options in which there is no fault."""
-    values = {name: file[name] for name in OPTIONS.keys if name in file}
-    if values.get("scale") == AUTO:
-        del values["scale"]
-    return Sheet(**values)
+    return Sheet(**{name: value for name, value in options.items() if value != AUTO or name != "scale"})

@@ -118,7 +118,7 @@ def request_of(form: str, tolerance: float) -> FileRequest:
     if form == "stl":
         return FileRequest("stl", tolerance=tolerance)
     if form in {"polyline", "arcs", "spline"}:
-        return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)
+        return FileRequest("dxf", as_=form, tolerance=tolerance)
     raise ValueError(f"unknown form: {form}")
 
 
