@@ -1,3 +1,4 @@
+# needs: dynamics
 """Error against run time of a follower train's first turn: exact propagation, Radau and RK45, over its stiffness.
 
     python benchmarks/dynamics.py            prints the table

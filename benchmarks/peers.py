@@ -1,3 +1,4 @@
+# needs: study
 """Error over run time and size against what a user would pick instead: `python benchmarks/peers.py [--python PYTHON]`.
 
 `--targets` prints one table of all aims of speed instead, and what is reached (`benchmarks/targets.py`).

@@ -1,3 +1,4 @@
+# needs: mechanism
 """The bodies round every shipped cam, turned once round: the table in docs/mechanism.md.
 
 `python benchmarks/sets.py [recipe ...]` prints its rows; three minutes for all; `--small` takes one.

@@ -1,3 +1,4 @@
+# needs: sweep
 """Designs a second on one core, and what the samples are worth: `python benchmarks/sweep.py [command] [speed] ...`.
 
 `--small` takes few designs, to see that it works.

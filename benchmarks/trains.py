@@ -1,3 +1,4 @@
+# needs: dynamics
 """What the dynamics of whole recipes cost: seconds of `camgeo check`, a drawing's run included, and how each ends.
 
 python benchmarks/trains.py            prints the table

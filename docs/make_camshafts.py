@@ -1,3 +1,4 @@
+# needs: camshaft
 """Draw docs/figures/camshaft-*.svg, the diagrams of shipped camshafts: `python docs/make_camshafts.py`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# needs: dynamics
 """Draw docs/pictures/dynamics-train.png: `python docs/make_dynamics_pictures.py`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# needs: mechanism
 """Draw docs/pictures/mechanism-*.png from the 3MF files of sets to print: `python docs/make_mechanism_pictures.py`."""
 
 from __future__ import annotations

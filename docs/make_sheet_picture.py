@@ -1,3 +1,4 @@
+# needs: sheet
 """Picture of docs/sheet.md, the first page of its recipe: `python docs/make_sheet_picture.py` makes it (poppler)."""
 
 from __future__ import annotations

@@ -50,6 +50,13 @@ def test_heavy_libraries_are_imported_where_they_are_called(package: str) -> Non
     assert not offenders
 
 
+def test_the_core_names_no_capability_for_types_either() -> None:
+    """The contracts leave out what is imported for type checkers alone; only the library's names are those of all."""
+    paths = [path for path in (ROOT / "camgeo").rglob("*.py") if "capabilities" not in path.parts]
+    named = {path.relative_to(ROOT) for path in paths if "from camgeo.capabilities" in path.read_text(encoding="utf-8")}
+    assert {str(path) for path in named} <= {"camgeo/__init__.py"}
+
+
 def linted(folder: Path) -> subprocess.CompletedProcess[str]:
     """Run import-linter over the packages in a folder; its words are plain and not wrapped, wherever this runs."""
     code = "from importlinter.cli import lint_imports_command as run; run(['--no-cache'])"

@@ -17,7 +17,7 @@ RUN = [name for name in NAMES if "__main__" in (ROOT / name).read_text(encoding=
 
 
 def test_there_are_scripts() -> None:
-    assert {"benchmarks/sweep.py", "docs/make_gallery.py"} <= set(NAMES)
+    assert {"benchmarks/speed.py", "docs/make_gallery.py"} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -38,7 +38,7 @@ def test_what_it_imports_is_there(name: str) -> None:
             assert hasattr(modules[node.value.id], node.attr), f"{name}:{node.lineno}: {node.value.id}.{node.attr}"
 
 
-@pytest.mark.parametrize("name", ["benchmarks/sweep.py", "docs/make_gallery.py", "benchmarks/peer.py"])
+@pytest.mark.parametrize("name", ["benchmarks/speed.py", "docs/make_gallery.py", "benchmarks/peer.py"])
 def test_help(name: str, tmp_path: Path) -> None:
     helped(name, tmp_path)
 

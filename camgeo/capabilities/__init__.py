@@ -7,18 +7,18 @@ The names below are what type checkers are told of `import camgeo`; when it runs
 
 TYPE_CHECKING = False  # as typing has it
 if TYPE_CHECKING:
-    from camgeo.capabilities.camshaft.keys import CamshaftRecipe
-    from camgeo.capabilities.camshaft.library import CamshaftDesign
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe  # needs: camshaft
+    from camgeo.capabilities.camshaft.library import CamshaftDesign  # needs: camshaft
     from camgeo.capabilities.follow.library import Followed, Rest, follow  # needs: follow
-    from camgeo.capabilities.sweep.library import Candidate, Search, search
+    from camgeo.capabilities.sweep.library import Candidate, Search, search  # needs: sweep
 
     __all__: list[str] = [
-        "CamshaftDesign",
-        "CamshaftRecipe",
-        "Candidate",
+        "CamshaftDesign",  # needs: camshaft
+        "CamshaftRecipe",  # needs: camshaft
+        "Candidate",  # needs: sweep
         "Followed",  # needs: follow
         "Rest",  # needs: follow
-        "Search",
+        "Search",  # needs: sweep
         "follow",  # needs: follow
-        "search",
+        "search",  # needs: sweep
     ]

@@ -110,6 +110,7 @@ def test_its_words_are_unknown(name: str, tmp_path: Path) -> None:
 def test_what_is_marked_goes() -> None:
     text = "a\n# needs: sweep\nb\nc\n\nd  # needs: study, sweep\ne\n# needs: sweep\n@x\ndef f():\n    pass\n\n\ng = 1\n"
     assert without_marked(text, "sweep") == "a\nc\n\ne\n\n\ng = 1\n"
+    assert without_marked("# needs: sweep\n" + text, "sweep") == ""
     page = "# A\n<!-- needs: sweep -->\n## B\ntext\n### C\ntext\n## D\n<!-- needs: sweep -->\n```yaml\na\n\nb\n```\nend"
     assert without_marked(page, "sweep") == "# A\n## D\nend"
     assert without_marked(page, "dynamics") == page

@@ -1,9 +1,10 @@
 """The repository without a capability: its folder, tests, page, shipped recipes, and what is marked as needing it.
 
 A mark is a comment, `# needs: sweep` in Python, `<!-- needs: sweep -->` in Markdown. Behind a line it is of that line.
-On a line of its own it is of what follows: in Python of a statement or an entry with all that is indented below it; in
-Markdown of a block of code, of a section or a page where its heading follows, else up to the next empty line. A page of
-which nothing is left is gone, and so is the gallery's line of a recipe that is.
+On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a statement
+or an entry with all that is indented below it; in Markdown of a block of code, of a section or a page where its heading
+follows, else up to the next empty line. A page of which nothing is left is gone, and so is the gallery's line of a
+recipe that is.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ MARK = re.compile(r"(?P<before>.*?)\s*(?:#|<!--) needs: (?P<names>[a-z_, ]+?)(?:
 def without_marked(text: str, name: str) -> str:
     """Give a text without what is marked as needing a capability."""
     lines, kept, i = text.split("\n"), [], 0
+    if lines[0].startswith("#") and (whole := MARK.match(lines[0])) and name in whole["names"].split(", "):
+        return ""
     while i < len(lines):
         mark = MARK.match(lines[i])
         if not mark or name not in mark["names"].split(", "):
@@ -103,6 +106,6 @@ def copy_without(name: str, folder: Path) -> Path:
         if place == "docs/gallery.md":
             lines = text.split("\n")
             text = "\n".join(line for line in lines if not any(f"recipes/{recipe}" in line for recipe in gone))
-        if text or path.suffix == ".py":
+        if text:
             copied.write_text(text, encoding="utf-8")
     return folder
