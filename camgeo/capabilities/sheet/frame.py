@@ -21,6 +21,7 @@ SIZES = {
 }
 """Width and height of ISO 216, mm; A4 stands upright."""
 BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
+INNER = 4.0  # mm: between the frame and what stands beside it
 BLOCK = 180.0  # mm: width of the title block
 ROW = 9.5  # mm: height of a row of it
 ROWS = 5
@@ -71,7 +72,7 @@ def free(paper: str, *, block: bool, notes: float = 0.0) -> Area:
     beside = wide - BINDING - EDGE - BLOCK > 100.0
     low = EDGE + (ROWS * ROW if block else ROW)
     low = max(low, EDGE + notes) if beside else low + notes
-    return Area(BINDING + 6.0, low + 3.0, wide - EDGE - 6.0, high - EDGE - 6.0)
+    return Area(BINDING + INNER, low + 3.0, wide - EDGE - INNER, high - EDGE - 6.0)
 
 
 def notes_at(paper: str) -> tuple[float, float, float]:

@@ -21,6 +21,7 @@ Layer: TypeAlias = Literal["", "FRAME", "VIEW", "HATCH", "CENTRE", "DIM", "TEXT"
 Pattern: TypeAlias = Literal["", "dashed", "chain"]
 BORDER, THICK, THIN = 0.7, 0.5, 0.25  # mm: widths of lines, ISO 128-2
 ARROW, SLENDER = 2.5, 0.4  # mm: length of an arrow, half its width
+RAISED = 1.2  # mm: baseline of a dimension's text from its line, clear of the arrows
 GAP, BEYOND = 1.0, 1.5  # mm: of an extension line from the part, and what it stands out beyond the dimension line
 LETTERS, BELOW = 1.0, 0.3  # of a text's height: what it reaches above and below its baseline
 
@@ -163,14 +164,13 @@ def across(
     quarter = 0.5 * math.pi if upright else 0.0
     lines.append(arrow(at(a, base), quarter + (math.pi if inside else 0.0)))
     lines.append(arrow(at(b, base), quarter + (0.0 if inside else math.pi)))
-    fits = inside and long + 2.0 <= b - a
     start, end = (a, b) if inside else (a - 2.0 * ARROW, b + 2.0 * ARROW)
-    middle = 0.5 * (a + b)
-    if not fits:
-        middle = start - 0.5 * long - 1.0 if before else end + 0.5 * long + 1.0
+    beyond, middle = text_beyond(b - a, text), 0.5 * (a + b)
+    if beyond:
+        middle = a - beyond + 0.5 * long if before else b + beyond - 0.5 * long
         start, end = min(start, middle - 0.5 * long), max(end, middle + 0.5 * long)
     lines.append(_line(at(start, base), at(end, base)))
-    raised = base - 0.8 if upright else base + 0.8
+    raised = base - RAISED if upright else base + RAISED
     label = Text(at(middle, raised), text, SMALL, "middle", "DIM", turned=upright)
     return Dimension(first, second, at(middle, base), value, label, tuple(lines), 90.0 if upright else 0.0)
 
@@ -178,6 +178,14 @@ def across(
 def has_room(long: float) -> bool:
     """Whether both arrows stand within a dimension line, mm; else they point at it from outside."""
     return long >= 2.0 * ARROW + 1.0
+
+
+def text_beyond(between: float, text: str) -> float:
+    """How far a text reaches beyond the end of a dimension, mm, whose ends are so far apart; 0 where it fits within."""
+    inside, long = has_room(between), width(text, SMALL)
+    if inside and long + 2.0 <= between:
+        return 0.0
+    return long + 1.0 + (0.0 if inside else 2.0 * ARROW)
 
 
 def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimension:
@@ -190,12 +198,9 @@ def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimen
     return Dimension((x + radius, y), (x - radius, y), (x - radius, y), value, label, ())
 
 
-def leader(tip: Point, label: Text) -> tuple[Line, ...]:
-    """Leader from the end of a text that is nearer to the tip of its arrow."""
-    low, _, high, _ = label.box
-    x = high + 0.8 if tip[0] > high else low - 0.8
-    y = label.at[1] + 0.5 * label.height
-    return _line((x, y), tip), arrow(tip, math.atan2(tip[1] - y, tip[0] - x))
+def leader(tip: Point, start: Point) -> tuple[Line, ...]:
+    """Leader from the end of a text to the tip of its arrow."""
+    return _line(start, tip), arrow(tip, math.atan2(tip[1] - start[1], tip[0] - start[0]))
 
 
 def _line(*points: Point) -> Line:

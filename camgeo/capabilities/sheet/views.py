@@ -17,7 +17,6 @@ from camgeo.capabilities.sheet.marks import (
     THICK,
     THIN,
     Circle,
-    Dimension,
     Line,
     Page,
     Text,
@@ -27,6 +26,7 @@ from camgeo.capabilities.sheet.marks import (
     leader,
     round_size,
     shifted,
+    text_beyond,
 )
 from camgeo.capabilities.sheet.options import SCALES
 from camgeo.capabilities.sheet.part import hatching, number, sections
@@ -40,14 +40,17 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ROUND = 17.0  # mm of paper round the face: zero mark, sense of rotation, ends of the section line
+LEFT = 6.0  # mm on its left, where nothing but the centre line's end stands
 LANE = 8.0  # mm between dimension lines
-PITCH = 5.5  # mm between lines of the column
+PITCH = 5.5  # mm between callouts of the column
+SECOND = 3.8  # mm from the first line of a callout to the second
+SLANT = 6.0  # mm by which a callout stands lower whose leader would lie on the centre line
 STRIP = 14.0  # mm above the views: tolerance frame, name of the section
 UNDER = 7.0  # mm below the views: names of views
 CELL = 7.0  # mm: height of a tolerance frame
 KNEE = 7.0  # mm: of its leader before it
 UNSTATED = "contour: no profile tolerance is stated"
-NARROW = 9.0  # mm: between views
+NARROW = 7.0  # mm: between views
 HATCH = 2.5  # mm between lines of the hatching
 DATUM = 2.0 * ARROW + 9.5  # mm: how far a datum's box reaches beyond a short dimension's line
 
@@ -61,19 +64,31 @@ class NoRoomError(CamgeoError, ValueError):
 
 
 class Callout(NamedTuple):
-    """A line of the column: what it points at, as centre, radius and angle (rad) of a circle of the part, or a point.
+    """A callout of the column: what it points at, as centre, radius and angle (rad) of a circle of the part or a point.
 
-    `value` is a diameter, mm, that is a dimension; None of a note. `boxed` sizes are theoretically exact; `datum` is
-    the letter of the datum that the feature is.
+    Its first line is `text`, boxed where the size is theoretically exact; `note` is the second, empty for none. `value`
+    is a diameter, mm, that is a dimension; None of words. `datum` is the letter of the datum that the feature is.
     """
 
     text: str
+    note: str
     centre: Point
     radius: float
     angle: float
     value: float | None = None
     boxed: bool = False
     datum: str = ""
+
+    @property
+    def wide(self) -> float:
+        """Width on the paper, mm."""
+        first = width(self.text, SMALL) + (CELL + 2.0 if self.datum else 0.0) + (2.0 if self.boxed else 0.0)
+        return max(first, width(self.note, SMALL))
+
+    @property
+    def high(self) -> float:
+        """From its first line to the next callout's, mm."""
+        return PITCH + (SECOND if self.note else 0.0)
 
     @property
     def tip(self) -> Point:
@@ -141,7 +156,7 @@ def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance)
     if base is not None:
         name, radius = base
         column.append(
-            Callout(f"Ø{number(2.0 * radius)}  {name}", origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
+            Callout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
         )
     column += _holes(drawn)
     if part.mark is not None:
@@ -149,16 +164,16 @@ def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance)
     if part.set_screw is not None and part.hub is not None:
         screw, height = part.set_screw, part.set_screw.height or 0.5 * part.hub.height
         at = drawn.direction(screw.at)
-        text = f"Ø{number(screw.diameter)} set screw at {drawn.degrees(screw.at)}, {number(height)} up"
-        column.append(Callout(text, origin, 0.5 * part.hub.diameter, at))
+        note = f"at {drawn.degrees(screw.at)}, {number(height)} up"
+        column.append(Callout(f"Ø{number(screw.diameter)} set screw", note, origin, 0.5 * part.hub.diameter, at))
     thick = body.thickness
     plain = part.bore is not None and not part.sides
     if thick is None:
         if plain and part.bore is not None:
-            text = f"Ø{number(part.bore)} {part.fit}".rstrip() + " bore"
-            column.append(Callout(text, origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
+            text = f"Ø{number(part.bore)} {part.fit}".rstrip()
+            column.append(Callout(text, "bore", origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
         if part.outer is not None:
-            column.append(Callout(f"Ø{number(part.outer)}", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer))
+            column.append(Callout(f"Ø{number(part.outer)}", "", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer))
         return Sizes(tuple(column), (), (), None, tolerance)
     under = [Along(0.0, thick, number(thick))]
     if body.pocket is not None:
@@ -187,32 +202,30 @@ def _holes(drawn: Drawn) -> list[Callout]:
     if part.bolts is not None:
         bolts = part.bolts
         centre, radius = min(circle for name, circle in places.items() if name.startswith("bolt hole"))
-        text = f"{bolts.count} × Ø{number(bolts.hole)}, first at {drawn.degrees(bolts.start)}"
-        found.append(Callout(text, centre, radius, 0.75 * math.pi, bolts.hole))
-        found.append(_pitch_circle(f"Ø{number(bolts.circle)} bolt circle", bolts.circle, 0.93))
+        text, note = f"{bolts.count} × Ø{number(bolts.hole)}", f"first at {drawn.degrees(bolts.start)}"
+        found.append(Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole))
+        found.append(_pitch_circle("bolt circle", bolts.circle, 0.93))
     if part.dowel is not None:
         dowel = part.dowel
         centre, radius = places["dowel hole"]
-        found.append(
-            Callout(f"Ø{number(dowel.hole)} dowel at {drawn.degrees(dowel.at)}", centre, radius, 2.9, dowel.hole)
-        )
-        found.append(_pitch_circle(f"Ø{number(dowel.circle)} dowel circle", dowel.circle, 1.07))
+        note = f"dowel at {drawn.degrees(dowel.at)}"
+        found.append(Callout(f"Ø{number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole))
+        found.append(_pitch_circle("dowel circle", dowel.circle, 1.07))
     holes = [circle for name, circle in places.items() if name.startswith("lightening hole")]
     if holes and part.lightening is not None and part.lightening.ring is not None:
         centre, radius = min(holes)
-        text = f"{len(holes)} × Ø{number(2.0 * radius)}, first at {drawn.degrees(part.lightening.start)}"
-        found.append(Callout(text, centre, radius, 0.8 * math.pi, 2.0 * radius))
-        around = 2.0 * math.hypot(*centre)
-        found.append(_pitch_circle(f"Ø{number(around)} hole circle", around, 1.13))
+        text, note = f"{len(holes)} × Ø{number(2.0 * radius)}", f"first at {drawn.degrees(part.lightening.start)}"
+        found.append(Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius))
+        found.append(_pitch_circle("hole circle", 2.0 * math.hypot(*centre), 1.13))
     elif holes:
         for centre, radius in holes:
-            text = f"Ø{number(2.0 * radius)} at X{number(centre[0])} Y{number(centre[1])}"
-            found.append(Callout(text, centre, radius, math.pi, 2.0 * radius))
+            note = f"at X{number(centre[0])} Y{number(centre[1])}"
+            found.append(Callout(f"Ø{number(2.0 * radius)}", note, centre, radius, math.pi, 2.0 * radius))
     return found
 
 
-def _pitch_circle(text: str, diameter: float, half_turns: float) -> Callout:
-    return Callout(text, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
+def _pitch_circle(name: str, diameter: float, half_turns: float) -> Callout:
+    return Callout(f"Ø{number(diameter)}", name, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
 
 
 def _mark(drawn: Drawn, k: int) -> Callout:
@@ -222,8 +235,8 @@ def _mark(drawn: Drawn, k: int) -> Callout:
         raise ValueError("there is no mark")
     outer = opening.outline.box()[2]
     deep = "through" if opening.depth is None else f"{number(opening.depth)} deep"
-    text = f"mark {number(mark.width)} × {number(mark.length)}, R{number(outer)}, {deep}"
-    return Callout(text, (outer - mark.length, 0.0), 0.0, 0.0)
+    text = f"mark {number(mark.width)} × {number(mark.length)}"
+    return Callout(text, f"R{number(outer)}, {deep}", (outer - mark.length, 0.0), 0.0, 0.0)
 
 
 # --- the layout -------------------------------------------------------------------------------------------------------
@@ -259,41 +272,31 @@ def laid_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: f
 
 
 def _tried(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -> Layout | None:
+    """Place the views at a scale, the bore's own view beside the others or below; None where there is no room."""
     k = SCALES[word]
     reach = k * drawn.reach
-    column = max((_long(one) for one in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
-    face = max(2.0 * (reach + ROUND), sizes.tolerance.long - column)
-    solid = drawn.body.thickness is not None
+    column = max((callout.wide for callout in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
+    face = max(LEFT + 2.0 * reach + ROUND, sizes.tolerance.long - column)
     bore = NARROW + LANE if sizes.bore is not None else NARROW
-    section = bore + k * drawn.depth + _beyond(sizes, k) if solid else 0.0
+    section = bore + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
     own = _own(drawn, k)
+    below = max(UNDER, LANE * len(sizes.under))
     wide = column + face + section + (own.wide if beside else 0.0)
-    lanes = LANE * len(sizes.under)
-    high = STRIP + face + max(UNDER, lanes) + (0.0 if beside else own.above + own.below)
-    lines = PITCH * len(sizes.column)
+    high = STRIP + 2.0 * (reach + ROUND) + below + (0.0 if beside else own.above + own.below)
     if wide > area.right - area.left or high > area.high - area.low:
         return None
-    slack = 0.5 * (area.right - area.left - wide)
-    x = area.left + column + slack + 0.5 * face
-    y = area.high - STRIP - 0.5 * face - 0.5 * (area.high - area.low - high)
-    if lines > y + reach + ROUND - area.low:
+    start = area.left + column + 0.5 * (area.right - area.left - wide)
+    x, y = start + face - reach - ROUND, area.high - STRIP - reach - ROUND - 0.5 * (area.high - area.low - high)
+    if sum(callout.high for callout in sizes.column) + SLANT > y + reach + ROUND - area.low:
         return None
-    left = x + 0.5 * face + bore
-    if beside:
-        middle = (left + k * drawn.depth + _beyond(sizes, k) + 0.5 * own.wide, y)
-    else:
-        middle = (x, y - 0.5 * face - max(UNDER, lanes) - own.above)
-    return Layout(word, k, (x, y), (left, y), middle, area.left + column + slack - NARROW, area)
-
-
-def _long(one: Callout) -> float:
-    return width(one.text, SMALL) + (CELL + 2.0 if one.datum else 0.0) + (2.0 if one.boxed else 0.0)
+    middle = (start + face + section + 0.5 * own.wide, y) if beside else (x, y - reach - ROUND - below - own.above)
+    return Layout(word, k, (x, y), (start + face + bore, y), middle, start - NARROW, area)
 
 
 def _beyond(sizes: Sizes, k: float) -> float:
-    """What stands on the right of the section: lanes, and texts of lengths beside short dimension lines."""
-    texts = max((width(one.text, SMALL) - k * (one.high - one.low) for one in sizes.under), default=0.0)
-    return max(LANE * len(sizes.right) + 2.0, texts + 10.0)
+    """What stands on the right of the section, mm: lanes, and texts of lengths beyond their dimension lines."""
+    texts = (text_beyond(k * (length.high - length.low), length.text) for length in sizes.under)
+    return max(LANE * len(sizes.right), *texts) + 1.0
 
 
 class Own(NamedTuple):
@@ -305,7 +308,7 @@ class Own(NamedTuple):
 
 
 def _own(drawn: Drawn, k: float) -> Own:
-    """Room for the bore's own view at a scale; none for a round bore."""
+    """Give the size of the bore's own view at a scale; none for a round bore."""
     part = drawn.part
     if part.bore is None or not (part.sides or part.keyway or part.flat):
         return Own(0.0, 0.0, 0.0)
@@ -314,7 +317,18 @@ def _own(drawn: Drawn, k: float) -> Own:
     if part.keyway is not None:
         above = max(above, 0.5 * k * part.keyway.width + 2.0 * ARROW + width(number(part.keyway.width), SMALL) + 4.0)
         below = max(below, 0.5 * k * part.keyway.width + DATUM + 2.0)
-    return Own(2.0 * reach + 4.0 * LANE + 8.0, above, below + UNDER)
+    return Own(max(2.0 * reach + 4.0 * LANE + 8.0, width(_of_bore(drawn)[1], SMALL) + 4.0), above, below + UNDER)
+
+
+def _of_bore(drawn: Drawn) -> tuple[float, str]:
+    """Direction of a bore's keyway, flat or side in the recipe, rad, and the words under its own view."""
+    part = drawn.part
+    at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
+    if part.keyway is not None:
+        at, what = part.keyway.at, "keyway"
+    elif part.flat is not None:
+        at, what = part.flat.at, "flat"
+    return at, f"bore, {what} at {drawn.degrees(at)}"
 
 
 # --- drawing it -------------------------------------------------------------------------------------------------------
@@ -383,33 +397,33 @@ def _draw_plane(page: Page, drawn: Drawn, layout: Layout) -> None:
         page.line((x, inner), (x, outer), weight=THICK)
         page.line((x, outer), (x + sense * 6.0, outer))
         page.marks.append(arrow((x + sense * 6.0, outer), 0.0 if sense > 0.0 else math.pi))
-        page.text((x, outer + 1.0 if side > 0.0 else outer - 1.0 - PLAIN), "A", PLAIN, "middle")
+        page.text((x, outer + 1.3 if side > 0.0 else outer - 1.0 - PLAIN), "A", PLAIN, "middle")
 
 
 def _draw_column(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
-    """Lines of the column, each as near to the height of its feature as the others let it."""
+    """Callouts of the column, each as near to the height of its feature as the others let it."""
     k, (x, y) = layout.scale, layout.face
-    rows = sorted(sizes.column, key=lambda one: -one.tip[1])
-    heights = [y + k * one.tip[1] - 0.5 * SMALL for one in rows]
+    rows = sorted(sizes.column, key=lambda row: -row.tip[1])
+    heights = [y + k * row.tip[1] - 0.5 * SMALL - (SLANT if abs(k * row.tip[1]) < 2.0 else 0.0) for row in rows]
     for i in range(len(rows)):
-        top = y + k * drawn.reach + ROUND - PITCH if i == 0 else heights[i - 1] - PITCH
+        top = y + k * drawn.reach + ROUND - PITCH if i == 0 else heights[i - 1] - rows[i - 1].high
         heights[i] = min(heights[i], top)
     for i in reversed(range(len(rows))):
-        bottom = layout.area.low + 2.0 if i == len(rows) - 1 else heights[i + 1] + PITCH
-        heights[i] = max(heights[i], bottom)
-    for one, height in zip(rows, heights, strict=True):
-        end = layout.column - (CELL + 2.0 if one.datum else 0.0) - (1.0 if one.boxed else 0.0)
-        label = Text((end, height), one.text, SMALL, "right", "DIM")
-        tip = (x + k * one.tip[0], y + k * one.tip[1])
-        centre = (x + k * one.centre[0], y + k * one.centre[1])
-        sized = label if one.value is None else round_size(centre, k * one.radius, label, one.value)
-        page.marks.extend([*leader(tip, label), sized])
-        if one.boxed:
-            size = f"Ø{number(one.value or 0.0)}"
-            left = end - width(one.text, SMALL)
-            page.box((left - 0.8, height - 0.8), width(size, SMALL) + 1.6, SMALL + 1.6)
-        if one.datum:
-            _draw_letter(page, (layout.column - 3.5, height + 0.5 * SMALL), one.datum)
+        bottom = layout.area.low if i == len(rows) - 1 else heights[i + 1]
+        heights[i] = max(heights[i], bottom + rows[i].high)
+    for row, height in zip(rows, heights, strict=True):
+        end = layout.column - (CELL + 2.0 if row.datum else 0.0) - (1.0 if row.boxed else 0.0)
+        label = Text((end, height), row.text, SMALL, "right", "DIM")
+        tip = (x + k * row.tip[0], y + k * row.tip[1])
+        centre = (x + k * row.centre[0], y + k * row.centre[1])
+        sized = label if row.value is None else round_size(centre, k * row.radius, label, row.value)
+        page.marks.extend([*leader(tip, (layout.column + 0.8, height + 0.5 * SMALL)), sized])
+        page.text((layout.column, height - SECOND), row.note, anchor="right", layer="DIM")
+        if row.boxed:
+            wide = width(row.text, SMALL)
+            page.box((end - wide - 0.8, height - 0.8), wide + 1.6, SMALL + 1.6)
+        if row.datum:
+            _draw_letter(page, (layout.column - 3.5, height + 0.5 * SMALL), row.datum)
 
 
 def _draw_letter(page: Page, middle: Point, letter: str) -> None:
@@ -482,9 +496,13 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
     top = y + k * drawn.reach + ROUND + 2.0
     page.text((0.5 * (left + right), top + 1.5), "A-A", PLAIN, "middle")
     low = min(height for chain in chains for _, height in chain)
-    for i, one in enumerate(sizes.under):
-        first, second = ((placed(z, 0.0)[0], low) for z in (one.low, one.high))
-        page.marks.append(across(first, second, low - LANE * (i + 1), one.high - one.low, one.text))
+    # the lengths stand below the part, and below the datum of its bore where that reaches lower
+    lanes = low if sizes.bore is None else min(low, y - 0.5 * k * sizes.bore.diameter - DATUM)
+    ends = [sorted(placed(z, 0.0)[0] for z in (length.low, length.high)) for length in sizes.under]
+    for i, (length, (start, end)) in enumerate(zip(sizes.under, ends, strict=True)):
+        # a text stands on the side where no extension line of another length runs
+        before, value = end < max(x for _, x in ends), length.high - length.low
+        page.marks.append(across((start, low), (end, low), lanes - LANE * (i + 1), value, length.text, before=before))
     for i, round_one in enumerate(sizes.right):
         first, second = (placed(round_one.z, half * round_one.diameter) for half in (-0.5, 0.5))
         base, value = right + LANE * (i + 1), round_one.diameter
@@ -519,13 +537,8 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
     part, k, (x, y) = drawn.part, layout.scale, layout.bore
     bore = part.bore or 0.0
     points = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
-    at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
-    if part.keyway is not None:
-        at, what = part.keyway.at, "keyway"
-    elif part.flat is not None:
-        at, what = part.flat.at, "flat"
-    angle = drawn.direction(at)
-    turned = _turned(points, -angle)
+    at, words = _of_bore(drawn)
+    turned = _turned(points, -drawn.direction(at))
     page.marks.append(Line(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
     low, high = k * float(turned[:, 1].min()), k * float(turned[:, 1].max())
     left, right = k * float(turned[:, 0].min()), k * float(turned[:, 0].max())
@@ -553,15 +566,10 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
         ends = (x - 0.5 * k * bore, y), (x + 0.5 * k * bore, y)
         page.marks.append(across(*ends, base, bore, number(bore), before=True))
         _draw_datum(page, (x + right, y), (1.0, 0.0), "A")
-    page.text((x, y - _own(drawn, k).below + 3.0), f"bore, {what} at {drawn.degrees(at)}", SMALL, "middle")
+    page.text((x, y - _own(drawn, k).below + 3.0), words, SMALL, "middle")
 
 
 def _turned(points: Array, angle: float) -> Array:
     c, s = math.cos(angle), math.sin(angle)
     turned: Array = points @ np.array([[c, s], [-s, c]])
     return turned
-
-
-def dimensions_of(page: Page) -> list[Dimension]:
-    """All dimensions of a page."""
-    return [mark for mark in page.marks if isinstance(mark, Dimension)]

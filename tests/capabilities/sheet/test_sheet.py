@@ -18,13 +18,15 @@ from support.places import SHIPPED
 
 import camgeo
 from camgeo.capabilities.sheet import drawing, lettering
-from camgeo.capabilities.sheet.marks import Dimension
+from camgeo.capabilities.sheet.marks import Circle, Dimension, Line
 from camgeo.cli.main import main
 from camgeo.recipe.recipe import load_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from camgeo.capabilities.sheet.marks import Page
 
 CAM = """\
 cam:
@@ -87,18 +89,45 @@ def dimensions(path: Path) -> list[Any]:
     return [entity for entity in ezdxf.readfile(path).modelspace() if entity.dxftype() == "DIMENSION"]
 
 
-def overlapping(page: Any) -> Iterator[tuple[str, str]]:
+def overlapping(page: Page) -> Iterator[tuple[str, str]]:
     for one, other in combinations(page.texts, 2):
         a, b = one.box, other.box
         if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]:
             yield one.text, other.text
 
 
+def strokes(page: Page) -> Iterator[np.ndarray]:
+    """Every line of a page as points (n, 2): those of dimensions, circles, and arrows among them."""
+    for mark in page.marks:
+        lines = mark.lines if isinstance(mark, Dimension) else [mark] if isinstance(mark, Line) else []
+        for line in lines:
+            yield np.vstack([line.points, line.points[:1]]) if line.closed else line.points
+        if isinstance(mark, Circle):
+            turn = np.linspace(0.0, 2.0 * np.pi, 181)
+            yield np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)])
+
+
+def crosses(box: tuple[float, ...], points: np.ndarray) -> bool:
+    """Whether a line through points runs through the inside of a box."""
+    low, high = np.array(box[:2]) + 0.01, np.array(box[2:]) - 0.01
+    starts, ways = points[:-1], np.diff(points, axis=0)
+    still = np.where(ways == 0.0, 1e-12, ways)
+    ends = np.stack([(low - starts) / still, (high - starts) / still])
+    enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+    return bool((np.maximum(enters, 0.0) < np.minimum(leaves, 1.0)).any())
+
+
+def crossed(page: Page) -> Iterator[str]:
+    lines = list(strokes(page))
+    return (text.text for text in page.texts if any(crosses(text.box, line) for line in lines))
+
+
 def demand_clear(pages: drawing.Pages) -> None:
-    """Every text is legible, within the frame, and over no other one."""
+    """Every text is legible, within the frame, over no other one, and no line runs through it."""
     for page in pages.all:
         assert page.texts
         assert list(overlapping(page)) == []
+        assert list(crossed(page)) == []
         for text in page.texts:
             x0, y0, x1, y1 = text.box
             assert text.height >= 2.5
@@ -140,6 +169,24 @@ def test_a_planted_text_over_another_is_seen(drawn: list[drawing.Pages], tmp_pat
     first.text((first.texts[3].box[0], first.texts[3].at[1]), "planted")
     with pytest.raises(AssertionError):
         demand_clear(pages)
+
+
+def test_a_planted_line_through_a_text_is_seen(drawn: list[drawing.Pages], tmp_path: Path) -> None:
+    exported(CAM, tmp_path)
+    first = drawn[0].annotated[0]
+    x0, y0, x1, y1 = first.texts[3].box
+    first.line((x0 - 5.0, y0), (x1 + 5.0, y1))
+    with pytest.raises(AssertionError):
+        demand_clear(drawn[0])
+
+
+@pytest.mark.parametrize("name", ["groove-stem", "disc-ring", "conjugate-stem", "oscillating-yoke", "w-law"])
+def test_on_a4_parts_of_up_to_170_mm_are_drawn_half_their_size(
+    name: str, drawn: list[drawing.Pages], tmp_path: Path
+) -> None:
+    path = next(path for path in SHIPPED if path.stem == name)
+    camgeo.export(load_text(with_sheet(path.read_text(encoding="utf-8"), "paper: A4, profile: 0.02"), path), tmp_path)
+    assert all(pages.scale >= 0.5 for pages in drawn)
 
 
 def test_each_size_of_the_part_stands_once(drawn: list[drawing.Pages], tmp_path: Path) -> None:
@@ -188,7 +235,7 @@ def test_without_a_thickness_the_face_alone_is_drawn(drawn: list[drawing.Pages],
     exported(CAM.replace("thickness: 12, ", ""), tmp_path)
     texts = [text.text for text in drawn[0].annotated[0].texts]
     assert "A-A" not in texts
-    assert "Ø16 bore" in texts
+    assert texts[texts.index("Ø16") + 1] == "bore"
     demand_clear(drawn[0])
 
 
