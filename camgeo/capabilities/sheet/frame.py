@@ -21,7 +21,7 @@ SIZES = {
 }
 """Width and height of ISO 216, mm; A4 stands upright."""
 BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
-INNER = 4.0  # mm: between the frame and what stands beside it
+INNER = 5.5  # mm: between the frame and what stands beside it, clear of the marks of its middles
 BLOCK = 180.0  # mm: width of the title block
 ROW = 9.5  # mm: height of a row of it
 ROWS = 5

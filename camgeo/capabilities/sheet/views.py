@@ -50,7 +50,7 @@ UNDER = 7.0  # mm below the views: names of views
 CELL = 7.0  # mm: height of a tolerance frame
 KNEE = 7.0  # mm: of its leader before it
 UNSTATED = "contour: no profile tolerance is stated"
-NARROW = 7.0  # mm: between views
+NARROW = 6.0  # mm: between views
 HATCH = 2.5  # mm between lines of the hatching
 DATUM = 2.0 * ARROW + 9.5  # mm: how far a datum's box reaches beyond a short dimension's line
 
@@ -498,10 +498,10 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
     low = min(height for chain in chains for _, height in chain)
     # the lengths stand below the part, and below the datum of its bore where that reaches lower
     lanes = low if sizes.bore is None else min(low, y - 0.5 * k * sizes.bore.diameter - DATUM)
-    ends = [sorted(placed(z, 0.0)[0] for z in (length.low, length.high)) for length in sizes.under]
-    for i, (length, (start, end)) in enumerate(zip(sizes.under, ends, strict=True)):
+    spans = [sorted(placed(z, 0.0)[0] for z in (length.low, length.high)) for length in sizes.under]
+    for i, (length, (start, end)) in enumerate(zip(sizes.under, spans, strict=True)):
         # a text stands on the side where no extension line of another length runs
-        before, value = end < max(x for _, x in ends), length.high - length.low
+        before, value = end < max(x for _, x in spans), length.high - length.low
         page.marks.append(across((start, low), (end, low), lanes - LANE * (i + 1), value, length.text, before=before))
     for i, round_one in enumerate(sizes.right):
         first, second = (placed(round_one.z, half * round_one.diameter) for half in (-0.5, 0.5))

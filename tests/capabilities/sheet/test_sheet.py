@@ -300,7 +300,7 @@ def test_conjugate_discs_have_a_sheet_each(tmp_path: Path) -> None:
 
 def streams(path: Path) -> list[str]:
     """Contents of the pages of a PDF, and other streams."""
-    parts = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", path.read_bytes(), re.DOTALL)
+    parts = re.findall(rb"stream\n(.*?)\nendstream", path.read_bytes(), re.DOTALL)
     found = []
     for part in parts:
         try:
