@@ -23,14 +23,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Work out one budget: 0 kept, 1 not kept or a wrong cam, 2 a wrong recipe, 3 the surroundings."""
     from camgeo.capabilities.budget.library import budget
-    from camgeo.capabilities.budget.outcome import table
+    from camgeo.capabilities.budget.text import table
     from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
     try:
         recipe = load(arguments.recipe)
-        found = budget(recipe, *arguments.files)
+        entry = budget(recipe, *arguments.files)
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         from camgeo.report.document import encoded
 
-        say_json(encoded(found))
+        say_json(encoded(entry))
     else:
-        say(table(recipe, found))
-    return OK if found["ok"] else FAILED
+        say(table(recipe, entry))
+    return OK if entry["ok"] else FAILED

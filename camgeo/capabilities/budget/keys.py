@@ -26,7 +26,7 @@ from camgeo.schema.yaml_source import Mapping, Scalar, described, entries, join,
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
@@ -122,40 +122,34 @@ def _refuse(reader: Reader, name: str, node: Mapping, path: str) -> None:
 
 def _read_tolerances(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float | None] | None:
     """Read the tolerances by the words of their dimensions, mm or rad; None for `free`."""
-    if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
-        return None
-    there = words_of(_traits(reader))
-    tolerances: dict[str, float | None] = {}
-    for name, value in entries(node).items():
-        below = join(path, name)
-        if name not in there:
-            _refuse(reader, name, node, below)
-        elif isinstance(value, Scalar) and value.text == FREE:
-            tolerances[name] = None
-        else:
-            read = reader.field(_tolerance(name), value, below)
-            if read is not None:
-                tolerances[name] = read
-    return tolerances
+    return _read_by_word(reader, field, node, path, _tolerance, free=True)
 
 
-def _read_cost(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float] | None:
+def _read_cost(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float | None] | None:
     """Read the costs by the words of the dimensions whose tolerances are to be found."""
+    return _read_by_word(
+        reader, field, node, path, lambda name: Field(name, Kind.NUMBER, "its cost", above=0, at_most=MOST), free=False
+    )
+
+
+def _read_by_word(
+    reader: Reader, field: Field, node: Node, path: str, value_field: Callable[[str], Field], *, free: bool
+) -> dict[str, float | None] | None:
+    """Read a mapping from words of this cam's dimensions to values, None for `free` where that is a value."""
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
         return None
     there = words_of(_traits(reader))
-    costs: dict[str, float] = {}
+    values: dict[str, float | None] = {}
     for name, value in entries(node).items():
         below = join(path, name)
         if name not in there:
             _refuse(reader, name, node, below)
-            continue
-        cost = reader.field(Field(name, Kind.NUMBER, "its cost", above=0, at_most=MOST), value, below)
-        if cost is not None:
-            costs[name] = cost
-    return costs
+        elif free and isinstance(value, Scalar) and value.text == FREE:
+            values[name] = None
+        elif (number := reader.field(value_field(name), value, below)) is not None:
+            values[name] = number
+    return values
 
 
 def _read_zero(reader: Reader, _field: Field, node: Node, path: str) -> float | str | None:

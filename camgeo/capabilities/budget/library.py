@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget
-from camgeo.capabilities.budget.outcome import outcome, section, told
+from camgeo.capabilities.budget.outcome import outcome
+from camgeo.capabilities.budget.section import section
+from camgeo.capabilities.budget.units import motion_unit
 from camgeo.synthesis.design import designed
 from kin.numeric.angles import degrees
 
@@ -33,14 +35,14 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     design = designed(recipe)
     if design.driven is not None and not design.driven.turns:
         raise recipe.error("linkage", "the mechanism does not turn, and its output has no error", None, "see check")
-    found = outcome(recipe, design, stated)
-    entry = section(recipe, found)
+    result = outcome(recipe, design, stated)
+    entry = section(recipe, result)
     if stated.runs:
-        entry["parts"] = _parts(recipe, design, found, [Path(file) for file in files])
+        entry["parts"] = _parts(recipe, design, result, [Path(file) for file in files])
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
 
 
-def _parts(recipe: Recipe, design: Design, found: Outcome, files: list[Path]) -> dict[str, Any]:
+def _parts(recipe: Recipe, design: Design, result: Outcome, files: list[Path]) -> dict[str, Any]:
     """What a simulation says, or why there is none."""
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import looked_at, simulate
@@ -50,33 +52,33 @@ def _parts(recipe: Recipe, design: Design, found: Outcome, files: list[Path]) ->
         from camgeo.capabilities.budget.read_contours import read_contours
 
         read = read_contours(recipe, design, files)
-    shaft = looked_at([worst.at for worst in found.sums.values()])
+    shaft = looked_at([worst.at for worst in result.sums.values()])
     try:
-        parts = simulate(recipe, design, found.budget, shaft, read)
+        parts = simulate(recipe, design, result.budget, shaft, read)
     except LostError as error:
         return {"runs": 0, "why": str(error)}
+    scale, unit = motion_unit(recipe)
     rows: list[dict[str, Any]] = [
         {
-            "contact": one.contact,
-            "at_deg": degrees(one.at),
-            "mean": told(recipe, one.mean)[0],
-            "sd": told(recipe, one.deviation)[0],
-            "foreseen": told(recipe, one.foreseen)[0],
-            "error": told(recipe, one.error)[0],
-            "greatest": told(recipe, one.greatest)[0],
-            "agrees": one.agrees,
+            "contact": spread.contact,
+            "at_deg": degrees(spread.at),
+            "mean": scale * spread.mean,
+            "sd": scale * spread.deviation,
+            "foreseen": scale * spread.foreseen,
+            "error": scale * spread.error,
+            "greatest": scale * spread.greatest,
+            "agrees": spread.agrees,
         }
-        for one in parts.spreads
+        for spread in parts.spreads
     ]
-    worst = rows[parts.spreads.index(parts.worst)]
     return {
         "runs": parts.runs,
         "seed": parts.seed,
         "files": [file.name for file in files],
-        "unit": told(recipe, 1.0)[1],
+        "unit": unit,
         "within": parts.within,
         "greatest": max(row["greatest"] for row in rows),
         "agrees": all(row["agrees"] for row in rows),
-        "worst": worst,
+        "worst": rows[parts.spreads.index(parts.worst)],
         "spreads": rows,
     }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.capabilities.budget.text import TITLES
 from camgeo.report.page.tables import html_table, number, place_button
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 WIDE, HIGH, LEFT, FOOT = 720, 220, 44, 22  # of the picture, and what its scales take on the left and below
 TURN = 360
 HUES = (210, 18, 140, 275, 45, 330, 180, 90)  # degrees of colour, in the order of the dimensions
-TITLES = {"worst": "worst case", "rss": "root sum of squares"}
 
 
 def panel(report: dict[str, Any]) -> str:
@@ -44,11 +44,10 @@ def panel(report: dict[str, Any]) -> str:
     ]
     head = '<section aria-labelledby="budget-head"><h2 id="budget-head">Budget of errors</h2>'
     state = "is kept" if entry["kept"] else "is not kept"
-    told = f"<p>What is permitted, {permitted} {unit}, {state} by the {TITLES[entry['sum']]}.</p>"
+    words = f"<p>What is permitted, {permitted} {unit}, {state} by the {TITLES[entry['sum']]}.</p>"
     dimensions = html_table("Budget", ("dimension", "tolerance", "influence there", "share"), rows)
-    return (
-        f"{head}{told}{html_table('Sums', ('sum', 'value', 'at', 'limit'), sums)}{dimensions}{_shares(entry)}</section>"
-    )
+    totals = html_table("Sums", ("sum", "value", "at", "limit"), sums)
+    return f"{head}{words}{totals}{dimensions}{_shares(entry)}</section>"
 
 
 def _row(name: str, *cells: str) -> str:
@@ -92,5 +91,5 @@ def _shares(entry: dict[str, Any]) -> str:
         f'style="width:100%;max-width:{WIDE}px;display:block" font-size="11" fill="currentColor">'
         f"{''.join(shapes)}{''.join(texts)}</svg>"
     )
-    told = f"Worst case over the shaft angle, {escape(entry['unit'])}, one dimension on the other:"
-    return f"<p>{told} {' '.join(names)}</p>{picture}"
+    words = f"Worst case over the shaft angle, {escape(entry['unit'])}, one dimension on the other:"
+    return f"<p>{words} {' '.join(names)}</p>{picture}"

@@ -73,7 +73,7 @@ class Parts(NamedTuple):
     @property
     def worst(self) -> Spread:
         """Where the deviation foreseen is greatest."""
-        return max(self.spreads, key=lambda one: one.foreseen)
+        return max(self.spreads, key=lambda spread: spread.foreseen)
 
 
 def looked_at(worst: Sequence[float]) -> Array:
@@ -186,14 +186,14 @@ def _of_follower(
         return np.stack(
             [
                 positions(place, off) - nominal
-                for place, off in zip(places, offs(drawn, several, discs, on_one_arm=on_one_arm), strict=True)
+                for place, off in zip(places, amounts(drawn, several, discs, on_one_arm=on_one_arm), strict=True)
             ]
         )
 
     return errors
 
 
-def offs(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Off]:
+def amounts(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Off]:
     """By how much the sizes about each contact are off; what contacts share is drawn once."""
     size, radius = drawn.size, drawn.radius
     turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")
@@ -201,28 +201,23 @@ def offs(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Of
     first_radius, first_arm = size("follower.radius") + size("follower.arm.face"), size("follower.arm.length")
     tilted, squared = size("follower.tilt"), size("face")
     bore = radius(BORE)
-    found = []
-    for i in range(several):
-        first = i == 0 or discs == 1
-        own = radius(BORE) if discs > 1 else bore
-        grown = size(PROFILE) + size("roller_radius") + (first_radius if first else size("conjugate.radius"))
-        face = (size("face") if on_one_arm else squared) + size("spread") + (tilted if first else 0.0)
-        second = size("breadth") + size("conjugate.distance") + size("conjugate.angle") if i else 0.0 * turned
-        found.append(
-            Off(
-                turned=turned + (size("index") if i else 0.0),
-                bore=own,
-                shaft=shaft,
-                pivot=pivot,
-                grown=grown,
-                offset=offset,
-                guide=guide,
-                face=face,
-                length=size("arm") + (first_arm if first else size("conjugate.length")),
-                datum=second,
-            )
+
+    def about(rank: int) -> Off:
+        first = rank == 0 or discs == 1
+        return Off(
+            turned=turned + (size("index") if rank else 0.0),
+            bore=radius(BORE) if discs > 1 else bore,
+            shaft=shaft,
+            pivot=pivot,
+            grown=size(PROFILE) + size("roller_radius") + (first_radius if first else size("conjugate.radius")),
+            offset=offset,
+            guide=guide,
+            face=(size("face") if on_one_arm else squared) + size("spread") + (tilted if first else 0.0),
+            length=size("arm") + (first_arm if first else size("conjugate.length")),
+            datum=size("breadth") + size("conjugate.distance") + size("conjugate.angle") if rank else 0.0 * turned,
         )
-    return found
+
+    return [about(rank) for rank in range(several)]
 
 
 def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None) -> list[Place]:

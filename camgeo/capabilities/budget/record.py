@@ -16,6 +16,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from camgeo.capabilities.budget.outcome import Outcome
     from camgeo.common.clock import Clock
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -33,41 +34,35 @@ FIGURES = {
 }
 
 
+def _outcome(recipe: Recipe, design: Design) -> Outcome | None:
+    """The outcome of a recipe's budget; None without one, and of a linkage that does not turn."""
+    from camgeo.capabilities.budget.outcome import outcome
+
+    budget = recipe.of(Budget)
+    moves = design.driven is None or design.driven.turns
+    return outcome(recipe, design, budget) if budget is not None and moves else None
+
+
 def _measure(
     recipe: Recipe, design: Design, names: Sequence[str], _speeds: Mapping[str, float]
 ) -> Mapping[str, Measured]:
-    from camgeo.capabilities.budget.outcome import outcome, turns
+    from camgeo.capabilities.budget.units import turns
 
-    budget = recipe.of(Budget)
-    if budget is None or not _can_move(design):
-        why = "budget is not given" if budget is None else "the mechanism does not turn"
+    result, turned = _outcome(recipe, design), turns(recipe)
+    if result is None:
+        why = "budget is not given" if recipe.of(Budget) is None else "the mechanism does not turn"
         return {name: Measured(None, "mm", detail=why) for name in names}
-    sums = outcome(recipe, design, budget).sums
-    values = {}
-    for name in names:
-        found = sums["worst" if name == WORST else "rss"]
-        turned = turns(recipe)
-        value = math.degrees(found.value) if turned else found.value
-        values[name] = Measured(value, "deg" if turned else "mm", degrees(found.at))
-    return values
-
-
-def _can_move(design: Design) -> bool:
-    return design.driven is None or design.driven.turns
-
-
-def section_of(recipe: Recipe, design: Design) -> dict[str, Any] | None:
-    """The report's section of a recipe's budget; None without one, and of a linkage that does not turn."""
-    from camgeo.capabilities.budget.outcome import outcome, section
-
-    budget = recipe.of(Budget)
-    return None if budget is None or not _can_move(design) else section(recipe, outcome(recipe, design, budget))
+    sums = {WORST: result.sums["worst"], RSS: result.sums["rss"]}
+    scale, unit = (math.degrees(1.0), "deg") if turned else (1.0, "mm")
+    return {name: Measured(scale * sums[name].value, unit, degrees(sums[name].at)) for name in names}
 
 
 def _examine(recipe: Recipe, design: Design, _files: Sequence[FileResult], clock: Clock) -> Results:
+    from camgeo.capabilities.budget.section import section
+
     with clock.stage("budget"):
-        section = section_of(recipe, design)
-    return Results() if section is None else Results({"budget": section})
+        result = _outcome(recipe, design)
+        return Results() if result is None else Results({"budget": section(recipe, result)})
 
 
 def _panel(report: dict[str, Any]) -> str:
@@ -78,17 +73,18 @@ def _panel(report: dict[str, Any]) -> str:
 
 def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     """Both sums over the turn, at the contact that is worst of all."""
-    from camgeo.capabilities.budget.outcome import outcome, over_turn, told
+    from camgeo.capabilities.budget.section import sums_over_turn
+    from camgeo.capabilities.budget.units import motion_unit
     from camgeo.report.page.curves import Plot, Series
     from camgeo.report.page.followers import SHAFT
 
-    budget = recipe.of(Budget)
-    if budget is None or not _can_move(design):
+    result = _outcome(recipe, design)
+    if result is None:
         return ()
-    sums = over_turn(recipe, outcome(recipe, design, budget), SHAFT)
-    permitted, unit = told(recipe, budget.permitted)
+    sums, (scale, unit) = sums_over_turn(recipe, result, SHAFT), motion_unit(recipe)
     rows = (Series("worst", sums["worst"]), Series("rss", sums["rss"]))
-    return (Plot("Budget", unit, rows, limits=((permitted, "permitted"),), axis="error", holds=(0.0,)),)
+    limits = ((scale * result.budget.permitted, "permitted"),)
+    return (Plot("Budget", unit, rows, limits=limits, axis="error", holds=(0.0,)),)
 
 
 def _profile(recipe: Recipe) -> float | None:

@@ -52,7 +52,7 @@ def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
 def _made(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> Made:
     recipe, field = run.recipe, f"{run.recipe.field_of(request)}.sheet"
     name = recipe.name if len(run.design.discs) == 1 else f"{recipe.name}, disc {rank + 1}"
-    sheet = sheet if sheet.title else replace(sheet, title=name)
+    sheet = sheet if sheet.title else replace(sheet, words=tuple({**sheet.texts, "title": name}.items()))
     for option, text in sheet.texts.items():
         if missing := unknown(text):
             raise recipe.error(f"{field}.{option}", "characters that the font lacks", repr(missing), "leave them out")

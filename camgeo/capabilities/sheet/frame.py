@@ -24,7 +24,20 @@ BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
 INNER = 5.5  # mm: between the frame and what stands beside it, clear of the marks of its middles
 BLOCK = 180.0  # mm: width of the title block
 ROW = 9.5  # mm: height of a row of it
-ROWS = 5
+CELLS = (
+    (
+        (90.0, "number", "Drawing number"),
+        (25.0, "revision", "Revision"),
+        (40.0, "date", "Date of issue"),
+        (25.0, "page", "Sheet"),
+    ),
+    ((115.0, "title", "Title"), (65.0, "type", "Document type")),
+    ((60.0, "drawn", "Drawn"), (60.0, "approved", "Approved"), (60.0, "owner", "Legal owner")),
+    ((60.0, "material", "Material"), (60.0, "finish", "Finish"), (60.0, "general", "General tolerances")),
+    ((40.0, "scale", "Scale"), (40.0, "mass", "Mass"), (40.0, "units", "Units"), (60.0, "projection", "Projection")),
+)
+"""Rows of it from below: width of each cell, mm, the option or fact that stands in it, and its label."""
+ROWS = len(CELLS)
 
 
 class Area(NamedTuple):
@@ -87,40 +100,18 @@ def title_block(page: Page, sheet: Sheet, facts: Facts) -> None:
     """Draw the title block at the lower right; raises LongTextError."""
     left, low = page.width - EDGE - BLOCK, EDGE
     page.box((left, low), BLOCK, ROWS * ROW, THICK, "FRAME")
-    rows: list[list[tuple[float, str, str, str]]] = [
-        [
-            (90.0, "number", "Drawing number", sheet.number),
-            (25.0, "revision", "Revision", sheet.revision),
-            (40.0, "date", "Date of issue", sheet.date),
-            (25.0, "", "Sheet", f"{facts.page}/{facts.pages}"),
-        ],
-        [(115.0, "title", "Title", sheet.title), (65.0, "", "Document type", "Shop drawing")],
-        [
-            (60.0, "drawn", "Drawn", sheet.drawn),
-            (60.0, "approved", "Approved", sheet.approved),
-            (60.0, "owner", "Legal owner", sheet.owner),
-        ],
-        [
-            (60.0, "material", "Material", sheet.material),
-            (60.0, "finish", "Finish", sheet.finish),
-            (60.0, "general", "General tolerances", sheet.general),
-        ],
-        [
-            (40.0, "", "Scale", facts.scale),
-            (40.0, "", "Mass", facts.mass),
-            (40.0, "", "Units", "mm, degrees"),
-            (60.0, "", "Projection", ""),
-        ],
-    ]
-    for k, row in enumerate(rows):
+    page_of = f"{facts.page}/{facts.pages}"
+    fixed = {"page": page_of, "type": "Shop drawing", "units": "mm, degrees", "projection": ""}
+    values = {**sheet.texts, **fixed, "scale": facts.scale, "mass": facts.mass}
+    for k, row in enumerate(CELLS):
         x, y = left, low + k * ROW
         if k:
             page.line((left, y), (left + BLOCK, y), layer="FRAME")
-        for wide, option, label, value in row:
+        for wide, name, label in row:
             if x > left:
                 page.line((x, y), (x, y + ROW), layer="FRAME")
             page.text((x + 1.2, y + ROW - 3.2), label, SMALL, layer="FRAME")
-            _value(page, (x + 1.2, y + 1.3), wide - 2.4, option, value)
+            _value(page, (x + 1.2, y + 1.3), wide - 2.4, name, values[name])
             x += wide
     _projection(page, left + BLOCK - 26.0, low + 4.5 * ROW, sheet.projection)
 
@@ -137,9 +128,13 @@ def footer(page: Page, sheet: Sheet, facts: Facts) -> None:
     """Draw the strip that tells a further page; its texts fit as they do in the title block."""
     left, low = page.width - EDGE - BLOCK, EDGE
     page.box((left, low), BLOCK, ROW, THICK, "FRAME")
-    cells = [(75.0, "Drawing number", sheet.number), (60.0, "", page.name), (20.0, "Revision", sheet.revision)]
     x = left
-    for wide, label, value in [*cells, (25.0, "Sheet", f"{facts.page}/{facts.pages}")]:
+    for wide, label, value in (
+        (75.0, "Drawing number", sheet.texts["number"]),
+        (60.0, "", page.name),
+        (20.0, "Revision", sheet.texts["revision"]),
+        (25.0, "Sheet", f"{facts.page}/{facts.pages}"),
+    ):
         if x > left:
             page.line((x, low), (x, low + ROW), layer="FRAME")
         page.text((x + 1.2, low + ROW - 3.2), label, SMALL, layer="FRAME")

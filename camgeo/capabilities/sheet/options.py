@@ -22,45 +22,44 @@ SCALES: Mapping[str, float] = {
 AUTO, LEAST_STEP, MOST_STEP = "auto", 0.5, 90.0  # degrees
 
 
+TEXTS: Mapping[str, tuple[str, str]] = {
+    "title": ("title of the part", ""),
+    "number": ("drawing number", ""),
+    "revision": ("index of the revision", ""),
+    "date": ("date of issue", ""),
+    "drawn": ("who drew it", ""),
+    "approved": ("who approved it", ""),
+    "owner": ("legal owner", ""),
+    "material": ("material of the part", ""),
+    "finish": ("surface finish", ""),
+    "general": ("general tolerances", "ISO 2768-m"),
+}
+"""Texts of the title block by their options: what they are, and what stands where none is given."""
+
+
 @dataclass(frozen=True)
 class Sheet:
-    """The options of one drawing; `scale` is None for the largest that fits, `step` in rad, `profile` in mm."""
+    """The options of one drawing; `words` are the texts of the title block with their options.
 
+    `scale` is None for the largest that fits, `step` in rad, `profile` in mm.
+    """
+
+    words: tuple[tuple[str, str], ...]
     paper: str = "A3"
     projection: str = "first"
     scale: str | None = None
     step: float = math.radians(10.0)
     profile: float | None = None
-    title: str = ""
-    number: str = ""
-    revision: str = ""
-    date: str = ""
-    drawn: str = ""
-    approved: str = ""
-    owner: str = ""
-    material: str = ""
-    finish: str = ""
-    general: str = "ISO 2768-m"
 
     @property
-    def texts(self) -> Mapping[str, str]:
+    def texts(self) -> dict[str, str]:
         """Texts of the title block by their options."""
-        return {
-            "title": self.title,
-            "number": self.number,
-            "revision": self.revision,
-            "date": self.date,
-            "drawn": self.drawn,
-            "approved": self.approved,
-            "owner": self.owner,
-            "material": self.material,
-            "finish": self.finish,
-            "general": self.general,
-        }
+        return dict(self.words)
 
-
-def _text(name: str, about: str, default: str = "empty") -> Field:
-    return Field(name, Kind.TEXT, about, default=default)
+    @property
+    def title(self) -> str:
+        """Title of the part."""
+        return self.texts["title"]
 
 
 OPTIONS = Table(
@@ -96,16 +95,10 @@ OPTIONS = Table(
             at_most=MOST_STEP,
         ),
         length("profile", "width of the contour's tolerance zone, ISO 1660", default="what another section states"),
-        _text("title", "title of the part", "the recipe's name"),
-        _text("number", "drawing number"),
-        _text("revision", "index of the revision"),
-        _text("date", "date of issue"),
-        _text("drawn", "who drew it"),
-        _text("approved", "who approved it"),
-        _text("owner", "legal owner"),
-        _text("material", "material of the part"),
-        _text("finish", "surface finish"),
-        _text("general", "general tolerances", "ISO 2768-m"),
+        *(
+            Field(name, Kind.TEXT, about, default="the recipe's name" if name == "title" else default or "empty")
+            for name, (about, default) in TEXTS.items()
+        ),
     )
 )
 
@@ -122,4 +115,6 @@ def check_sheet(file: Values, _: Values, reader: Reader) -> None:
 
 def build_sheet(options: Mapping[str, Any]) -> Sheet:
     """Make the drawing of options in which there is no fault."""
-    return Sheet(**{name: value for name, value in options.items() if value != AUTO or name != "scale"})
+    values = {name: value for name, value in options.items() if value != AUTO or name != "scale"}
+    texts = {name: values.pop(name, default) for name, (_, default) in TEXTS.items()}
+    return Sheet(tuple(texts.items()), **values)
