@@ -154,6 +154,14 @@ def _of_a_wheel(_: Scene, file: FileRequest) -> bool:
     return file.form.ground and "roller" not in file.own
 
 
+def _of_a_drive(_: Scene, file: FileRequest) -> bool:
+    return file.as_ == "controller"
+
+
+def _stated(scene: Scene, file: FileRequest) -> bool:
+    return file.form.ground or _of_a_drive(scene, file)
+
+
 def _drawing(_: Scene, file: FileRequest) -> bool:
     return file.format.contour and not file.format.solid
 
@@ -345,7 +353,14 @@ VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)
 NORMALS = Declared("normals", ("mm",), of_file=_of_a_wheel, field="export.tolerance")
-STATED_ERROR = Declared("stated-error", ("mm",), of_file=lambda _, file: file.form.ground)
+STATED_ERROR = Declared("stated-error", ("mm", "deg"), of_file=_stated)
+INTERPOLATION = Declared(
+    "interpolation",
+    ("mm", "deg"),
+    of_file=_of_a_drive,
+    field="export.tolerance",
+    own_field="verify.motion_error",
+)
 MOTION = Declared(
     "motion",
     ("mm", "deg"),

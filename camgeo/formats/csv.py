@@ -10,7 +10,7 @@ from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Form, Format
 from camgeo.registry.gathered import Gathered
-from camgeo.schema.fields import Field, Kind, Table, length
+from camgeo.schema.fields import Field, Kind, Table, either, length
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 MODULES = {
     name: f"camgeo.formats.tables.{name}"
-    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace")
+    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "controller")
 }
 """Module of each of the core's tables by its word."""
-OF_GROUND = ("step", "tolerance", "roller")
-"""Options of tables by which a lobe is ground alone."""
+OF_SOME = ("step", "tolerance", "roller", "for")
+"""Options that some tables have and others have not, see `Form.takes`."""
 
 
 def _form(name: str) -> Form:
@@ -42,13 +42,12 @@ FORMS = Gathered(OnDemand(MODULES, _form), lambda capability: capability.tables(
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
-    """Note options of the tables by which a lobe is ground beside another one."""
-    if FORMAT.form(file.get("as")).ground:
-        return
-    for key in OF_GROUND:
-        if key in file:
-            kind = "lift" if key == "roller" else "grinding"
-            reader.fault_at(f"{file['path']}.csv.{key}", f"belongs to a table as {kind}", None, "leave it out")
+    """Note options of other tables than that which a file is."""
+    taken = FORMAT.form(file.get("as")).takes
+    for key in OF_SOME:
+        if key in file and key not in taken:
+            kinds = either(tuple(name for name, form in FORMS.items() if key in form.takes))
+            reader.fault_at(f"{file['path']}.csv.{key}", f"belongs to a table as {kinds}", None, "leave it out")
 
 
 def _make(job: Job, request: FileRequest, path: Path) -> Made:
@@ -72,10 +71,17 @@ FORMAT = Format(
             Field(
                 "step",
                 Kind.ANGLE,
-                "of grinding and lift, between rows; 360 degrees are a whole number of it",
+                "of grinding, lift and controller, between rows; 360 degrees are a whole number of it",
                 default="the largest that holds the tolerance",
                 at_least=FINEST,
                 at_most=COARSEST,
+            ),
+            Field(
+                "for",
+                Kind.CHOICE,
+                "of controller, whose table it is",
+                default="required for it",
+                choices=("codesys", "codesys-table", "plain"),
             ),
             length("roller", "of lift, diameter of the roller on a stem through the shaft whose lift it is"),
             RECIPE_UNITS,

@@ -58,13 +58,20 @@ class UnitsError(CamgeoError, ValueError):
 
 
 def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
-    """Judge a drawing, solid, milling program or grinder's table, by its suffix, at `angles` equal steps of the shaft.
+    """Judge a drawing, solid, program, grinder's or drive's table, by its suffix, at `angles` equal steps of the shaft.
 
     What a file states as its unit counts; `units`, mm, is that of one that states none. A file from which no contour
     can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
     another unit than `units`, and ValueError for another suffix or no angles.
     """
-    read = READERS[format_of(path).contents]
+    kind = format_of(path)
+    if kind.contents == "table":
+        from kin.judge.drive import drive_checks, is_drive  # which has no contour
+
+        if is_drive(path):
+            checks = drive_checks(path, part.surfaces[0].gauge, limits)
+            return Verdict(kind.name, tuple(about(check, path.name) for check in checks))
+    read = READERS[kind.contents]
     return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, ground, measured, recipes, shafts, tables, valves, wider
+from attacks import calls, drives, files, ground, measured, recipes, shafts, tables, valves, wider
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,6 +40,8 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     wider.on_a_shaft,
     shafts.flush,
     valves.carded,
+    drives.driven,
+    drives.tabled_for_a_drive,
     measured.probed,  # needs: made
     ground.ground,
     ground.tabled_for_a_grinder,

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 GRINDER = "c_deg"  # heading of the column of the work's angle in a grinder's table
+DRIVE = "master_deg"  # of the master's in a table for a drive
 REPEATED = 0.02  # of the mean step: points nearer than this are one place, measured again
 FEWER = 0.8  # of the points: as many places or less, and they are repeats
 MOST_LENGTH = 1e3  # mm, of a probe and its errors
@@ -40,7 +41,7 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
     if path.suffix.lower() != ".csv":
         return True
     heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
-    return GRINDER not in heading
+    return not {GRINDER, DRIVE}.intersection(heading)
 
 
 @dataclass(frozen=True)

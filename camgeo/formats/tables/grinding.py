@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
     path = f"{file['path']}.csv"
-    if "roller" in file:
-        reader.fault_at(f"{path}.roller", "belongs to a table as lift", None, "leave it out")
     if "manufacture.wheel" not in reader.marks:
         remedy = "give manufacture.wheel, its diameter, such as `manufacture: {wheel: 400}`"
         reader.fault_at(f"{path}.as", "a grinder's table needs the wheel", "'grinding'", remedy)

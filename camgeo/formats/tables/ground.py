@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 WHOLE = 1e-9  # rad by which steps may miss a turn
 
 
-def ground_form(name: str, check: Callable[[Values, Values, Reader], None]) -> Form:
-    """Make the record of a table by which a lobe is ground; `check` notes what it lacks besides."""
+def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Form:
+    """Make the record of a table by which a lobe is ground, with `more` options; `check` notes what it lacks."""
 
     def checked(file: Values, values: Values, reader: Reader) -> None:
         check(file, values, reader)
         _check(file, values, reader)
 
-    return Form(name=name, listed=("as",), ground=True, check=checked, make=make_ground)
+    takes = ("step", "tolerance", *more)
+    return Form(name=name, listed=("as",), ground=True, takes=takes, check=checked, make=make_ground)
 
 
 def _check(file: Values, values: Values, reader: Reader) -> None:

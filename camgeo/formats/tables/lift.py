@@ -16,4 +16,4 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
         reader.fault_at(where, "the lift of a roller needs its diameter", "'lift'", "give roller beside it")
 
 
-FORM = ground_form("lift", _check)
+FORM = ground_form("lift", _check, "roller")

@@ -1,0 +1,201 @@
+"""Tables for electronic cams: rows of a master and a slave for the controller of a drive, which joins them.
+
+What a controller makes of the rows between them is held against the motion, at every place: the joined rows are read
+back from the file and judged as a drive would run them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.common.rounding import upward
+from camgeo.files.table import DIGITS, write_table
+from camgeo.measures.file_result import FileResult
+from camgeo.recipe.machining import COARSEST, FINEST
+from camgeo.registry.formats import Form
+from kin.judge.check import about
+from kin.judge.drive import JOINS, MASTER, RATES, drive_checks
+from kin.law.joined_rows import JoinedRows
+from kin.numeric.angles import TURN
+from kin.numeric.monotone import between, cells, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+    from kin.law.joined_rows import Join
+    from kin.numeric.arrays import Array
+
+TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
+WHOLE = 1e-9  # rad by which steps may miss a turn
+SHARE = 1e-12  # of the stroke, to which the lowest place is found
+NOTHING = 1e-13  # of the greatest value: rounding about 0
+
+
+class Controller(NamedTuple):
+    """How a controller joins the rows of its table, what it is called there, and on whose word it does so."""
+
+    join: Join
+    layout: str
+    word: str
+
+
+CONTROLLERS = {
+    "codesys": Controller(
+        "quintic",
+        "CODESYS SoftMotion, MC_CAM_REF of type XYVA: an array of SMC_CAMXYVA with dX, dY, dV, dA",
+        "by position, velocity and acceleration, as the library SM3_Basic says of SMC_CAM_TYPE.XYVA",
+    ),
+    "codesys-table": Controller(
+        "line",
+        "CODESYS SoftMotion, MC_CAM_REF of type XY: SMC_CAMTable_LREAL_n_2 with pairs of master and slave",
+        "as SM3_Basic says of MC_CAM_REF with byInterpolationQuality 1",
+    ),
+    "plain": Controller(
+        "quintic",
+        "x, s, v, a of any controller",
+        "by position, velocity and acceleration, as is assumed here",
+    ),
+}
+"""Controllers by their words after the key `for`, in the order of the schema."""
+
+
+def check(file: Values, values: Values, reader: Reader) -> None:
+    """Note what has no table for a drive."""
+    path = f"{file['path']}.csv"
+    if f"{path}.for" not in reader.marks:
+        remedy = f"give one of {', '.join(CONTROLLERS)} beside it"
+        reader.fault_at(f"{path}.as", "a table for a controller needs to know which", "'controller'", remedy)
+    if "linkage" in values:
+        remedy = "leave the table or the linkage out"
+        reader.fault_at(f"{path}.as", "a table for a controller is of a follower without a linkage", None, remedy)
+    if "step" in file:
+        count = round(TURN / file["step"])
+        if abs(count * file["step"] - TURN) > WHOLE:
+            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
+            reader.fault_at(f"{path}.step", "360 degrees are no whole number of it", None, remedy)
+
+
+def make(job: Job, request: FileRequest, path: Path) -> Made:
+    """Write a table with the step that is given, or the widest that holds the tolerance; read it back and judge it."""
+    from camgeo.output.job import Made
+    from camgeo.synthesis.intent import permitted
+
+    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    gauge = job.design.exact.gauge
+    limits = permitted(recipe, tolerance)
+    own = math.radians(1.0) if gauge.unit == "deg" else 1.0
+    with job.clock.stage("controller"):
+        rows = _Rows(job, request)
+        most = own * (gauge.direct_limit(tolerance) if limits.motion is None else limits.motion)
+        count = _count(job, request, rows, most)
+        joined, error = rows.joined(count), rows.error(count)
+        columns, table = rows.table(joined)
+        controller = CONTROLLERS[str(request.own["for"])]
+        unit = rows.unit
+        head = (
+            f"{recipe.name}: one turn of the master; the slave is 0 where the follower is lowest",
+            f"{controller.layout}; {'velocity and acceleration by degree of the master' * (len(columns) > 2)}".rstrip(
+                "; "
+            ),
+            f"{JOINS[controller.join]} ({controller.word})",
+            f"so joined it is within {upward(error / rows.scale, 6)} {unit} of the motion, proved",
+        )
+        write_table(path, columns, table, head=head)
+    with job.clock.stage("judge csv"):
+        checks = drive_checks(path, gauge, limits)
+    file = FileResult(path, request, units=recipe.mm)
+    return Made((file,), tuple(about(one, path.name) for one in checks))
+
+
+class _Rows:
+    """The motion as a controller is given it: from its lowest place, in the unit of the file, as it is written."""
+
+    def __init__(self, job: Job, request: FileRequest) -> None:
+        recipe, exact = job.recipe.told_for(request), job.design.exact
+        self.motion = exact.motion
+        self.controller = CONTROLLERS[str(request.own["for"])]
+        swings = recipe.cam.arrangement.unit == "deg"
+        self.unit = "deg" if swings else "in" if recipe.units == "inch" else "mm"
+        self.scale = math.radians(1.0) if swings else recipe.mm
+        self.breaks = [math.radians(exact.motion.shaft_deg(at)) for at in exact.breaks.tolist()]
+        followed = cells(lambda t: self.motion.rows(t, 0), between(0.0, TURN, sorted(self.breaks)), share=SHARE)
+        self.lowest = pieces(followed).least()[0]
+
+    def position(self, angle: Array) -> Array:
+        """Position above the lowest place (n,), mm or rad, at shaft angles up to a turn."""
+        above: Array = self.motion.rows(angle, 0)[0] - self.lowest
+        return above
+
+    def joined(self, count: int) -> JoinedRows:
+        """Rows as they will stand in the file, with the digits that it has."""
+        angle = np.linspace(0.0, TURN, count + 1)
+        order = 2 if self.controller.join == "quintic" else 0
+        rows = self.motion.turn(angle, order)
+        rows[0] -= self.lowest
+        degree = math.radians(1.0)
+        powers = np.array([1.0, degree, degree**2])[: order + 1, None]
+        shown = rows * powers / self.scale
+        shown[np.abs(shown) < NOTHING * np.abs(shown).max(axis=1, keepdims=True)] = 0.0
+        written = np.array([[float(f"{value:.{DIGITS}g}") for value in row] for row in shown.tolist()])
+        return JoinedRows(angle, written * self.scale / powers, self.controller.join)
+
+    def error(self, count: int) -> float:
+        """Greatest distance of the joined rows from the motion, mm or rad."""
+        return self.joined(count).off(self.position, self.breaks)[0]
+
+    def table(self, joined: JoinedRows) -> tuple[tuple[str, ...], Array]:
+        """Column names and rows in the unit of the file, by degree of the master."""
+        degree = math.radians(1.0)
+        powers = np.array([1.0, degree, degree**2])[: len(joined.slave), None]
+        degrees = np.linspace(0.0, 360.0, len(joined.master))
+        names = (MASTER, f"slave_{self.unit}", *RATES)[: 1 + len(joined.slave)]
+        return names, np.column_stack([degrees, *(joined.slave * powers / self.scale)])
+
+
+def _count(job: Job, request: FileRequest, rows: _Rows, most: float) -> int:
+    """Rows of a turn by the request's step, or the fewest that hold the tolerance, mm or rad."""
+    recipe, field = job.recipe, job.field(request)
+    step = request.own.get("step")
+    if step is not None:
+        count = round(TURN / float(step))
+        error = rows.error(count)
+        if error <= most:
+            return count
+        what = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
+        fewest = _fewest(rows.error, most)
+        remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
+        remedy += f"a tolerance of {upward(error / rows.scale)} {rows.unit}"
+        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+    fewest = _fewest(rows.error, most)
+    if fewest is None:
+        error = rows.error(round(360.0 / FINEST))
+        left = f"{error / rows.scale:.4g} {rows.unit}"
+        what = f"joined as the controller joins them rows {FINEST:g} degrees apart leave {left}"
+        remedy = f"give at least {upward(error / rows.scale)} {rows.unit}"
+        raise recipe.error(job.tolerance_field(request), what, None, remedy)
+    return fewest
+
+
+def _fewest(error: Callable[[int], float], most: float) -> int | None:
+    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is."""
+    whole = 360 * TICKS
+    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
+    low, high = 0, len(ticks) - 1
+    while low < high:  # finer steps leave less, but for a few that meet the motion's breaks
+        middle = (low + high) // 2
+        low, high = (low, middle) if error(whole // ticks[middle]) <= most else (middle + 1, high)
+    while low < len(ticks):
+        if error(whole // ticks[low]) <= most:
+            return whole // ticks[low]
+        low += 1
+    return None
+
+
+FORM = Form(name="controller", surfaces=2, takes=("step", "tolerance", "for"), check=check, make=make)

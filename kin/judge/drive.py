@@ -1,0 +1,138 @@
+"""A table for a drive as it lies on disk: its rows joined as its controller joins them, held to the intended motion."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.judge.check import Check, at_most, failed
+from kin.law.joined_rows import JoinedRows
+from kin.numeric.angles import TURN
+from kin.numeric.monotone import RoughError, between, cells, pieces
+from kin.read.errors import ReadError
+from kin.read.size import contents
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kin.follower.base import Follower
+    from kin.judge.intent import Limits
+    from kin.law.joined_rows import Join
+    from kin.numeric.arrays import Array
+
+MASTER = "master_deg"
+"""Heading of the first column, by which a table for a drive is told from others."""
+SLAVES = {"slave_mm": 1.0, "slave_in": 25.4, "slave_deg": math.radians(1.0)}
+RATES = ("velocity", "acceleration")  # by degree of the master, and by its square
+JOINS: dict[Join, str] = {
+    "line": "joined by straight lines",
+    "quintic": "joined by polynomials of degree 5",
+}
+"""How rows are joined, as the head of a table has it."""
+STATED = re.compile(r"\bwithin (\S+) (?:mm|in|deg) of the motion")
+LEAST_ROWS, MOST_ROWS = 3, 400_000
+FULL = 1e-9  # degrees within which a table goes round
+SHORT = 1e-5  # share by which the error in the head may be short: it has six digits
+DIGITS = 1e-11  # of a position, as a table has it
+SHARE = 1e-12  # of the stroke, to which its lowest place is found
+
+
+class Table(NamedTuple):
+    """A table as read: rows in mm or rad, what one unit of the slave is, and the error that the head states in it."""
+
+    rows: JoinedRows
+    unit: float
+    stated: float | None
+
+
+def is_drive(path: Path) -> bool:
+    """Whether a table is one for a drive, by its heading; raises OSError as the file system does."""
+    with path.open("rb") as file:
+        text = file.read(1 << 16).decode("utf-8-sig", "replace")
+    return MASTER in _heading(text)
+
+
+def drive_checks(path: Path, follower: Follower, limits: Limits) -> list[Check]:
+    """Check the motion that a table makes of a drive, lowest at 0, against a follower's intended one.
+
+    The greatest error, mm or degrees, is at most that of the limits, or what their tolerance is at the follower. A file
+    that is no such table has a check that says why. Raises OSError as the file system does.
+    """
+    try:
+        table = read_table(path)
+        worst, at = _off(table.rows, follower)
+    except RoughError:
+        return [failed("readable", "the motion changes too abruptly to be followed")]
+    except ReadError as error:
+        return [failed("readable", error.message)]
+    if (table.unit == SLAVES["slave_deg"]) != (follower.unit == "deg"):
+        return [failed("readable", f"the slave is not in the follower's unit, {follower.unit}")]
+    own = math.radians(1.0) if follower.unit == "deg" else 1.0
+    most = follower.direct_limit(limits.tolerance) if limits.motion is None else limits.motion
+    slack = DIGITS * float(np.ptp(table.rows.slave[0])) / own
+    checks = [at_most("interpolation", worst / own, most, follower.unit, angle=at, slack=slack)]
+    if table.stated is not None:
+        stated = table.stated * table.unit / own
+        checks.append(at_most("stated-error", worst / own, stated, follower.unit, slack=SHORT * stated + slack))
+    return checks
+
+
+def _off(rows: JoinedRows, follower: Follower) -> tuple[float, float]:
+    """Greatest distance of joined rows from a follower's motion above its lowest place, mm or rad, and where, rad."""
+    breaks = follower.motion.breaks.tolist()
+    followed = cells(lambda t: follower.intended(t)[None], between(0.0, TURN, breaks), share=SHARE)
+    lowest, _ = pieces(followed).least()
+    return rows.off(lambda t: follower.intended(t) - lowest, breaks)
+
+
+def read_table(path: Path) -> Table:
+    """Read a table for a drive; raises ReadError for what is none."""
+    text = contents(path, "csv").decode("utf-8-sig", "replace")
+    head = [line for line in text.splitlines() if line.startswith("#")]
+    join = next((name for name, words in JOINS.items() if any(words in line for line in head)), None)
+    if join is None:
+        told = " or ".join(f"`# {words}`" for words in JOINS.values())
+        raise ReadError("unsupported", f"the head does not say how rows are joined: give a line {told}", path)
+    names, wanted = _heading(text), 2 if join == "line" else 4
+    slave = next((name for name in names if name in SLAVES), "")
+    columns = [MASTER, slave or "slave_mm", *(RATES if wanted > 2 else ())]
+    if names[: len(columns)] != columns:
+        raise ReadError("unsupported", f"its columns are {', '.join(names)}, and not {', '.join(columns)}", path)
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")][1:]
+    numbers = _numbers(lines, len(names), path)
+    master = numbers[:, 0]
+    if abs(master[0]) > FULL or abs(master[-1] - 360.0) > FULL or (np.diff(master) <= 0.0).any():
+        raise ReadError("range", "the master does not rise from 0 to 360 degrees", path)
+    degree = math.degrees(1.0)
+    rows = numbers[:, 1:wanted].T * SLAVES[slave] * np.array([1.0, degree, degree**2])[: wanted - 1, None]
+    angle = np.radians(master)
+    angle[-1] = TURN
+    stated = [float(found[1]) for line in head if (found := STATED.search(line)) and _is_number(found[1])]
+    return Table(JoinedRows(angle, rows, join), SLAVES[slave], min(stated, default=None))
+
+
+def _numbers(lines: list[str], count: int, path: Path) -> Array:
+    """Rows of numbers, (n, count); raises ReadError for others, and for too few or too many."""
+    if not LEAST_ROWS <= len(lines) <= MOST_ROWS:
+        raise ReadError("range", f"{len(lines)} rows; {LEAST_ROWS} to {MOST_ROWS} are judged", path)
+    rows = [line.split(",") for line in lines]
+    bad = next((i for i, row in enumerate(rows) if len(row) != count or not all(map(_is_number, row))), None)
+    if bad is not None:
+        raise ReadError("syntax", f"row {bad + 1} is not of {count} finite numbers", path)
+    return np.array(rows, dtype=np.float64)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _heading(text: str) -> list[str]:
+    """Names of the columns: the first line that is no remark."""
+    line = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    return [cell.strip().strip('"').lower() for cell in line.split(",")]

@@ -1,0 +1,79 @@
+"""Rows of a cam table joined as a drive's controller joins them: by lines, or by polynomials of degree 5.
+
+Between two rows the difference from a motion is followed by polynomials of which nothing is sampled past
+(`kin.numeric.monotone`), so that its greatest value is no matter of luck.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from kin.numeric.arrays import Array
+
+Join = Literal["line", "quintic"]
+_DEGREE = 5
+_SHARE = 1e-12  # of the greatest position, to which the difference is followed
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedRows:
+    """Rows of a master's angle (n,), rad, from 0 to a turn, and of a slave's position, (1 or 3, n), mm or rad.
+
+    By a line the position alone is met; by a quintic velocity and acceleration too, rows 1 and 2, by rad of the master.
+    """
+
+    master: Array
+    slave: Array
+    join: Join
+
+    @property
+    def coefficients(self) -> Array:
+        """Of each part the polynomial in the share of it, (6, n - 1), the constant first (Hermite, degree 5)."""
+        width, rise = np.diff(self.master), np.diff(self.slave[0])
+        found = np.zeros((_DEGREE + 1, len(width)))
+        found[0] = self.slave[0, :-1]
+        if self.join == "line":
+            found[1] = rise
+            return found
+        v, w = self.slave[1, :-1] * width, self.slave[1, 1:] * width
+        a, b = self.slave[2, :-1] * width**2, self.slave[2, 1:] * width**2
+        found[1], found[2] = v, 0.5 * a
+        found[3] = 10.0 * rise - 6.0 * v - 4.0 * w - 1.5 * a + 0.5 * b
+        found[4] = -15.0 * rise + 8.0 * v + 7.0 * w + 1.5 * a - b
+        found[5] = 6.0 * rise - 3.0 * (v + w) - 0.5 * (a - b)
+        return found
+
+    def position(self, angle: Array) -> Array:
+        """The slave's position at angles of the master (n,), rad."""
+        coefficients, last = self.coefficients, len(self.master) - 2
+        part = np.clip(np.searchsorted(self.master, angle, side="right") - 1, 0, last)
+        x = (angle - self.master[part]) / (self.master[part + 1] - self.master[part])
+        value = np.zeros_like(angle)
+        for row in coefficients[::-1]:
+            value = value * x + row[part]
+        return value
+
+    def off(self, position: Callable[[Array], Array], breaks: Iterable[float]) -> tuple[float, float]:
+        """Greatest distance from a motion, mm or rad, and the angle where it is, rad.
+
+        `position` gives that of angles (n,) from 0 to a turn; at `breaks` a derivative of it may jump. Raises
+        RoughError where it changes too abruptly to be followed.
+        """
+        size = float(np.ptp(self.slave[0])) or 1.0
+        places = between(0.0, TURN, [*self.master.tolist(), *breaks])
+
+        def difference(angle: Array) -> Array:
+            return (position(angle) - self.position(angle))[None]
+
+        made = pieces(cells(difference, places, _SHARE * size))
+        (least, low), (greatest, high) = made.least(), made.greatest()
+        return max((abs(least), low), (abs(greatest), high))

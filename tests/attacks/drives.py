@@ -1,0 +1,51 @@
+"""Tables for drives by chance: exported within their tolerance, or judged with a row that is off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from attacks.cams import drawn
+from attacks.outcome import Attack
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from random import Random
+
+    from attacks.outcome import Done
+
+HEADS = (
+    "# joined by straight lines\nmaster_deg,slave_mm\n",
+    "# joined by polynomials of degree 5\n# within 0.001 mm of the motion\nmaster_deg,slave_mm,velocity,acceleration\n",
+    "# joined by polynomials of degree 5\nmaster_deg,slave_deg,velocity,acceleration\n",
+    "master_deg,slave_mm\n",
+    "# joined by straight lines\n# within nan mm of the motion\nmaster_deg,slave_in\n",
+)
+
+
+def driven(rng: Random, number: int) -> Attack:
+    """A cam by chance as a table for a drive."""
+    options = f"as: controller, for: {rng.choice(['codesys', 'codesys-table', 'plain'])}"
+    options += rng.choice(["", "", ", step: 1", ", step: 0.01", ", step: 7", ", units: inch", ", tolerance: 1e-7"])
+    text = drawn(rng).text(f"{{csv: {{{options}}}}}")
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        made = (folder / "out" / "cam" / "cam.csv").is_file()
+        return [] if made == (done.status == 0) else [f"verdict: {done.status} with a table: {made}"]
+
+    return Attack(
+        f"drive {number}", ("export", "cam.yaml"), {"cam.yaml": text.encode()}, (0, 1, 2), judge, seconds=15.0
+    )
+
+
+def tabled_for_a_drive(rng: Random, number: int) -> Attack:
+    """A table for a drive that is none, or none of this motion: never right, and never a traceback."""
+    rows = []
+    head = rng.choice(HEADS)
+    wide = head.rstrip().rpartition("\n")[2].count(",")
+    for angle in range(0, 361, rng.choice([10, 30, 90, 360])):
+        cells = [rng.choice([0, 1e-3, 5, 1e300, -4]) for _ in range(wide)]
+        rows.append(",".join(map(str, [angle, *cells])) + "\n")
+    if rng.random() < 0.4:
+        rows[rng.randrange(len(rows))] = rng.choice(["", "x,y\n", "10\n", "nan,nan\n", "1,2,3,4,5,6\n", "180,inf\n"])
+    files = {"cam.yaml": drawn(rng).text("dxf").encode(), "drive.csv": (head + "".join(rows)).encode()}
+    return Attack(f"drive's table {number}", ("verify", "cam.yaml", "drive.csv"), files, statuses=(1, 2))
