@@ -612,7 +612,8 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             [
                 (
                     "1:84: cam.motion[0].law: unknown motion law, given 'xyz'; give "
-                    f"{', '.join(NAMES)} or match, {{polynomial: [...]}} or {{scca: {{...}}}}"
+                    f"{', '.join(NAMES)}, match, {{polynomial: [...]}}, {{scca: {{...}}}}, {{uniform: {{blend: 10}}}}, "
+                    "{points: [...]} or {table: s.csv}"
                 )
             ],
         ),
@@ -648,7 +649,7 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
         (
             MOTION.replace("LAW", "{polynom: [0, 1]}"),
             [
-                "1:84: cam.motion[0].law: needs polynomial or scca; give exactly one of them",
+                "1:84: cam.motion[0].law: needs polynomial, scca, uniform, points or table; give exactly one of them",
                 "1:85: cam.motion[0].law.polynom: unknown key; did you mean polynomial?",
             ],
         ),
@@ -703,7 +704,7 @@ cam:
         ),
         (
             "c.yaml:9:7: cam.motion[4].law: missing, needed with return; give a motion law: "
-            "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}"
+            "motion law by name, match, or one of its own"
         ),
         "c.yaml:9:25: cam.motion[4].over: above 180, given 200; give an angle above 0 up to 180 in degrees",
         (
@@ -745,7 +746,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             "[{csv: }]",
             [
                 (
-                    "23: export.files[0].csv: nothing given; give a mapping with as, step, roller, units and "
+                    "23: export.files[0].csv: nothing given; give a mapping with as, step, for, roller, units and "
                     "tolerance, or leave the key out"
                 )
             ],
