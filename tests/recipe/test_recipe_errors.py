@@ -712,7 +712,7 @@ cam:
             "degrees: shaft angle of the segment"
         ),
         f"c.yaml:11:7: cam.motion[6]: needs {kinds}; give exactly one of them",
-        f"c.yaml:11:8: cam.motion[6].table: unknown key; the keys here are {keys}",
+        "c.yaml:11:8: cam.motion[6].table: unknown key; it belongs under law",
         f"c.yaml:12:7: cam.motion[7]: not a mapping, given 7; give a mapping with {keys}",
     ]
 
