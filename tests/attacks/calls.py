@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from attacks.outcome import Attack
@@ -136,3 +137,40 @@ def called(rng: Random, number: int) -> Attack:
         "cam.dxf": drawing,
     }
     return Attack(f"call {number}", tuple(words), {**files, "folder/kept.txt": b"kept"})
+
+
+SOUND = {
+    "disc": ["--roller 8", "--roller 0 --offset 2", "--shoe 60", "--flat", "--flat --width 60", "--roller 1000"],
+    "arm": ["--roller 8 --arm 80,65", "--shoe 30 --arm 80,65 --leading", "--flat --arm 90", "--roller 0 --arm 900,890"],
+    "yoke": ["--flat --yoke", "--roller 8 --yoke", "--flat --yoke --reading 50"],
+    "ring": ["--roller 2 --track internal", "--roller 8 --offset 3 --track internal"],
+    "groove": ["--roller 4 --track groove", "--roller 80 --track groove", "--roller 4 --arm 80,60 --track groove"],
+}
+"""Followers that go together, by what they run on."""
+
+
+# needs: follow
+def followed(rng: Random, number: int) -> Attack:
+    """A follower of any kind on contours by chance: a lobed disc, a ring, a groove, off their places now and then."""
+    lobes, lift, radius = rng.randrange(1, 7), rng.choice([0.0, 0.1, 1.0, 6.0, 18.0]), rng.choice([3.0, 20.0, 400.0])
+    count, off = rng.choice([3, 40, 360, 1500]), rng.choice([0.0, 0.0, 0.0, 2.0, 50.0])
+
+    def path(reach: float) -> str:
+        angles = [2.0 * math.pi * k / count for k in range(count)]
+        rows = [(reach + lift * math.cos(lobes * angle) * reach / 20.0, angle) for angle in angles]
+        points = " L ".join(f"{off + r * math.cos(a):.6f} {r * math.sin(a):.6f}" for r, a in rows)
+        return f'<path d="M {points} Z"/>'
+
+    kind = rng.choice([*SOUND, *SOUND, "any"])
+    nested = [[1.0], [1.0, 1.8], [1.0, 1.4, 2.0]]
+    shapes = [path(radius * scale) for scale in {"ring": nested[1], "groove": nested[2]}.get(kind, rng.choice(nested))]
+    size = rng.choice(['width="99mm" height="99mm" viewBox="0 0 99 99"'] * 6 + ['viewBox="0 0 99 99"', ""])
+    drawing = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(shapes)}</svg>'
+    follower = rng.choice(
+        SOUND.get(kind, [" ".join(rng.choice(words) for words in zip(*SOUND.values(), strict=False))])
+    )
+    more = rng.choice([[], ["--recipe", "found.yaml"], ["--page", "page.html"], ["--table", "turn.csv", "--json"]])
+    words = ["follow", "cam.svg", *follower.split(), *more]
+    words += rng.choice([[], [], ["--rotation", "ccw"], ["--reading", "0.2"], ["--at", "2,0"]])
+    words += rng.choice([[], [], [], [], ["--units", "inch"]])
+    return Attack(f"follower {number}", tuple(words), {"cam.svg": drawing.encode()})

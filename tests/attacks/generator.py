@@ -47,6 +47,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     ground.tabled_for_a_grinder,
     ground.pressed,
     ground.named,
+    calls.followed,  # needs: follow
 )
 """Ways to attack, in turn."""
 

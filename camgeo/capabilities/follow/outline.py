@@ -62,7 +62,8 @@ def outline_of(path: Path, units: float | None, at: tuple[float, float], track: 
     try:
         chains = read(path, units, track)
     except ReadError as error:
-        raise CallError(f"{name}: {error.message}") from error
+        remedy = "; of a groove give track groove" if error.reason == "island" and track != "groove" else ""
+        raise CallError(f"{name}: {error.message}{remedy}") from error
     moved = [chain.contour.moved(-at[0], -at[1]) for chain in chains]
     contours = tracks(moved)
     where = f"the shaft at {at[0]:.9g}, {at[1]:.9g} mm"

@@ -284,6 +284,13 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     ring = camgeo.follow(tmp_path / "round.dxf", roller=3.0, track="internal")
     with pytest.raises(camgeo.CallError, match="a ring's recipe has a round outline"):
         ring.recipe("lift.csv")
+    for radius in (30.0, 12.0):
+        document.modelspace().add_circle((5.0, 0.0), radius, dxfattribs={"layer": "0"})
+    document.saveas(tmp_path / "nested.dxf")
+    with pytest.raises(camgeo.CallError, match="lies inside a hole; it is 24 x 24 mm; of a groove give track groove"):
+        camgeo.follow(tmp_path / "nested.dxf", roller=5.0)
+    groove = camgeo.follow(tmp_path / "nested.dxf", roller=5.0, track="groove")
+    assert groove.play == pytest.approx((0.0, 0.0), abs=1e-9)
     (tmp_path / "empty.svg").write_text("", encoding="utf-8")
     (tmp_path / "empty.stl").write_text("", encoding="utf-8")
     for empty in ("empty.svg", "empty.stl"):
