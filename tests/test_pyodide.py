@@ -7,26 +7,35 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from support import pyodide
+from support.once import common, once
 from support.places import SHIPPED, TESTS
 
 import camgeo
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 AGREE = 1e-9  # of figures in mm and degrees, absolute, and relative of those above 1
-FITTED = 5e-3  # the same of what is measured of a file: where rounding decides, a fit has its vertices elsewhere
+PATIENCE = 1800.0  # s for all recipes, on a busy machine
+LEAST_FITTED = 5e-9  # the least, of what is measured of a file: handles of a spline lie where its error hardly changes
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(pyodide.why_not()), reason=pyodide.why_not())]
 
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    folder = tmp_path_factory.mktemp("pyodide")
-    pyodide.gather(folder / "pure")
-    done = pyodide.run(TESTS / "support/in_pyodide.py", folder / "pure", folder / "answer.json", *SHIPPED)
-    assert done.returncode == 0, done.stderr
+    """What the browser's Python says of all recipes, asked once by whichever process comes first."""
+
+    def ask(folder: Path) -> None:
+        pyodide.gather(folder / "pure")
+        done = pyodide.run(TESTS / "support/in_pyodide.py", folder / "pure", folder / "answer.json", *SHIPPED)
+        assert done.returncode == 0, done.stderr
+
+    folder = once(common(tmp_path_factory) / "pyodide", ask, patience=PATIENCE)
     found: dict[str, Any] = json.loads((folder / "answer.json").read_text("utf-8"))
     return found
 
@@ -102,19 +111,19 @@ PLACES = ("_deg", "detail", "sentence", "centre")  # where an extreme is, which 
 MACHINE = {"bytes", "sha256"}  # of a file: digits at rounding, triangles as they were clipped
 
 
-def compared(here: Any, there: Any, where: str = "", agree: float = AGREE) -> list[str]:
+def compared(here: Any, there: Any, where: str = "", least: float = AGREE) -> list[str]:
     """Say where two documents differ, by more than rounding where they hold numbers; of places nothing is asked."""
     if isinstance(here, dict) and isinstance(there, dict):
         names = sorted(name for name in {*here, *there} - MACHINE if not name.endswith(PLACES))
-        agree = FITTED if {*names}.intersection(OF_FILE) else agree
+        least = LEAST_FITTED if {*names}.intersection(OF_FILE) else least
         pairs = [(f"{where}.{name}", here.get(name), there.get(name)) for name in names]
     elif isinstance(here, list) and isinstance(there, list) and len(here) == len(there):
         pairs = [(f"{where}[{i}]", *pair) for i, pair in enumerate(zip(here, there, strict=True))]
     elif isinstance(here, float) and isinstance(there, float):
         if ".peaks." in where:  # a peak may be attained upwards and downwards
             here, there = abs(here), abs(there)
-        close = math.isclose(here, there, rel_tol=agree, abs_tol=AGREE)
+        close = math.isclose(here, there, rel_tol=AGREE, abs_tol=least)
         return [] if close else [f"{where}: {here!r}, {there!r}"]
     else:
         return [] if here == there else [f"{where}: {here!r}, {there!r}"]
-    return [line for place, first, second in pairs for line in compared(first, second, place, agree)]
+    return [line for place, first, second in pairs for line in compared(first, second, place, least)]

@@ -65,7 +65,8 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
         before = at.turn * sense >= 0.0
         low, high = np.where(before, root, low), np.where(before, high, root)
         better = root - move
-        root = np.where((better > low) & (better < high), better, 0.5 * (low + high))
+        # a root that has settled stays where it is: it is an end of what bounds it then
+        root = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
     roots: Array = np.sort(np.concatenate([at_break, root]))
     return roots, 1.0 if positive[0] else -1.0
 

@@ -102,6 +102,19 @@ def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
     assert polygon.count <= 1.01 * least_vertices(curve, tolerance) + len(curve.runs[0].breaks) + 1
 
 
+@pytest.mark.parametrize("name", ["disc-sized", "lobe-roller", "w-rosette", "w-wanted-law"])
+def test_a_root_that_has_settled_stays(name: str) -> None:
+    """Each step of Newton's method after the last one that changes anything leaves the root where it is."""
+    curve: Curve = load(RECIPES / f"{name}.yaml").cam.exact().surfaces[0].curve
+    densities = Density.of(curve, curve.runs[0].stretches, polygon_density)
+    bends, _ = inflections(curve, densities, 0.001)
+    breaks = np.concatenate([density.t[[0, -1]] for density in densities])
+    smooth = bends[np.abs(bends[:, None] - breaks).min(axis=1) > 1e-6]
+    assert smooth.size >= 4
+    frame = curve.sample(smooth)
+    np.testing.assert_allclose(frame.turn / frame.turn_slope, 0.0, atol=1e-9)
+
+
 @pytest.mark.parametrize("name", NEAR_A_BREAK)
 def test_inflections_are_where_the_turn_is_zero_or_jumps(name: str) -> None:
     """Round a closed curve they are even in number, and on either side the curve bends as the sides say."""

@@ -22,11 +22,11 @@ def common(factory: pytest.TempPathFactory) -> Path:
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
-def once(folder: Path, fill: Callable[[Path], object]) -> Path:
-    """Let the first process that asks for a folder fill it; the others wait until that is done."""
+def once(folder: Path, fill: Callable[[Path], object], patience: float = PATIENCE) -> Path:
+    """Let the first process that asks for a folder fill it; the others wait until that is done, s at most."""
     done = folder.with_name(f"{folder.name}.done")
     folder.parent.mkdir(parents=True, exist_ok=True)
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + patience
     while not done.exists():
         try:
             folder.mkdir()
