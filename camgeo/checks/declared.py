@@ -147,7 +147,7 @@ def _contour(_: Scene, file: FileRequest) -> bool:
 
 
 def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
-    return file.form.ground or _contour(scene, file)
+    return file.form.ground or file.form.curve or _contour(scene, file)
 
 
 def _of_a_wheel(_: Scene, file: FileRequest) -> bool:

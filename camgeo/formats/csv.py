@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 MODULES = {
     name: f"camgeo.formats.tables.{name}"
-    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "controller")
+    for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "controller", "points")
 }
 """Module of each of the core's tables by its word."""
 OF_SOME = ("step", "tolerance", "roller", "for")
@@ -71,7 +71,7 @@ FORMAT = Format(
             Field(
                 "step",
                 Kind.ANGLE,
-                "of grinding, lift and controller, between rows; 360 degrees are a whole number of it",
+                "of grinding, lift, controller and points, between rows; 360 degrees are a whole number of it",
                 default="the largest that holds the tolerance",
                 at_least=FINEST,
                 at_most=COARSEST,

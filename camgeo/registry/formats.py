@@ -139,6 +139,7 @@ class Form:
     pieces    what a piece of its contour is called in reports
     listed    options that a report tells
     ground    whether it is a table by which a lobe is ground, whose contour is judged
+    curve     whether it is a list of points, the spline through which is judged as a contour
     takes     options of its files that it has and other forms have not
     check     notes what a recipe that asks for it lacks: (values of the file, values of the recipe, reader)
     make      writes and judges it, where the format has no one way for all its forms
@@ -151,6 +152,7 @@ class Form:
     pieces: str = "pieces"
     listed: tuple[str, ...] = ()
     ground: bool = False
+    curve: bool = False
     takes: tuple[str, ...] = ()
     check: Callable[[Values, Values, Reader], None] = no_fault
     make: Callable[[Job, FileRequest, Path], Made] | None = None

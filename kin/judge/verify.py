@@ -75,6 +75,19 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
 
 
+def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm: float) -> Verdict:
+    """Judge a list of points of a part's one surface, `mm` to a unit, by the spline that CAD systems put through it."""
+
+    def read() -> list[tuple[PartIntent, _Read]]:
+        from kin.read.point_list import spline_of_points
+
+        contour, count = spline_of_points(path, mm)
+        chains = scaled((Chain(contour, pieces=count),), 1.0, mirrored=part.mirrored)
+        return [(part, _Read([], tuple(chains), chains, mm))]
+
+    return _verdict(path, read, angles, limits)
+
+
 def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits) -> Verdict:
     """Judge a 3MF or STEP that holds all discs of a shaft, each in its place, as `verify` does one that holds one."""
     return _verdict(path, lambda: _of_solids(path, shaft, limits), angles, limits)

@@ -1,0 +1,117 @@
+"""A list of points that CAD systems import as a curve: x, y, z on each line, the first point again at the end.
+
+What a CAD system draws through them is the closed cubic spline over the lengths of their chords, as is assumed here. It
+is read back from the file and judged as any contour is. Without a step the points are as far apart as it allows.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.common.rounding import upward
+from camgeo.files.table import DIGITS
+from camgeo.measures.file_result import FileResult
+from camgeo.recipe.machining import COARSEST, FINEST
+from camgeo.registry.formats import Form
+from kin.contour.closed_spline import closed_spline
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.curve.curve import Curve
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+    from kin.numeric.arrays import Array
+
+TICKS = 10_000  # of a degree: steps are whole ones
+WHOLE = 1e-9  # rad by which steps may miss a turn
+SHARES = (0.2, 0.5, 0.8)  # of the way between two points, at which the spline is looked at
+MARGIN = 0.95  # of the tolerance that an estimate may take: the judge has the last word
+CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], dtype=float)  # Bernstein's, by powers
+
+
+def check(file: Values, _: Values, reader: Reader) -> None:
+    """Note a step that does not divide the turn."""
+    if "step" in file:
+        count = round(TURN / file["step"])
+        if abs(count * file["step"] - TURN) > WHOLE:
+            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
+            reader.fault_at(f"{file['path']}.csv.step", "360 degrees are no whole number of it", None, remedy)
+
+
+class _Points(NamedTuple):
+    """The contour as points at equal steps of its parameter, mirrored as the recipe has it."""
+
+    contour: Curve
+    sense: float
+
+    def at(self, shares: Array) -> tuple[Array, Array]:
+        """Points and unit normals, (n, 2) each, at shares of the way round (n,)."""
+        (run,) = self.contour.runs
+        frame = self.contour.sample(run.low + (run.high - run.low) * shares)
+        mirror = np.array([1.0, self.sense])
+        return frame.point * mirror, frame.normal * mirror
+
+    def error(self, count: int) -> float:
+        """Greatest distance of the spline through so many points from the contour, mm: an estimate."""
+        control, worst = closed_spline(self.at(np.arange(count) / count)[0]), 0.0
+        for share in SHARES:
+            weights = CUBIC @ share ** np.arange(4)
+            point, normal = self.at((np.arange(count) + share) / count)
+            between = np.tensordot(control, weights, axes=(1, 0))
+            # the point of equal share may stand aside along the curve: what counts is across it
+            worst = max(worst, float(np.abs(np.sum((between - point) * normal, axis=1)).max()))
+        return worst
+
+
+def make(job: Job, request: FileRequest, path: Path) -> Made:
+    """Write the points by the step that is given, or the widest that holds the tolerance, and judge their spline."""
+    from camgeo.output.job import Made
+    from camgeo.synthesis.intent import intended, permitted
+    from kin.judge.verify import verify_points
+
+    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    ((_, contour),) = job.design.contours
+    if len(contour.runs) > 1 or not contour.closed:
+        remedy = "give {dxf: {as: spline}}, which has them"
+        raise recipe.error(job.field(request), "a contour with corners is no one spline through points", None, remedy)
+    points = _Points(contour, -1.0 if recipe.rotation == "ccw" else 1.0)
+    with job.clock.stage("points"):
+        count = _count(job, request, points, tolerance)
+        placed, _ = points.at(np.append(np.arange(count) / count, 0.0))
+        row = f"%.{DIGITS}g,%.{DIGITS}g,0\n"
+        path.write_bytes("".join(row % tuple(one) for one in (placed / recipe.mm + 0.0).tolist()).encode("ascii"))
+    with job.clock.stage("judge csv"):
+        limits = permitted(recipe, tolerance)
+        verdict = verify_points(path, intended(recipe, job.design), recipe.verify.angles, limits, recipe.mm)
+    return Made((FileResult.of(path, request, tolerance, verdict, None),), verdict.checks)
+
+
+def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) -> int:
+    """How many points there are, by the request's step or the tolerance, mm."""
+    recipe, field = job.recipe, job.field(request)
+    whole = 360 * TICKS
+    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
+    fewest = next((whole // tick for tick in ticks if points.error(whole // tick) <= MARGIN * tolerance), None)
+    if request.step is not None:
+        count = round(TURN / request.step)
+        error = points.error(count)
+        if error <= tolerance:
+            return count
+        what = f"a spline through points so far apart is off by {error / recipe.mm:.4g} {recipe.units}"
+        remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
+        remedy += f"a tolerance of {upward(error / MARGIN / recipe.mm)} {recipe.units}"
+        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+    if fewest is None:
+        error = points.error(whole // ticks[-1])
+        what = f"a spline through points {FINEST:g} degrees apart is off by {error / recipe.mm:.4g} {recipe.units}"
+        remedy = f"give at least {upward(error / MARGIN / recipe.mm)} {recipe.units}"
+        raise recipe.error(job.tolerance_field(request), what, None, remedy)
+    return fewest
+
+
+FORM = Form(name="points", listed=("as",), curve=True, takes=("step", "tolerance"), check=check, make=make)

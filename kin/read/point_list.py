@@ -1,0 +1,61 @@
+"""A list of points of a closed curve, and the spline that a CAD system puts through it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.bezier import Beziers
+from kin.contour.closed_spline import closed_spline
+from kin.contour.contour import Contour
+from kin.contour.pieces import Pieces
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kin.numeric.arrays import Array
+
+MOST = 16_000_000  # bytes
+LEAST_POINTS, MOST_POINTS = 4, 100_000
+SAME = 1e-9  # mm, and of the size: the last point is the first
+
+
+def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
+    """Read lines of x, y and perhaps z, `mm` to a unit; give the closed spline through them, mm, and their number.
+
+    Numbers stand apart by commas, semicolons, blanks or tabs. Raises ReadError for what is no closed curve in a plane
+    z = constant, OSError as the file system does.
+    """
+    points = mm * _points(path)
+    size = float(np.abs(points).max())
+    if np.hypot(*(points[-1] - points[0])) > SAME * max(size, 1.0):
+        raise ReadError("open", "the last point is not the first: the curve is not closed", path)
+    points = points[:-1]
+    chords = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
+    if not (chords > SAME * max(size, 1.0)).all():
+        raise ReadError("syntax", f"point {(int(np.argmin(chords)) + 1) % len(points) + 1} is the one before it", path)
+    control = closed_spline(points)
+    unrolled = Beziers(control, np.ones(control.shape[:2])).unrolled()
+    contour = Contour.from_pieces(Pieces.from_unrolled(unrolled.pieces))
+    return (contour if contour.area > 0.0 else contour.reversed()), len(points)
+
+
+def _points(path: Path) -> Array:
+    """Points (n, 2); raises ReadError."""
+    if path.stat().st_size > MOST:
+        raise ReadError("range", f"larger than {MOST / 1e6:g} MB", path)
+    text = path.read_bytes().decode("utf-8-sig", "replace")
+    lines = [line.replace(",", " ").replace(";", " ").split() for line in text.splitlines() if line.strip()]
+    try:
+        rows = np.array([[float(cell) for cell in line] for line in lines])
+    except ValueError as error:
+        raise ReadError("syntax", "a line is not of two or three numbers, as many on each", path) from error
+    if rows.ndim != 2 or rows.shape[1] not in {2, 3} or not np.isfinite(rows).all():
+        raise ReadError("syntax", "a line is not of two or three numbers, as many on each", path)
+    if not LEAST_POINTS < len(rows) <= MOST_POINTS + 1:
+        raise ReadError("range", f"{len(rows)} points; {LEAST_POINTS + 1} to {MOST_POINTS + 1} are read", path)
+    if rows.shape[1] == 3 and np.ptp(rows[:, 2]) != 0.0:
+        raise ReadError("unsupported", "the points do not lie in a plane z = constant", path)
+    return rows[:, :2]
