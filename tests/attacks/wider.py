@@ -55,6 +55,12 @@ FEATURES = [
     "set_screw: {diameter: 3}",
 ]
 LOADS = ["40*sin(t)", "1e12*cos(t)", "5e12", "-1e60", "1e300*t*1e300", "1/(t - 1)", "1e11/(1.0001 + sin(t))"]
+SPRINGS = (
+    "spring: {seat_length: 40, free_length: 48, rate: 30 N/mm}",
+    "spring: {seat_length: 40, loads: [[32, 480], [44, 120]], solid_length: 39.9}",
+    "spring: {seat_length: 40, loads: [[32, 480], [32, 120]]}",
+    "spring: {seat_length: 60, free_length: 48, rate: 1e-9}",
+)
 GUIDED = "guide: {overhang: 40, length: 50, friction: 0.1}"
 MILLING = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 3, safe_height: 5}\n"
 MOTIONS = [
@@ -94,7 +100,7 @@ def furnished(rng: Random, number: int) -> Attack:
         seconds = 10.0 if transient else seconds
     elif way == "rigid":
         more = f"dynamics: {{mass: {10 ** rng.uniform(-3, 9):.3g}, rpm: {10 ** rng.uniform(0, 5):.3g}, "
-        more += rng.choice(["preload: 300", "preload: 1e12", "least_force: 5"])
+        more += rng.choice(["preload: 300", "preload: 1e12", "least_force: 5", *SPRINGS])
         more += f", load: {rng.choice(LOADS)}" * rng.randrange(2) + rng.choice(["", f", {GUIDED}"])
         more += rng.choice(["", ", material: steel", f", material: steel, width: {rng.uniform(0.5, 12):.3g}"]) + "}\n"
         text = text.replace("bore: 8}", "bore: 8, " + rng.choice(["chamfer: 0.4}", "density: 7850}"]))

@@ -87,6 +87,10 @@ LOBE = (
     "cam: {kind: disc, base_radius: 18, follower: {kind: flat}, "
     "motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}}\n" + VERIFY
 )
+COIL = (
+    LOBE
+    + "dynamics: {mass: 0.12, rpm: 2000, spring: {seat_length: 40, free_length: 48, rate: 30 N/mm, solid_length: 28}}\n"
+)
 RIGID = STEM.replace("stiffness: 2.0e5", "width: 10, material: steel")
 SPLIT = (
     f"cam: {{kind: disc, base_radius: 36, follower: {{kind: roller, radius: 9}}, {MOVE}}}\n"
@@ -110,6 +114,7 @@ HAVE = {
         ("mass", "centre-of-mass", "inertia", "unbalance"), FLAT.replace("bore: 10", "bore: 10, density: 7850")
     ),
     **dict.fromkeys(("duration", "lobe-centre", "ramp-velocity", "lift-area"), LOBE),
+    **dict.fromkeys(("spring-seat-load", "spring-open-load", "coil-bind"), COIL),
     "face-width": FACE,
     "law-error": WANTED,
     "least-backlash": YOKE + VERIFY + LOOSE,

@@ -14,11 +14,16 @@ AT_SPEED = tuple(f"{name}-at-speed" for name in PEAKS)
 JAM_MARGIN = "jam-margin"
 FORCE_LEAST, FORCE_GREATEST, TORQUE = "contact-force-least", "contact-force-greatest", "shaft-torque"
 PRESSURE, GUIDE_FORCE, MEAN_FORCE = "contact-pressure", "guide-force", "mean-roller-force"
+SEAT_LOAD, OPEN_LOAD, COIL_BIND = "spring-seat-load", "spring-open-load", "coil-bind"
+OF_COIL = Need("dynamics.spring", lambda _, paths: "dynamics.spring" in paths)
+OF_SOLID = Need("dynamics.spring.solid_length", lambda _, paths: "dynamics.spring.solid_length" in paths)
 LEAST_FORCE, PEAK_FORCE, BACKLASH_LEFT = "least-force", "peak-force", "least-backlash"
 
 _RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
 
-OF_SPRING = Need("dynamics.preload and its stiffness", lambda _, paths: {"dynamics.preload", _STIFF} <= paths)
+OF_SPRING = Need(
+    "dynamics.preload or dynamics.spring, and its stiffness", lambda _, paths: _is_sprung(paths) and _STIFF in paths
+)
 OF_BACKLASH = Need("dynamics.backlash", lambda _, paths: {"dynamics.backlash", _STIFF} <= paths)
 OF_GUIDE = Need(
     "dynamics.guide of a round follower", lambda offers, paths: "dynamics.guide" in paths and "stem" in offers
@@ -29,11 +34,11 @@ OF_SPEED = Need(
 )
 OF_FORCES = Need("dynamics without stiffness", lambda _, paths: _is_rigid(paths))
 OF_MATERIAL = Need(
-    "dynamics.material, part.thickness, a groove's depth or dynamics.width, and no stiffness",
+    "dynamics.material, part.thickness, a groove's depth or dynamics.width, and a rigid train or a spring",
     lambda _, paths: (
         not paths.isdisjoint({"dynamics.width", "part.thickness", "cam.track.groove.depth"})
         and "dynamics.material" in paths
-        and _is_rigid(paths)
+        and (_is_rigid(paths) or _is_sprung(paths))
     ),
     part=True,
 )
@@ -43,6 +48,10 @@ OF_BEARING = Need(
     lambda offers, paths: "rolling" in offers and _is_rigid(paths),
 )
 _STIFF = "dynamics.stiffness"
+
+
+def _is_sprung(paths: AbstractSet[str]) -> bool:
+    return not paths.isdisjoint({"dynamics.preload", "dynamics.spring"})
 
 
 def _is_rigid(paths: AbstractSet[str]) -> bool:
@@ -135,6 +144,9 @@ FIGURES: dict[str, Figure] = {
         dear=True,
         after=PRELOAD_GREATEST,
     ),
+    SEAT_LOAD: Figure("force of the spring where the follower is lowest, N", Kind.FORCE, "most", OF_COIL),
+    OPEN_LOAD: Figure("force of the spring where it is highest, N", Kind.FORCE, "least", OF_COIL),
+    COIL_BIND: Figure("what is left to the spring's coils where it is highest", Kind.LENGTH, "most", OF_SOLID),
     LEAST_FORCE: Figure(
         "least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING, of="run", swept=False
     ),

@@ -12,7 +12,7 @@ from camgeo.recipe.linkage import TURNING
 from camgeo.recipe.track import is_groove
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping
+from camgeo.schema.yaml_source import Mapping, Sequence, described, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
+PER_MM = 1e-3  # m
 SAME = 1e-12  # share by which contacts may be wider than the metal through rounding
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
@@ -83,6 +84,33 @@ class Dynamics:
     width: float | None = None
     material: Material | None = None
     roller_material: Material | None = None
+    spring: Coil | None = None
+
+
+@dataclass(frozen=True)
+class Coil:
+    """A coil spring on the stem, mm and N/m: free, at the follower's lowest place, and with its coils on one another.
+
+    `solid` is None where it is not given.
+    """
+
+    free: float
+    seat: float
+    rate: float
+    solid: float | None = None
+
+    @property
+    def preload(self) -> float:
+        """Force at the lowest place, N."""
+        return self.load(0.0)
+
+    def load(self, lift: float) -> float:
+        """Force at a lift, mm, in N."""
+        return PER_MM * self.rate * (self.free - self.seat + lift)
+
+    def left(self, lift: float) -> float | None:
+        """What is left to the coils at a lift, mm; None where it is not known."""
+        return None if self.solid is None else self.seat - lift - self.solid
 
 
 class Width(NamedTuple):
@@ -115,7 +143,6 @@ def contact_width(
     return min(lengths, default=None)
 
 
-_MOST = MOST**2  # of figures in SI: a bound against slips
 MATERIALS = {
     "steel": Material(206_000.0, 0.3),
     "nodular-iron": Material(169_000.0, 0.275),
@@ -152,6 +179,37 @@ def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Mater
     return MATERIALS.get(reader.readers[Kind.CHOICE](reader, field, node, path))
 
 
+def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
+    """Read two pairs of a length, mm, and a force, N, the greater at the shorter length."""
+    parts = (length("", ""), Field("", Kind.NUMBER, "", at_least=0, at_most=_MOST, unit=Kind.FORCE))
+    rows = []
+    for i, item in enumerate(reader.items(field, node, path, _PAIR)):
+        if not isinstance(item, Sequence) or len(item.items) != _PAIR:
+            reader.fault(item.mark, join(path, i), "not a length with its force", described(item), "give [40, 250]")
+            return None
+        pairs = enumerate(zip(parts, item.items, strict=True))
+        rows.append(tuple(reader.field(part, one, f"{join(path, i)}[{k}]") for k, (part, one) in pairs))
+    if len(rows) != _PAIR or any(None in row for row in rows):
+        if len(rows) == 1:
+            reader.fault(node.mark, path, "one load tells no rate", None, reader.wanted(field))
+        return None
+    (long, low), (short, high) = sorted(rows, reverse=True)
+    if not (long > short and high > low):
+        reader.fault(
+            node.mark, path, "the force does not grow as it is pressed", None, "give the greater at the shorter"
+        )
+        return None
+    return tuple(rows)
+
+
+_PAIR = 2
+_MOST = MOST**2  # of figures in SI: a bound against slips
+_LOADS: Form[Reader] = Form(
+    "two loads",
+    "two lengths with their forces, such as [[40, 250 N], [32, 560 N]]",
+    _read_loads,
+    lambda _: {"type": "array", "items": {"type": "array", "minItems": 2, "maxItems": 2}, "minItems": 2, "maxItems": 2},
+)
 _MATERIAL: Form[Reader] = Form(
     "a material",
     f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
@@ -161,6 +219,16 @@ _MATERIAL: Form[Reader] = Form(
 )
 
 
+COIL = Table(
+    (
+        length("seat_length", "length where the follower is lowest", required=True),
+        Field("rate", Kind.RATE, "its rate, N/m; a unit may stand behind it: 30 N/mm", above=0, at_most=_MOST),
+        length("free_length", "length without a load, with the rate"),
+        Field("loads", Kind.OWN, "two lengths with the forces there, in place of both", form=_LOADS),
+        length("solid_length", "length at which its coils lie on one another", default="not judged"),
+    ),
+    alternatives=(("rate", ("free_length",)), ("loads", ())),
+)
 DYNAMICS = Table(
     (
         Field(
@@ -223,6 +291,7 @@ DYNAMICS = Table(
             unit=Kind.THRUST,
             form=LOAD,
         ),
+        Field("spring", Kind.TABLE, "a coil spring on the stem, in place of preload and rate", table=COIL),
         length("width", "width of the contacts, of which their pressure is found", default="that of the metal"),
         Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
         Field(
@@ -266,7 +335,7 @@ DYNAMICS = Table(
             ),
         ),
     ),
-    alternatives=(("preload", ()), ("backlash", ())),
+    alternatives=(("preload", ()), ("backlash", ()), ("spring", ())),
     optional=True,
 )
 
@@ -279,11 +348,44 @@ def fields() -> tuple[Field, ...]:
 
 def check(values: Values, reader: Reader) -> None:
     """Note the faults of a follower train, and what does not go with it."""
+    _take_spring(values.get("dynamics", {}), reader)
     _check_train(values.get("dynamics", {}), reader)
     _check_guide(values, reader)
     _check_width(values, reader)
     _check_preloaded(values, reader)
     _check_elastic(values, reader)
+
+
+def _take_spring(train: Values, reader: Reader) -> None:
+    """Put a coil spring's force and rate in the place of preload and rate."""
+    given = train.get("spring")
+    if given is None:
+        return
+    path, seat = "dynamics.spring", given.get("seat_length")
+    if Kind.STROKE in reader.angular or "linkage" in reader.marks:
+        remedy = "give preload and rate in its place"
+        reader.fault_at(path, "a coil spring on a stem, and there is none", None, remedy)
+        return
+    if "dynamics.rate" in reader.marks:
+        reader.fault_at("dynamics.rate", "cannot be combined with spring", None, "leave one of the two out")
+        return
+    free, rate = given.get("free_length"), given.get("rate")
+    if "loads" in given:
+        (long, low), (short, high) = sorted(given["loads"], reverse=True)
+        rate = (high - low) / (PER_MM * (long - short))
+        free = long + low / (PER_MM * rate)
+    if seat is None or free is None or rate is None:
+        return
+    coil = Coil(free, seat, rate, given.get("solid_length"))
+    if not seat < free:
+        told = f"{free / reader.mm:.6g} {reader.units}"
+        reader.fault_at(f"{path}.seat_length", "the spring is slack there", None, f"give less than {told}")
+    elif coil.solid is not None and not coil.solid < seat:
+        told = f"{seat / reader.mm:.6g} {reader.units}"
+        reader.fault_at(f"{path}.solid_length", "its coils touch before it moves", None, f"give less than {told}")
+    else:
+        train.update(spring=coil, preload=coil.preload, rate=rate)
+        reader.marks["dynamics.preload"] = reader.marks[path]
 
 
 def _check_train(train: Values, reader: Reader) -> None:
@@ -356,7 +458,9 @@ def _check_spring(train: Values, reader: Reader) -> None:
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )
-        for name in ("load", "least_force", "coupler", "width", "material", "roller_material"):
+        sprung = "dynamics.preload" in reader.marks and "linkage" not in reader.marks
+        pressed = () if sprung else ("width", "material", "roller_material")
+        for name in ("load", "least_force", "coupler", *pressed):
             if name in train:
                 remedy = "leave stiffness out, or this"
                 reader.fault_at(f"dynamics.{name}", "belongs to a train without stiffness", None, remedy)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.dynamics.checks import LEAST_BACKLASH
-from camgeo.capabilities.dynamics.figures import AT_SPEED, FIGURES, JAM_MARGIN
+from camgeo.capabilities.dynamics.figures import AT_SPEED, COIL_BIND, FIGURES, JAM_MARGIN, OPEN_LOAD, SEAT_LOAD
 from camgeo.capabilities.dynamics.guide import jam_angle
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.measures.figures import of_check, of_motion
@@ -14,8 +14,9 @@ from camgeo.recipe.figures import PEAKS
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
+    from camgeo.capabilities.dynamics.keys import Coil
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.check import Check
@@ -35,11 +36,23 @@ def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mappin
     if JAM_MARGIN in names and train is not None and train.guide is not None:
         value, limit, at = jam_angle(design.exact, train.guide)
         found[JAM_MARGIN] = Measured(limit - value, "deg", at)
-    if not {*names} <= {*ORDERS, JAM_MARGIN}:
+    coils = [name for name in names if name in _OF_COIL]
+    if coils and train is not None and train.spring is not None:
+        lift = of_motion(design, 0)["swing"].value or 0.0
+        for name in coils:
+            found[name] = _OF_COIL[name](train.spring, lift)
+    if not {*names} <= {*ORDERS, JAM_MARGIN, *_OF_COIL}:
         from camgeo.capabilities.dynamics.force_figures import figures_of
 
         found |= figures_of(recipe, design)
     return found
+
+
+_OF_COIL: dict[str, Callable[[Coil, float], Measured]] = {
+    SEAT_LOAD: lambda coil, _: Measured(coil.preload, "N"),
+    OPEN_LOAD: lambda coil, lift: Measured(coil.load(lift), "N"),
+    COIL_BIND: lambda coil, lift: Measured(coil.left(lift), "mm"),
+}
 
 
 def _in_time(figure: Measured, name: str, rpm: float) -> Measured:

@@ -252,12 +252,13 @@ class FollowerRunning(Running):
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:
-    """What moves as it runs, None without dynamics or with an elastic train.
+    """What moves as it runs, None without dynamics, and with an elastic train whose contacts' material is not given.
 
+    An elastic train with it has the forces of a rigid follower under the same spring besides its own.
     Raises RecipeErrors for one contact that nothing holds on the cam, and a linkage that does not turn.
     """
     train = recipe.of(Dynamics)
-    if train is None or train.stiffness is not None:
+    if train is None or (train.stiffness is not None and train.material is None):
         return None
     if design.driven is not None:
         return frame_running(recipe, design, design.driven, train)

@@ -97,8 +97,9 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
     whole = 360 * TICKS
     ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
     fewest = next((whole // tick for tick in ticks if points.error(whole // tick) <= MARGIN * tolerance), None)
-    if request.step is not None:
-        count = round(TURN / request.step)
+    step = request.own.get("step")
+    if step is not None:
+        count = round(TURN / float(step))
         error = points.error(count)
         if error <= tolerance:
             return count

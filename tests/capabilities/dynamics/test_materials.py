@@ -112,11 +112,13 @@ def test_what_is_no_material(material: str, field: str, words: str) -> None:
 
 
 @pytest.mark.parametrize("key", ["width: 4", "material: steel", "roller_material: {E: 3000, nu: 0.4}"])
-def test_an_elastic_train_has_no_pressure(key: str) -> None:
+def test_an_elastic_train_without_a_spring_has_no_pressure(key: str) -> None:
+    yoke = "cam: {kind: constant-breadth, base_radius: 40, motion: {formula: 6*(1 - cos(t))}}\n"
+    train = "dynamics: {mass: 0.4, rpm: 60, backlash: 0.05, stiffness: 1.0e6"
     with pytest.raises(RecipeErrors, match=r"belongs to a train without stiffness; leave stiffness out, or this"):
-        read(CAM.replace("MATERIAL", f"{key}, stiffness: 1.0e6").encode(), Path("case.yaml"))
-    for remedied in (key, "stiffness: 1.0e6"):
-        read(CAM.replace("MATERIAL", remedied).encode(), Path("case.yaml"))
+        read(f"{yoke}{train}, {key}}}\n".encode(), Path("case.yaml"))
+    read(f"{yoke}{train}}}\n".encode(), Path("case.yaml"))
+    read(CAM.replace("MATERIAL", f"{key}, stiffness: 1.0e6").encode(), Path("case.yaml"))  # a spring holds it
 
 
 def test_a_pressure_needs_a_width() -> None:
