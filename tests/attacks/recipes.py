@@ -38,7 +38,13 @@ FORMS = [
     "{dxf: {as: arcs, version: R12}}",
     "{dxf: {as: spline}}",
 ]
-FORMS += ["{csv: {as: contacts}}", "{csv: {as: polar}}", "{svg: {as: polyline}}", "{dxf: {as: polyline, kerf: 0.1}}"]
+FORMS += [
+    "{csv: {as: contacts}}",
+    "{csv: {as: polar}}",
+    "{csv: {as: points}}",
+    "{svg: {as: polyline}}",
+    "{dxf: {as: polyline, kerf: 0.1}}",
+]
 SHEETS: list[Any] = [
     "sheet",
     {"sheet": {"paper": "A4", "projection": "third", "step": 15, "scale": "1:2", "title": "x"}},

@@ -257,7 +257,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         # needs: dynamics
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
-            "2:68: dynamics.backlash: cannot be combined with preload; give exactly one of preload or backlash",
+            "2:68: dynamics.backlash: cannot be combined with preload; give exactly one of preload, backlash or spring",
         ),
         (
             SUPPORT + "part: {follower: 1}\n",
