@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.segment import Constant
+from kin.law.segment import Affine, Constant, Power
 from kin.law.sources.dwells import runs, stretches
 from kin.law.sources.least_jerk import Bounds, CrowdedError, LowerLimit, UnsolvedError, curve_through, least
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
 from kin.law.sources.ring import SAME_ANGLE, Samples, settled
-from kin.law.sources.spline import Ends, through
 from kin.law.sources.suspects import ladder, suspect
 from kin.law.sources.tabled import BELOW, TableError, demand_rows, tabled
 from kin.numeric.records import replace
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from kin.law.segment import Stretch
     from kin.law.sources.dwells import Run
     from kin.law.sources.dwells import Stretch as Moving
-    from kin.law.sources.least_jerk import Least, Space
+    from kin.law.sources.least_jerk import Curve, Least, Space
     from kin.law.sources.suspects import Suspect
     from kin.law.sources.tabled import Rest, Tabled
 
@@ -136,9 +135,10 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
             break
         bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), limit.level, total)
     if around is None:
-        return joined(*_open(dwells, moving), None).raised(-dwells[0].level)
-    turn = layout.period
-    knots, functions = _round(dwells, moving, turn) if dwells else _all_round(whole, turn)
+        return joined(*_pieces(dwells, moving, 0.0), None).raised(-dwells[0].level)
+    turn, curve = layout.period, whole.curve
+    begin = curve.starts.tolist()
+    knots, functions = _pieces(dwells, moving, turn) if dwells else ([*begin, begin[0] + turn], _functions(curve, 0.0))
     motion = settled(knots, functions, turn, total)
     return motion if around == 1 else Motion(motion.raised(-float(motion.at_start(0)[0])).motion, -1)
 
@@ -172,43 +172,30 @@ def _pinned(bounds: Bounds, at: float, level: float, period: float) -> Bounds:
     return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])), period)
 
 
-def _between(moving: Moving, before: Run, after: Run) -> tuple[list[float], list[Stretch]]:
-    """Knots but the last, and functions, of the motion between two dwells."""
-    found, ends = moving.least, Ends(before.level, after.level)
-    sites = np.concatenate([[moving.begin], found.x, [moving.end]])
-    values = np.concatenate([[before.level], found.values, [after.level]])
-    return sites[:-1].tolist(), list(through(sites, values, ends))
-
-
-def _round(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tuple[list[float], list[Stretch]]:
-    """Dwells and what is between them round a turn, from the first dwell on."""
+def _pieces(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tuple[list[float], list[Stretch]]:
+    """Knots and functions of dwells and of what is between them: round a turn, or from the first to the last one."""
     knots: list[float] = []
     functions: list[Stretch] = []
     for i, run in enumerate(dwells):
-        places, parts = _between(moving[i], run, dwells[(i + 1) % len(dwells)])
-        knots += [run.begin, *places]
-        functions += [Constant(run.level), *parts]
-    return [*knots, dwells[0].begin + turn], functions
-
-
-def _all_round(whole: Least, turn: float) -> tuple[list[float], list[Stretch]]:
-    sites = np.append(whole.x, whole.x[0] + turn)
-    return sites.tolist(), list(through(sites, np.append(whole.values, whole.values[0]), None))
-
-
-def _open(dwells: Sequence[Run], moving: Sequence[Moving]) -> tuple[list[float], list[Stretch]]:
-    """Dwells and what is between them from the first one to the last one."""
-    knots = [dwells[0].begin]
-    functions: list[Stretch] = []
-    for i, run in enumerate(dwells):
         if run.end > run.begin:
+            knots.append(run.begin)
             functions.append(Constant(run.level))
-            knots.append(run.end)
         if i < len(moving):
-            places, parts = _between(moving[i], run, dwells[i + 1])
-            functions += parts
-            knots += [*places[1:], moving[i].end]
-    return knots, functions
+            curve = moving[i].least.curve
+            knots += curve.starts.tolist()
+            functions += _functions(curve, dwells[(i + 1) % len(dwells)].level)
+    return [*knots, dwells[0].begin + turn if turn else dwells[-1].end], functions
+
+
+def _functions(curve: Curve, level: float) -> list[Stretch]:
+    """Its polynomials; the last one before a rest at a level about its end, where it is exactly at rest."""
+    rows, starts = curve.coefficients.T.tolist(), curve.starts.tolist()
+    if not curve.period:
+        *_, c3, c4, c5 = rows[-1]
+        rows[-1] = [level, 0.0, 0.0, c3 + 4.0 * c4 + 10.0 * c5, c4 + 5.0 * c5, c5]
+        starts[-1] += curve.widths[-1]
+    spans = zip(rows, starts, curve.widths.tolist(), strict=True)
+    return [Affine(Power(tuple(row)), start=start, width=width) for row, start, width in spans]
 
 
 def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
