@@ -41,6 +41,7 @@ _FEW = 1000  # bounds that are looked at together; of more these are the first, 
 _DIPS, _HELD = 60, 0.1  # times at most that a function is held up at dips, and to what share of the tolerance
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
 _BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the one that begins there
+_BLOCK = 24  # B-splines of one block of equations with its separators, from three times as many on
 _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 
 
@@ -274,12 +275,82 @@ def _fall(values: Array) -> Array:
     return fall
 
 
+class _Blocks(NamedTuple):
+    """The normal equations of so many B-splines as p blocks of b neighbours, with two separators after each.
+
+    Their matrix is one array: the blocks (p, b, b), how each is coupled to the separators before and after it
+    (p, b, 4), and the separators (n, n). A place of no B-spline in a block has a 1.
+    """
+
+    taken: Indices  # the three B-splines on each piece, (3, m)
+    used: Indices  # those of their nine products on each piece that the array has
+    flat: Indices  # where they go in it
+    ones: Indices  # places in it
+    size: tuple[int, int, int]  # p, b, n
+    inner: Indices  # B-splines in blocks
+    place: Indices  # where they stand there
+    parting: Indices  # B-splines that are separators (n,)
+    beside: Indices  # separators of each block (p, 4)
+
+    def solve(self, products: Array, rhs: Array) -> Array:
+        """Solve the equations by blocks: so small that no library calls for threads."""
+        p, b, n = self.size
+        matrix = np.bincount(self.flat, products.ravel()[self.used], p * b * (b + 4) + n * n)
+        if not p:
+            return np.linalg.solve(matrix.reshape(n, n), rhs).astype(np.float64, copy=False)
+        matrix[self.ones] = 1.0
+        couple, sides = matrix[p * b * b : p * b * (b + 4)].reshape(p, b, 4), np.zeros((p, b, 5))
+        sides[:, :, :4] = couple
+        sides.reshape(-1, 5)[self.place, 4] = rhs[self.inner]
+        alone = np.linalg.solve(matrix[: p * b * b].reshape(p, b, b), sides)
+        moved = couple.transpose(0, 2, 1) @ alone
+        pairs = self.beside[:, :, None] * n + self.beside[:, None, :]
+        parted = matrix[p * b * (b + 4) :] - np.bincount(pairs.ravel(), moved[:, :, :4].ravel(), n * n)
+        sums = rhs[self.parting] - np.bincount(self.beside.ravel(), moved[:, :, 4].ravel(), n)
+        between = np.linalg.solve(parted.reshape(n, n), sums)
+        left = alone[:, :, 4] - (alone[:, :, :4] @ between[self.beside][:, :, None])[:, :, 0]
+        solution = np.empty(len(rhs))
+        solution[self.parting], solution[self.inner] = between, left.ravel()[self.place]
+        return solution
+
+
 @lru_cache(maxsize=256)
-def _places(count: int, *, periodic: bool) -> tuple[Indices, Indices]:
-    """Of so many knots: the three B-splines on each piece (3, m), and where their nine products go in the matrix."""
+def _blocks(count: int, *, periodic: bool) -> _Blocks:
+    """Blocks for so many knots; few B-splines are not divided: all are separators."""
     size = count if periodic else count + 3
     taken = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
-    return taken, (taken[_ROW] * size + taken[_COLUMN]).ravel()
+    p = size // _BLOCK if size >= 3 * _BLOCK else 0
+    starts = np.arange(p + 1) * size // max(p, 1) if p else np.array([0, size])
+    block = np.searchsorted(starts, np.arange(size), side="right") - 1
+    offset, left = np.arange(size) - starts[block], starts[block + 1] - np.arange(size)
+    b, n = (int(np.diff(starts).max()) - 2, 2 * p) if p else (0, size)
+    parting = left <= 2 if p else left > 0
+    number = 2 * block + 2 - left if p else offset
+    place = block * b + offset
+    row, column = taken[_ROW].ravel(), taken[_COLUMN].ravel()
+    flat = np.where(
+        parting[row],
+        p * b * (b + 4) + number[row] * n + number[column],
+        np.where(
+            parting[column],
+            p * b * b + 4 * place[row] + number[column] % 2 + 2 * (block[row] == block[column]),
+            place[row] * b + offset[column],
+        ),
+    )
+    used, inner = np.flatnonzero(parting[column] | ~parting[row]), np.flatnonzero(~parting)
+    empty = np.setdiff1d(np.arange(p * b), place[inner])
+    beside = (2 * np.arange(p)[:, None] + np.array([-2, -1, 0, 1])) % max(n, 1)
+    return _Blocks(
+        taken,
+        used,
+        flat[used],
+        empty * b + empty % max(b, 1),
+        (p, b, n),
+        inner,
+        place[inner],
+        np.flatnonzero(parting),
+        beside,
+    )
 
 
 def _spline(space: Space, x: Array, s: Array) -> _Spline:
@@ -304,10 +375,9 @@ def _spline(space: Space, x: Array, s: Array) -> _Spline:
     aa, cc, ac = a * a / 5.0, c * c / 5.0, a * c / 30.0
     ab, cb = a / 3.0 - aa - ac, c / 3.0 - cc - ac
     products = widths * np.array([aa, ab, ac, ab, 1.0 - 2.0 * (a + c) / 3.0 + aa + cc + 2.0 * ac, cb, ac, cb, cc])
-    taken, flat = _places(k, periodic=space.rest is None)
-    gram = np.bincount(flat, products.ravel(), len(rhs) ** 2).reshape(len(rhs), -1)
-    mu = np.linalg.solve(gram, rhs).astype(np.float64, copy=False)
-    low, middle, high = mu[taken]
+    blocks = _blocks(k, periodic=space.rest is None)
+    mu = blocks.solve(products, rhs)
+    low, middle, high = mu[blocks.taken]
     bernstein = middle + a * (low - middle), middle, middle + c * (high - middle)
     return _Spline(
         space.period, t[first:last], widths, values[first : last + 1], near, far, mu, bernstein, float(mu @ rhs)
