@@ -120,12 +120,13 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
     level = _least_level(layout, plain) if around == 1 else None
     limit = None if level is None else LowerLimit(level, BELOW * layout.stroke)
     bounds = layout.bounds(1.0, level)
+    equal = runs(layout, level)
     for _ in range(_PINS):
         near = plain
-        if limit is not None:
+        if limit is not None and equal:
             about = max(limit.tolerance, _ABOUT * float(layout.reading.min()))
             near = _solved(layout.space, bounds, plain, LowerLimit(limit.level, about))
-        dwells, moving = stretches(layout, runs(layout, level), near, bounds, limit)
+        dwells, moving = stretches(layout, equal, near, bounds, limit)
         whole = near if dwells else _solved(layout.space, bounds, near, limit)
         if limit is None or any(run.level == level for run in dwells):
             break
