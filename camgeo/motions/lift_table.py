@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
     from kin.law.sources.ring import Samples
-    from kin.law.sources.table_text import Column, Quantity, Sheet
+    from kin.read.tables import Column, Quantity, Sheet
 
 MAX_BYTES = 16_000_000
 MAX_ROWS = 200_000
@@ -153,7 +153,7 @@ def read_rows(
     `instead` is the unit of the values where neither the recipe nor a heading says.
     """
     from kin.law.programme import IntentError
-    from kin.law.sources.table_text import Sheet
+    from kin.read.tables import Sheet
 
     origin, mark = values["table"], reader.marks[path]
     sheet = Sheet(
@@ -197,7 +197,7 @@ def _text(data: bytes) -> str:
 
 @lru_cache(maxsize=4)
 def _rows(text: str, sheet: Sheet) -> tuple[Rows, float]:
-    from kin.law.sources.table_text import read_table
+    from kin.read.tables import read_table
 
     samples, place = read_table(text, sheet, _FIELD)
     theta, s, lines = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))

@@ -2,14 +2,13 @@
 
 A table has rows of x, y and, if there are, z and a normal nx, ny, nz; of a radius and a polar angle; or of a shaft
 angle and a lift. Its heading says which and in which units (`x_mm`, `X [mm]`, `lift_in`); without one, rows of two or
-three numbers are x, y and z, of five or six with a normal. Columns are parted by semicolons, tabs, blanks or commas; a
-comma is the decimal mark where it does not part. Lines that begin with #, ;, %, ! or // are comments. DMIS gives points
-as `FA(label) = FEAT/POINT,CART,x,y,z,i,j,k` (ISO 22093); a `$` at the end continues a line.
+three numbers are x, y and z, of six with a normal. `kin.read.rows` has how columns are parted. Lines that begin with #,
+;, %, ! or // are comments. DMIS gives points as `FA(label) = FEAT/POINT,CART,x,y,z,i,j,k` (ISO 22093); a `$` at the
+end continues a line.
 """
 
 from __future__ import annotations
 
-import io
 import re
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -17,12 +16,14 @@ import numpy as np
 
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
+from kin.read.rows import RowError, read_rows, short
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from kin.numeric.arrays import Array, Indices
+    from kin.read.rows import Rows
 
 Measured: TypeAlias = Literal["places", "lift"]
 SUFFIXES = (".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms")
@@ -43,10 +44,7 @@ NAMES = {  # what columns are called by the programs that write them
 }  # fmt: skip
 HEADING = re.compile(r"^(?P<name>.*?)[ _]*(?:[\[(]\s*(?P<inside>[^\])]*)[\])]|_(?P<after>[a-z°]+))?$")
 COMMENT = ("#", ";", "%", "!", "//", "$$")
-NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?$")
 DMIS = re.compile(r"^FA\s*\(\s*(?P<label>[^)]*)\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*CART\s*,(?P<rest>.*)$", re.IGNORECASE)
-LOOKED = 20  # lines from which the mark between columns is told
-SHOWN = 40  # characters of a line in a message
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,17 +71,15 @@ class PointTable:
 
 
 def heading_of(path: Path) -> tuple[str, ...]:
-    """Names of the columns that a file's first line that is no comment gives, as written; empty where it has numbers.
+    """Names of the columns that the start of a file gives, as written; empty where it has none, or no rows.
 
     Raises OSError as the file system does.
     """
     with path.open("rb") as stream:
-        start = _decoded(stream.read(65536))
-    for line in start.splitlines():
-        kept = line.strip()
-        if kept and not kept.startswith(COMMENT):
-            return tuple(_cells(kept, _separator([kept]))) if not _is_row(kept, _separator([kept])) else ()
-    return ()
+        try:
+            return read_rows(_decoded(stream.read(65536)), COMMENT).heading
+        except RowError:
+            return ()
 
 
 def read_points(path: Path) -> PointTable:
@@ -121,9 +117,9 @@ def _dmis(text: str, path: Path) -> PointTable:
             try:
                 rows.append([float(cell) for cell in found["rest"].split(",")])
             except ValueError:
-                raise ReadError("syntax", f"line {begin}: not numbers: {_short(whole)}", path) from None
+                raise ReadError("syntax", f"line {begin}: not numbers: {short(whole)}", path) from None
             if len(rows[-1]) not in {3, 6}:
-                raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {_short(whole)}", path)
+                raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {short(whole)}", path)
             lines.append(begin)
         whole = ""
     if not rows:
@@ -141,41 +137,30 @@ def _stated_in_dmis(text: str) -> float | None:
 
 
 def _table(text: str, path: Path) -> PointTable:
-    kept = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
-    kept = [(i, line) for i, line in kept if line and not line.startswith(COMMENT)]
-    if not kept:
-        raise ReadError("empty", "no row of numbers is among its lines", path)
-    separator = _separator([line for _, line in kept[1 : LOOKED + 1] or kept])
-    heading: list[str] | None = None
-    if not _is_row(kept[0][1], separator):
-        heading = _cells(kept[0][1], _separator([kept[0][1]]) if separator == " " else separator)
-        if separator == " " and len(heading) == 1:
-            heading = kept[0][1].split()
-        kept = kept[1:]
-    if not kept:
-        raise ReadError("empty", "below its heading there is no row", path)
-    if len(kept) > MOST_POINTS:
-        raise ReadError("range", f"{len(kept)} rows; up to {MOST_POINTS} are read: leave some out", path)
-    numbers = np.array([i for i, _ in kept], dtype=np.intp)
-    lines = [line for _, line in kept]
-    if heading is None:
-        return _bare(_Rows(path, separator, lines, numbers))
-    return _headed(heading, _Rows(path, separator, lines, numbers, len(heading)))
+    try:
+        rows = read_rows(text, COMMENT)
+        if len(rows.lines) > MOST_POINTS:
+            raise ReadError("range", f"{len(rows.lines)} rows; up to {MOST_POINTS} are read: leave some out", path)
+        return _headed(rows, path) if rows.heading else _bare(rows, path)
+    except RowError as error:
+        if error.line is None:
+            raise ReadError("empty", error.message, path) from None
+        raise ReadError("syntax", f"line {error.line}: {error.message}", path) from None
 
 
-def _bare(rows: _Rows) -> PointTable:
-    width = len(_cells(rows.lines[0], rows.separator))
-    names = {2: "x y", 3: "x y z", 6: "x y z nx ny nz"}.get(width)
+def _bare(rows: Rows, path: Path) -> PointTable:
+    names = {2: "x y", 3: "x y z", 6: "x y z nx ny nz"}.get(rows.columns)
     if names is None:
-        message = f"line {rows.numbers[0]}: {width} numbers without a heading; x y, x y z or x y z nx ny nz are read so"
-        raise ReadError("unsupported", f"{message}: give the file a heading such as x_mm,y_mm", rows.path)
-    values = rows.values([*range(width)])
+        count = f"line {rows.numbers[0]}: {rows.columns} numbers without a heading"
+        remedy = "x y, x y z or x y z nx ny nz are read so: give the file a heading such as x_mm,y_mm"
+        raise ReadError("unsupported", f"{count}; {remedy}", path)
+    values = rows.values([*range(rows.columns)], blanks=True)
     columns = dict(zip(names.split(), values.T, strict=True))
     return PointTable("places", columns, rows.numbers)
 
 
-def _headed(heading: list[str], rows: _Rows) -> PointTable:
-    known = [_column(cell) for cell in heading]
+def _headed(rows: Rows, path: Path) -> PointTable:
+    known = [_column(cell) for cell in rows.heading]
     names = [name for name, _, _ in known]
     surfaces = list(dict.fromkeys(prefix for name, prefix, _ in known if name == "x" and prefix))
     first = surfaces[0] if surfaces and ("x", "") not in {(name, prefix) for name, prefix, _ in known} else ""
@@ -190,14 +175,13 @@ def _headed(heading: list[str], rows: _Rows) -> PointTable:
     missing = [name for name in wanted if at(name, first if name in {"x", "y"} else "") is None]
     if not wanted or missing:
         lacking = f"a column {' and '.join(missing)} is missing" if wanted else "no columns of measured points"
-        told = ", ".join(heading)
+        names_read = short(", ".join(rows.heading))
         readable = "x,y or radius,angle or angle_deg,lift are read, or of a grinder's table c_deg and x or lift"
-        message = f"{lacking} in its heading {_short(told)}; {readable}"
-        raise ReadError("unsupported", message, rows.path)
+        raise ReadError("unsupported", f"{lacking} in its heading {names_read}; {readable}", path)
     prefixes = surfaces if first else [""]
     groups = [_group(known, prefix, wanted) for prefix in prefixes]
     used = sorted({i for group in groups for i in group.values()})
-    values = rows.values(used)
+    values = rows.values(used, blanks=True)
     place = {column: k for k, column in enumerate(used)}
     columns: dict[str, Array] = {}
     for name in [name for name in groups[0] if all(name in group for group in groups)]:
@@ -206,9 +190,7 @@ def _headed(heading: list[str], rows: _Rows) -> PointTable:
     units = {unit for name, prefix, unit in known if unit in UNITS and name in {*wanted, "z"} and unit}
     stated = {UNITS[unit] for unit in units}
     if len(stated) > 1:
-        raise ReadError(
-            "unsupported", f"its columns are in {' and '.join(sorted(units))}; give all in one unit", rows.path
-        )
+        raise ReadError("unsupported", f"its columns are in {' and '.join(sorted(units))}; give all in one unit", path)
     turned = next((unit for name, _, unit in known if name == "angle" and unit in ANGLES), "deg")
     if "angle" in columns:
         columns["angle"] = columns["angle"] * ANGLES[turned]
@@ -218,7 +200,7 @@ def _headed(heading: list[str], rows: _Rows) -> PointTable:
     labels: list[str] = [prefix for prefix in prefixes for _ in rows.lines] if first else []
     column = names.index("surface") if "surface" in names else names.index("lobe") if "lobe" in names else None
     if column is not None and not first:
-        labels = [_cells(line, rows.separator)[column].strip().strip('"') for line in rows.lines]
+        labels = rows.texts(column)
     swings = any(name == "lift" and unit in ANGLES for name, _, unit in known)
     lines = np.tile(rows.numbers, len(prefixes))
     if first:  # places that are not touched are left empty
@@ -257,73 +239,6 @@ def _column(cell: str) -> tuple[str, str, str]:
     return known, prefix, unit
 
 
-def _separator(lines: Sequence[str]) -> str:
-    """The mark between columns, by these lines."""
-    for mark in (";", "\t"):
-        if sum(mark in line for line in lines) * 2 > len(lines):
-            return mark
-    if all(re.search(r",\s", line) for line in lines):
-        return ","
-    blanks = sum(bool(re.search(r"\S\s+\S", line)) for line in lines)
-    return " " if blanks * 2 > len(lines) else ","
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    cells = line.split() if separator == " " else line.split(separator)
-    while len(cells) > 1 and not cells[-1].strip():
-        cells.pop()
-    return cells
-
-
-def _is_row(line: str, separator: str) -> bool:
-    """Whether a line has numbers, at least two, or its first cells are."""
-    cells = [cell.strip().strip('"') for cell in _cells(line, separator)]
-    return sum(bool(NUMBER.match(cell)) or cell.lower() in {"nan", "inf", "-inf"} for cell in cells) >= 2
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Lines of a table that have numbers, and where they stand; `width` is the number of columns of its heading."""
-
-    path: Path
-    separator: str
-    lines: list[str]
-    numbers: Indices
-    width: int | None = None
-
-    def values(self, used: list[int]) -> Array:
-        """Numbers (n, k) of the columns that are used; ReadError names the first line that has others."""
-        for number, line in zip(self.numbers.tolist()[:LOOKED], self.lines, strict=False):
-            self._row(line, used, number)
-        body = "\n".join(self.lines)
-        if self.separator != ",":
-            body = body.replace(",", ".")
-        mark = None if self.separator == " " else self.separator
-        try:
-            return np.loadtxt(io.StringIO(body), delimiter=mark, usecols=used, comments=None, ndmin=2, quotechar='"')
-        except (ValueError, IndexError):
-            each = zip(self.lines, self.numbers.tolist(), strict=True)
-            return np.stack([self._row(line, used, number) for line, number in each])
-
-    def _row(self, line: str, used: list[int], number: int) -> Array:
-        parts = line.split(None if self.separator == " " else self.separator)
-        cells = [cell.strip().strip('"') for cell in parts]
-        wide = self.width is not None and len(cells) > self.width and not line.endswith(self.separator)
-        hint = ": with decimal commas, part the columns by semicolons" if self.separator == "," and wide else ""
-        if max(used) >= len(cells) or wide:
-            expected = max(used) + 1 if self.width is None else self.width
-            told = f"line {number}: {len(cells)} columns, and {expected} are expected{hint}"
-            raise ReadError("syntax", told, self.path)
-        row = []
-        for k in used:
-            cell = cells[k] if self.separator == "," else cells[k].replace(",", ".")
-            try:
-                row.append(float(cell) if cell else float("nan"))
-            except ValueError:
-                raise ReadError("syntax", f"line {number}: {_short(cell)!r} is not a number", self.path) from None
-        return np.array(row)
-
-
 def _checked(table: PointTable, path: Path) -> PointTable:
     """Refuse numbers that are none, too large ones, too few points."""
     for name, column in table.columns.items():
@@ -342,7 +257,3 @@ def _checked(table: PointTable, path: Path) -> PointTable:
                 "range", f"line {table.lines[at]}: its normal is {size[at]:.3g} long across the shaft", path
             )
     return table
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."

@@ -13,9 +13,9 @@ from kin.law.sources.points import from_points
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.sources.ring import Samples
 from kin.law.sources.table import from_table
-from kin.law.sources.table_text import Sheet, read_table
 from kin.law.sources.tabled import TableError
 from kin.law.support_function import lift_constant_breadth
+from kin.read.tables import Sheet, read_table
 
 TURN = 2 * math.pi
 rad = math.radians
@@ -484,7 +484,7 @@ def test_crank_degrees_inches_and_degrees():
     [
         (
             "w;lift\n0;1\n1;x\n",
-            "line 3: '1;x' is not a row separated by semicolons: an angle and a displacement are expected",
+            "line 3: 'x' is not a number, in '1;x'; an angle and a displacement are expected",
         ),
         (
             "0,1,0,2\n1,5,0,3\n",
@@ -500,8 +500,27 @@ def test_crank_degrees_inches_and_degrees():
                 "columns: [crank, in]"
             ),
         ),
-        ("deg;lift\n", "the table has a heading and no rows"),
-        ("# nothing\n", "the table is empty"),
+        (
+            "0,1,2\n1.5,5,3\n2,1,4,5\n",
+            (
+                "line 1: the table's columns are 3 without a heading; give those of the angle and the value, such as "
+                "columns: [1, 2]: with decimal commas, separate the columns by semicolons"
+            ),
+        ),
+        (
+            "deg,lift\n0,0\n1,2,3\n",
+            (
+                "line 3: 3 columns, and 2 are expected, parted by commas: '1,2,3': with decimal commas, part the "
+                "columns by semicolons; an angle and a displacement are expected"
+            ),
+        ),
+        ("deg,lift\n0,0\n1,\n", "line 3: column 2 is empty, in '1,'; an angle and a displacement are expected"),
+        (
+            "deg,lift\n0,0\n1\n",
+            "line 3: 1 columns, and 2 are expected, parted by commas: '1'; an angle and a displacement are expected",
+        ),
+        ("deg;lift\n", "below its heading there is no row"),
+        ("# nothing\n", "no row of numbers is among its lines"),
     ],
 )
 def test_what_is_no_row_is_refused_with_its_line(text, message):

@@ -340,7 +340,7 @@ def test_a_hundred_thousand_rows(tmp_path):
 
 
 def with_word(rows):
-    return [*rows[:9], "17,none", *rows[10:]], r"lift\.csv, line 10: '17,none' is not a row separated by commas"
+    return [*rows[:9], "17,none", *rows[10:]], r"lift\.csv, line 10: 'none' is not a number, in '17,none'"
 
 
 def with_angle_twice(rows):
@@ -472,7 +472,7 @@ def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
         "pipe": f"{where}a pipe or a device, not a file, given 'pipe'; save the table as a file",
         "bytes.csv": f"{where}not a text, given 'bytes.csv'; save the table as CSV",
     }
-    assert "empty.csv, the table is empty" in str(fault("{table: empty.csv}", tmp_path))
+    assert "empty.csv, no row of numbers is among its lines" in str(fault("{table: empty.csv}", tmp_path))
     (tmp_path / "none.csv").write_text("\n".join(written(tmp_path, HALF, sampled(HALF))))
     recipe("{table: none.csv}", tmp_path).cam.exact()
 

@@ -101,7 +101,7 @@ def test_headings_tell_what_a_table_is(tmp_path):
 BAD = {
     "empty": ("", "no row of numbers"),
     "heading alone": ("x,y\n", "below its heading there is no row"),
-    "one point": ("x,y\n1,2\n", "1 points; 36 are needed"),
+    "one point": ("x,y\n1,2\n", "points: 1, and at least 36 are needed"),
     "word": (f"x,y\n{rows(X, Y)}\n3,foo\n", "line 74: 'foo' is not a number"),
     "nan": (f"x,y\n{rows(X, Y)}\n3,nan\n", "line 74: y is nan, which no part has"),
     "inf": (f"x,y\ninf,1\n{rows(X, Y)}\n", "line 2: x is inf, which no part has"),

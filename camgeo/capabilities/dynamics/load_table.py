@@ -15,8 +15,8 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.law.sources.table_text import Quantity
     from kin.numeric.arrays import Array
+    from kin.read.tables import Quantity
 
 MOST_LOAD = MOST**2
 _MANY = 2000  # rows: of more those are left out that are on straight lines, but for half of their last digit

@@ -149,10 +149,10 @@ BACK = "add the rows of the rest of the turn"
     [
         (
             "0, 1\n90, x\n",
-            "load.csv, line 2: '90, x' is not a row separated by commas: an angle and a load are expected",
+            "load.csv, line 2: 'x' is not a number, in '90, x'; an angle and a load are expected",
         ),
-        ("0, 1\n90, 2, 3\n180, 1\n", "line 2: '90, 2, 3' is not a row"),
-        ("", "load.csv, the table is empty"),
+        ("0, 1\n90, 2, 3\n180, 1\n", "line 2: 3 columns, and 2 are expected, parted by commas: '90, 2, 3'"),
+        ("", "load.csv, no row of numbers is among its lines"),
         ("0, 5\n", "a table has at least 2 rows, not 1"),
         ("0, 1\n90, 2\n80, 1\n180, 0\n270, 0\n", "line 3: the angles must rise; 80 follows 90"),
         ("0, 1\n90, 2\n90, 3\n180, 0\n", "line 3: the angles must rise; 90 stands twice"),
