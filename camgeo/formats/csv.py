@@ -71,8 +71,8 @@ FORMAT = Format(
             Field(
                 "step",
                 Kind.ANGLE,
-                "of grinding, lift, controller and points, between rows; 360 degrees are a whole number of it",
-                default="the largest that holds the tolerance",
+                "of grinding, lift, controller, points, inspection, between rows; 360 degrees are a whole number of it",
+                default="the largest that holds the tolerance; of inspection by verify.angles",
                 at_least=FINEST,
                 at_most=COARSEST,
             ),

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 from kin.read.errors import ReadError
 from kin.read.rows import RowError, read_rows, short
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.rows import Rows
 
 Measured: TypeAlias = Literal["places", "lift"]
@@ -68,6 +68,12 @@ class PointTable:
 
     def __len__(self) -> int:
         return len(self.lines)
+
+    def rows(self, chosen: Mask) -> PointTable:
+        """The table with some of its rows alone."""
+        columns = {name: column[chosen] for name, column in self.columns.items()}
+        labels = [self.labels[i] for i in np.flatnonzero(chosen).tolist()] if self.labels else ()
+        return replace(self, columns=columns, lines=self.lines[chosen], labels=labels)
 
 
 def heading_of(path: Path) -> tuple[str, ...]:

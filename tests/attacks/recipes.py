@@ -39,6 +39,7 @@ FORMS = [
     "{dxf: {as: spline}}",
 ]
 FORMS += [
+    "{csv: {as: inspection, step: 5}}",
     "{csv: {as: contacts}}",
     "{csv: {as: polar}}",
     "{csv: {as: points}}",

@@ -155,7 +155,7 @@ def test_what_is_no_table_for_a_drive_says_why(
             "as: controller, for: codesys",
         ),
         ("as: motion, for: plain", "for: belongs to a table as controller; leave it out", "as: motion"),
-        ("as: motion, step: 1", "step: belongs to a table as grinding, lift or controller", "as: motion"),
+        ("as: motion, step: 1", "step: belongs to a table as inspection, grinding, lift", "as: motion"),
         (
             "as: controller, for: plain, step: 0.7",
             "step: 360 degrees are no whole number of it; give 0.700389105 or another divisor",

@@ -302,7 +302,7 @@ def test_wheel_too_large_is_refused_with_the_largest() -> None:
         (GRINDING % "", ("manufacture: {wheel: 400}", ""), r"csv\.as: a grinder's table needs the wheel"),
         ("{csv: {as: lift}}", ("", ""), r"csv\.as: the lift of a roller needs its diameter"),
         (GRINDING % ", roller: 9", ("", ""), r"csv\.roller: belongs to a table as lift"),
-        ("{csv: {as: motion, step: 1}}", ("", ""), r"csv\.step: belongs to a table as grinding"),
+        ("{csv: {as: motion, step: 1}}", ("", ""), r"csv\.step: belongs to a table as inspection, grinding"),
         (GRINDING % "", ("{wheel: 400}", "{wheel: 400, feed: 3}"), r"manufacture\.cutter: missing"),
         (GRINDING % ", step: 1e-4", ("", ""), r"csv\.step: below 0\.001, given 1e-4; give an angle from 0\.001 to 10"),
         (GRINDING % ", step: 1e-9", ("", ""), r"csv\.step: below 0\.001"),

@@ -4,7 +4,8 @@ from camgeo.registry.label import Label
 
 LABEL = Label(
     rank=80,
-    words=("made",),
+    words=("made", "dmis"),
+    formats={"dmis": "dmis"},
     suffixes=(".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms"),
     sources={"from": "points of a cam (repeatable): KIND is then a recipe of its follower and part, FILE the new one"},
 )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.made.reading import OnSurface, averaged, disc_of, sorted_out, tables_of
+from camgeo.capabilities.made.reading import OnSurface, averaged, disc_of, label_of, sorted_out, tables_of
 from camgeo.common.errors import CallError
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
@@ -78,12 +78,25 @@ def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Pr
         return Points((_disc(recipe, parts[0], placed, ""),), lifts, tuple(remarks), scale)
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
     for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
-        pieces[disc_of(path, first + place, len(parts)) if len(parts) > 1 else 0].append((place, table, scale))
+        for disc, rows in _by_disc(parts, table, path, first + place):
+            pieces[disc].append((place, rows, scale))
     discs = [
         _disc(recipe, part, sorted_out(part, piece, probing), probing.align) if piece else DiscPoints(part)
         for part, piece in zip(parts, pieces, strict=True)
     ]
     return Points(tuple(discs), None, tuple(remarks), scale)
+
+
+def _by_disc(parts: Sequence[PartIntent], table: PointTable, path: Path, place: int) -> list[tuple[int, PointTable]]:
+    """Which disc a file is of; of one that names the surfaces of several, the rows of each."""
+    owners = {label_of(surface.name): rank for rank, part in enumerate(parts) for surface in part.surfaces}
+    labels = [label_of(label) for label in table.labels]
+    if len(parts) == 1:
+        return [(0, table)]
+    if not labels or not set(labels) <= set(owners):
+        return [(disc_of(path, place, len(parts)), table)]
+    rank = np.array([owners[label] for label in labels])
+    return [(disc, table.rows(rank == disc)) for disc in sorted(set(rank.tolist()))]
 
 
 def demand_discs(missing: Sequence[DiscPoints]) -> None:

@@ -206,10 +206,15 @@ def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]]
     return found
 
 
+def label_of(name: str) -> str:
+    """The name of a surface as tables have it."""
+    return name.strip().lower().replace(" ", "_")
+
+
 def _owners(part: PartIntent, table: PointTable, places: Array) -> Indices:
     """Which surface each point is on (n,)."""
-    names = [surface.name for surface in part.surfaces]
-    labels = [label.strip().lower() for label in table.labels]
+    names = [label_of(surface.name) for surface in part.surfaces]
+    labels = [label_of(label) for label in table.labels]
     if len(names) == 1:
         return np.zeros(len(places), dtype=np.intp)
     if labels and set(labels) <= set(names):

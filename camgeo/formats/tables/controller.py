@@ -13,6 +13,7 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.files.table import DIGITS, write_table
+from camgeo.formats.tables.tabled import check_step
 from camgeo.measures.file_result import FileResult
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Form
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
-WHOLE = 1e-9  # rad by which steps may miss a turn
 SHARE = 1e-12  # of the stroke, to which the lowest place is found
 NOTHING = 1e-13  # of the greatest value: rounding about 0
 
@@ -75,11 +75,7 @@ def check(file: Values, values: Values, reader: Reader) -> None:
     if "linkage" in values:
         remedy = "leave the table or the linkage out"
         reader.fault_at(f"{path}.as", "a table for a controller is of a follower without a linkage", None, remedy)
-    if "step" in file:
-        count = round(TURN / file["step"])
-        if abs(count * file["step"] - TURN) > WHOLE:
-            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
-            reader.fault_at(f"{path}.step", "360 degrees are no whole number of it", None, remedy)
+    check_step(file, reader)
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.formats.tables.tabled import check_step
 from camgeo.registry.formats import Form
-from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
-
-WHOLE = 1e-9  # rad by which steps may miss a turn
 
 
 def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Form:
@@ -31,11 +29,7 @@ def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *mor
 
 def _check(file: Values, values: Values, reader: Reader) -> None:
     path = f"{file['path']}.csv"
-    if "step" in file:
-        count = round(TURN / file["step"])
-        if abs(count * file["step"] - TURN) > WHOLE:
-            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
-            reader.fault_at(f"{path}.step", "360 degrees are no whole number of it", None, remedy)
+    check_step(file, reader)
     if values.get("cam", {}).get("track", "external") != "external":
         reader.fault_at(f"{path}.as", "a wheel grinds the outside of a disc", None, "leave the table or track out")
 

@@ -1,7 +1,7 @@
 """The inspection table: where the follower touches the exact cam, which way the surface faces, where a cutter stands.
 
 Places and directions are those of the drawing, mirrored where the drawing is; the motion is not. Where a trimmed cam
-is not touched the cells stay empty.
+is not touched the cells stay empty. Where the recipe gives the zone of the contour, its limits stand behind.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import check_step, tabled
 from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
@@ -21,14 +21,17 @@ if TYPE_CHECKING:
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
 NOTHING = 1e-14  # of a direction or of the cam's size: rounding about a coordinate that is 0
 
 
-def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], Array]:
+def inspection_table(recipe: Recipe, design: Design, step: float | None = None) -> tuple[tuple[str, ...], Array]:
     """Column names and rows (angles + 1, k) over equal steps of the shaft; nan where nothing is touched.
+
+    `step`, rad, stands in for that of `verify.angles`.
 
     Each contact has its place, as x and y and as radius and polar angle, the outward normal with its direction, and
     with `manufacture` the centre of the cutter that touches the same point. Of two rollers or faces those of A come
@@ -37,7 +40,7 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
     """
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to inspect")
-    count = recipe.verify.angles
+    count = recipe.verify.angles if step is None else round(TURN / step)
     shaft = np.linspace(0.0, TURN, count + 1)
     columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
     unit = "in" if recipe.units == "inch" else "mm"
@@ -49,7 +52,14 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
     for name, parameter in position.parameters(shaft, relative).items():
         for surface, contour in design.contours:
             columns |= _contact(recipe, (surface, contour), parameter, f"{surface.prefix}{name}", unit)
+    if recipe.profile is not None:
+        zone = np.full(count + 1, 0.5 * recipe.profile / recipe.mm)
+        columns |= {f"lower_{unit}": -zone, f"upper_{unit}": zone}
     return tuple(columns), np.column_stack(list(columns.values()))
+
+
+def _check(file: Values, _: Values, reader: Reader) -> None:
+    check_step(file, reader)
 
 
 def _contact(
@@ -96,7 +106,14 @@ def _degrees(x: Array, y: Array) -> Array:
 
 
 def _columns(job: Job, request: FileRequest) -> Columns:
-    return inspection_table(job.recipe.told_for(request), job.design)
+    return inspection_table(job.recipe.told_for(request), job.design, request.own.get("step"))
 
 
-FORM = Form(name="inspection", surfaces=2, make=tabled("inspection", _columns, gaps=True))  # nan: not touched
+FORM = Form(
+    name="inspection",
+    surfaces=2,
+    discs=2,
+    takes=("step",),
+    check=_check,
+    make=tabled("inspection", _columns, gaps=True),  # nan: not touched
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.files.table import write_table
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -13,9 +14,23 @@ if TYPE_CHECKING:
 
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
     from kin.numeric.arrays import Array
 
     Columns: TypeAlias = tuple[tuple[str, ...], Array]
+
+
+WHOLE = 1e-9  # rad by which steps may miss a turn
+
+
+def check_step(file: Values, reader: Reader) -> None:
+    """Note a step between rows that does not divide a turn."""
+    if "step" in file:
+        count = round(TURN / file["step"])
+        if abs(count * file["step"] - TURN) > WHOLE:
+            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
+            path = f"{file['path']}.{file['kind']}.step"
+            reader.fault_at(path, "360 degrees are no whole number of it", None, remedy)
 
 
 def tabled(
