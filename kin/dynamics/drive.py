@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted
+from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted, split
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -84,14 +84,10 @@ class Drive:
         number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
         step = np.diff(self.knots)[owner] / parts[owner]
         knots = np.append(self.knots[owner] + number * step, self.knots[-1])
-        cut = parts[owner] > 1
-        x = (2.0 * number[:, None] + 1.0 + NODES) / parts[owner][:, None] - 1.0
-        row = np.repeat(owner[cut], DEGREE + 1)
-        series = []
-        for part in (self.position, self.velocity, self.acceleration):
-            found = part[owner]
-            found[cut] = fitted(evaluated(part, row, x[cut].ravel()).reshape(-1, DEGREE + 1))
-            series.append(found)
+        whole = np.stack([self.position, self.velocity, self.acceleration])
+        series = whole[:, owner]
+        for count in np.unique(parts[parts > 1]).tolist():
+            series[:, parts[owner] == count] = split(whole[:, parts == count], count).reshape(3, -1, DEGREE + 1)
         jumps = np.where(number == 0, self.jumps[owner], 0.0)
         return Drive(knots, series[0], series[1], series[2], jumps)
 

@@ -260,13 +260,12 @@ def _from_rest(oscillator: Oscillator, g: Array, half: Array, owner: Indices) ->
         + (2.0 * oscillator.decay * scale)[:, None, None] * once
         + (oscillator.square * scale**2)[:, None, None] * twice
     )
-    ends = np.append(first[1:], len(owner))
+    counts = np.diff(first, append=len(owner))
     bend = np.empty_like(g)
-    alone = ends - first == 1
-    bend[first[alone]] = np.linalg.solve(matrix[alone], g[first[alone], :, None])[:, :, 0]
-    for i in np.flatnonzero(~alone).tolist():
-        rows = slice(first[i], ends[i])
-        bend[rows] = np.linalg.solve(matrix[i], g[rows].T).T
+    for count in np.unique(counts).tolist():
+        alike = counts == count
+        rows = first[alike, None] + np.arange(count)
+        bend[rows] = np.linalg.solve(matrix[alike], g[rows].swapaxes(1, 2)).swapaxes(1, 2)
     p: Array = (bend @ twice.T) * half[:, None] ** 2
     v: Array = (bend @ once.T) * half[:, None]
     return p, v

@@ -24,7 +24,7 @@ import numpy as np
 from kin.dynamics.response import Samples
 from kin.dynamics.train import periodic
 from kin.numeric.angles import TURN
-from kin.numeric.chebyshev import AT_START, DERIVATIVE, ORDERS, evaluated
+from kin.numeric.chebyshev import AT_START, DERIVATIVE, ORDERS, polynomials
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ _STEP = 0.25  # radians of free motion between samples
 _POWER = 4.0  # of the speed, with which kicks grow at most
 _PART = 8.0  # radians of free motion in a stretch that is not slow, at most: its kicks' own phase
 _GRID = np.linspace(-1.0, 1.0, PARTS + 1)
+_ON_GRID = polynomials(_GRID)
 _BLUNT = 0.9  # damping ratio from which a free motion is bounded as one that does not swing
 _CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of each Chebyshev polynomial
 
@@ -133,8 +134,7 @@ class Look:
     def driven(self) -> Array:
         """Lower bound (m, 32) of the force that goes with q, on the windows of each stretch."""
         series = self._series
-        count = len(series)
-        at = evaluated(series, np.repeat(np.arange(count), PARTS + 1), np.tile(_GRID, count)).reshape(count, -1)
+        at = series @ _ON_GRID
         room = np.abs(series) @ _CURVED * (_GRID[1] - _GRID[0]) ** 2 / 8.0
         lowest: Array = np.minimum(at[:, :-1], at[:, 1:]) - room[:, None]
         return lowest

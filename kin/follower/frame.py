@@ -23,7 +23,6 @@ from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet, cos
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
-from kin.numeric.longest_window import dwells
 from kin.numeric.monotone import between, cells, pieces
 from kin.numeric.records import dataclass, replace
 
@@ -96,8 +95,8 @@ class _Intended:
 
     def output(self, shaft: Array) -> Array:
         """Output at shaft angles (n,)."""
-        found: Array = self.rows(self.mechanism.relative(shaft))[1, 0]
-        return found
+        output: Array = self.mechanism.at(self.mechanism.relative(shaft), 0).output[0]
+        return output
 
     def rows(self, theta: Array) -> Array:
         at = self.mechanism.at(theta, 3)
@@ -214,7 +213,7 @@ def _judged(
     angles = with_steps(shaft)
     meant = intended.output(angles)
     errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
-    window = None if band is None else _intended_dwell(intended, band)
+    window = None if band is None else _intended_dwell(mechanism, band)
     flat = [] if window is None else [_extremes(way, *way.relative(window)).span for way in every]
     across, along = _plays(centred)
     return LinkageVerdict(
@@ -354,12 +353,10 @@ def _extremes(way: Resting, theta: Array, interval: Indices) -> Extremes:
     return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism, at_low[0]))
 
 
-def _intended_dwell(intended: _Intended, band: float) -> Array:
+def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
     """Shaft angles (2,) between which the intended output dwells longest."""
-    mechanism = intended.mechanism
-    breaks = np.mod(intended.rows(mechanism.breaks)[0, 0], TURN) if len(mechanism.breaks) else mechanism.breaks
-    found = dwells(lambda shaft, _: intended.rows(mechanism.relative(shaft))[1, :1], breaks, band, TURN, 1)[0]
-    return found.start + np.array([0.0, min(found.length, TURN * (1.0 - 1e-12))])
+    dwell = mechanism.dwells(band)[0]
+    return dwell.start + np.array([0.0, min(dwell.length, TURN * (1.0 - 1e-12))])
 
 
 def _dwells(ways: list[Resting], band: float, over: Over) -> tuple[DwellFound, ...]:

@@ -63,17 +63,17 @@ class FrameSwing:
     rocker: float
     side: float
 
-    @property
+    @cached_property
     def rise(self) -> float:
         """Net rise h, rad."""
         return float(self.motion.at_end(0)[0])
 
-    @property
+    @cached_property
     def lean(self) -> float:
         """-2 k r4/r1: the sum of the sines of psi and of its image."""
         return -2.0 * self.side * self.rocker / self.ground
 
-    @property
+    @cached_property
     def start(self) -> float:
         """psi_0, rad: sin psi_0 + sin(psi_0 + h) is the lean."""
         return math.asin(0.5 * self.lean / math.cos(0.5 * self.rise)) - 0.5 * self.rise
@@ -170,11 +170,16 @@ class _Lifted:
         rows[1:] = [row * (1.0 / math.factorial(k)) for k, row in enumerate(rows[1:], 1)]
         return Ball(np.stack([row.mid for row in rows]), np.stack([row.rad for row in rows]))
 
+    @cached_property
+    def _ends(self) -> Array:
+        """Relative angles (2,) at both ends."""
+        both = Jet.variable(np.array([self.begin, self.end]), 0)
+        ends: Array = (both - self.function(both)).c[0]
+        return ends
+
     def _shaft(self, theta: Array) -> Array:
         """Shaft angles (n,) at relative angles (n,), within this stretch."""
-        low, high = np.full_like(theta, self.begin), np.full_like(theta, self.end)
-        both = Jet.variable(np.array([self.begin, self.end]), 0)
-        ends = (both - self.function(both)).c[0]
+        low, high, ends = np.full_like(theta, self.begin), np.full_like(theta, self.end), self._ends
 
         def over(phi: Array) -> tuple[Array, Array]:
             at = Jet.variable(phi, 1)

@@ -65,13 +65,14 @@ def demand_mobile(margin: Array, *, order: int, fixed: NDArray[np.bool_] | None 
 
 
 def total(*terms: Term) -> Array:
-    """Sum of numbers or arrays (n,), compensated: good to an ulp unless it nearly vanishes (Neumaier 1974)."""
+    """Sum of numbers or arrays (n,), compensated: good to an ulp unless it nearly vanishes (Knuth's sum of two)."""
     value: Array = np.asarray(terms[0], dtype=float)
     lost: Array = np.zeros(())
     for term in terms[1:]:
-        next_value = value + term
-        lost = lost + np.where(np.abs(value) >= np.abs(term), (value - next_value) + term, (term - next_value) + value)
-        value = next_value
+        longer = value + term
+        share = longer - value
+        lost = lost + ((value - (longer - share)) + (term - share))
+        value = longer
     return value + lost
 
 

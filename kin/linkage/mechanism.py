@@ -240,11 +240,22 @@ class Mechanism:
         self._demand_turning()
         return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
 
+    @cached_property
+    def _dwells(self) -> dict[tuple[float, str, int], tuple[Dwell, ...]]:
+        """Dwells that were found, by band, angle and number: the judge of a file asks for those of the design."""
+        return {}
+
     def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Dwell, ...]:
         """Find the longest dwells of the output, band in rad or mm, over either angle (`longest_window.dwells`).
 
         PlaceError unless the mechanism turns (over the relative angle: unless its loops can be closed all round).
         """
+        key = band, over, most
+        if key not in self._dwells:
+            self._dwells[key] = self._longest(band, over, most)
+        return self._dwells[key]
+
+    def _longest(self, band: float, over: Literal["shaft", "relative"], most: int) -> tuple[Dwell, ...]:
         if over == "relative":
             return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
 

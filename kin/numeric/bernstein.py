@@ -32,7 +32,8 @@ def values(coefficients: Array, t: Array) -> Array:
     grows with k, not with its square, and the rounding is that of de Casteljau's scheme within a factor of two.
     """
     k = coefficients.shape[1] - 1
-    rows = np.moveaxis(coefficients, 0, -1)  # the loops of numpy run along the polynomials
+    others = range(1, coefficients.ndim)
+    rows = coefficients.transpose(*others, 0)  # the loops of numpy run along the polynomials
     late = t > 0.5
     if bool(late.any()):
         rows = np.where(late, rows[::-1], rows)
@@ -40,9 +41,11 @@ def values(coefficients: Array, t: Array) -> Array:
     near = 1.0 - away
     ratio = away / near
     value = rows[k]
-    for i, share in reversed(list(enumerate(binomials(k)[:-1]))):
+    # the binomials are symmetric
+    for i, share in zip(range(k - 1, -1, -1), binomials(k)[1:], strict=True):
         value = value * ratio + share * rows[i]
-    out: Array = np.moveaxis(value * near**k, -1, 0)
+    value = value * near**k
+    out: Array = value.transpose(-1, *range(value.ndim - 1))
     return out
 
 

@@ -17,7 +17,7 @@ DEGREE = 24
 _COUNT = DEGREE + 1
 ORDERS: Array = np.arange(_COUNT, dtype=np.float64)
 """0 to DEGREE: the series' value at x = cos t is their sum with cos(ORDERS t)."""
-_FEW = 2000
+_FEW = 100  # values, from which Clenshaw's recurrence is quicker than cosines
 _ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
 
 NODES: Array = np.cos(_ANGLES)
@@ -69,7 +69,8 @@ def fitted(values: Array) -> Array:
 def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
     """Values (n,) at x (n,) in [-1, 1] of the series in the rows (n,) of `coefficients` (m, DEGREE + 1).
 
-    A few as sums of cosines, many by Clenshaw's recurrence: the one saves calls, the other memory.
+    A few as sums of cosines, many by Clenshaw's recurrence: the one saves calls, the other work. Where all rows are
+    asked at the same x, `together` is quicker.
     """
     found: Array
     if len(x) <= _FEW:
@@ -87,10 +88,21 @@ def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
 
 
 def together(coefficients: Array, x: Array) -> Array:
-    """Values (r, n) of all rows of `coefficients` (r, DEGREE + 1) at the same x (n,) in [-1, 1]."""
-    angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
-    found: Array = coefficients @ np.cos(ORDERS[:, None] * angle)
-    return found
+    """Values (..., n) of all rows of `coefficients` (..., DEGREE + 1) at the same x (n,) in [-1, 1]."""
+    values: Array = coefficients @ polynomials(x)
+    return values
+
+
+def polynomials(x: Array) -> Array:
+    """Chebyshev polynomials (DEGREE + 1, n) at x (n,) in [-1, 1]."""
+    values: Array = np.cos(ORDERS[:, None] * np.arccos(np.minimum(np.maximum(x, -1.0), 1.0)))
+    return values
+
+
+def split(coefficients: Array, parts: int) -> Array:
+    """Coefficients (..., parts, DEGREE + 1) of the series on equal parts of the interval, from (..., DEGREE + 1)."""
+    x = (2.0 * np.arange(parts)[:, None] + 1.0 + NODES) / parts - 1.0
+    return fitted(together(coefficients, x.ravel()).reshape(*coefficients.shape[:-1], parts, _COUNT))
 
 
 def value(coefficients: list[float], x: float) -> float:

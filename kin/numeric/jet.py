@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
@@ -53,15 +52,9 @@ def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
 
 def finite(c: Array, operation: str) -> Jet:
     """Return the jet of these coefficients (order + 1, n), all of them finite, or DomainError."""
-    with np.errstate(all="ignore"):
-        return _finite(c, operation)
-
-
-def _finite(c: Array, operation: str) -> Jet:
-    """Do so where numpy's warnings are off already, as turning them off takes as long as a sum."""
-    total: np.float64 = np.add.reduce(c, axis=None)  # no product of vectors: that would wake threads
-    if not math.isfinite(total):  # or the sum alone overflows
-        demand(np.isfinite(c).all(axis=0), operation)
+    sound = np.isfinite(c)
+    if np.count_nonzero(sound) < c.size:
+        demand(sound.all(axis=0), operation)
     return Jet(c)
 
 
@@ -122,10 +115,10 @@ class Jet:
     def __add__(self, other: Jet | float | Array) -> Jet:
         with np.errstate(all="ignore"):
             if isinstance(other, Jet):
-                return _finite(self.c + other.c, "overflow")
+                return finite(self.c + other.c, "overflow")
             c = self.c.copy()
             c[0] += other
-            return _finite(c, "overflow")
+            return finite(c, "overflow")
 
     __radd__ = __add__
 
@@ -137,7 +130,7 @@ class Jet:
 
     def __mul__(self, other: Jet | float | Array) -> Jet:
         with np.errstate(all="ignore"):
-            return _finite(product(self.c, other.c) if isinstance(other, Jet) else self.c * other, "overflow")
+            return finite(product(self.c, other.c) if isinstance(other, Jet) else self.c * other, "overflow")
 
     __rmul__ = __mul__
 
@@ -146,7 +139,7 @@ class Jet:
         demand(divisor != 0, "division by zero")
         with np.errstate(all="ignore"):
             c = quotient(self.c, other.c) if isinstance(other, Jet) else self.c / other
-            return _finite(c, "overflow")
+            return finite(c, "overflow")
 
     def __rtruediv__(self, other: float | Array) -> Jet:
         return self.constant(other) / self
@@ -157,13 +150,13 @@ class Jet:
             demand(x > 0, "variable power of a number that is not positive")
             with np.errstate(all="ignore"):
                 product_of_log = product(exponent.c, compose(log_rows(x, np.log(x), self.order), self.c))
-                return _finite(compose(exp_rows(np.exp(product_of_log[0]), self.order), product_of_log), "overflow")
+                return finite(compose(exp_rows(np.exp(product_of_log[0]), self.order), product_of_log), "overflow")
         demand((x != 0) | np.greater_equal(exponent, 0), "division by zero")
         if not float(exponent).is_integer():
             demand(x >= 0, "fractional power of a negative number")
             demand((x > 0) | np.greater(exponent, self.order), "derivative of a fractional power at zero")
         with np.errstate(all="ignore"):
-            return _finite(compose(power_rows(x, exponent, self.order), self.c), "overflow")
+            return finite(compose(power_rows(x, exponent, self.order), self.c), "overflow")
 
     def __rpow__(self, base: float) -> Jet:
         return self.constant(base) ** self
@@ -311,4 +304,4 @@ def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:
             else:
                 total = product(total, x.c)
             total[0] += row
-        return _finite(total, "overflow")
+        return finite(total, "overflow")

@@ -96,30 +96,28 @@ def overlapping(page: Page) -> Iterator[tuple[str, str]]:
             yield one.text, other.text
 
 
-def strokes(page: Page) -> Iterator[np.ndarray]:
-    """Every line of a page as points (n, 2): those of dimensions, circles, and arrows among them."""
+def strokes(page: Page) -> np.ndarray:
+    """All lines of a page as ends of chords (n, 2, 2): those of dimensions, circles, and arrows among them."""
+    chains = []
     for mark in page.marks:
         lines = mark.lines if isinstance(mark, Dimension) else [mark] if isinstance(mark, Line) else []
-        for line in lines:
-            yield np.vstack([line.points, line.points[:1]]) if line.closed else line.points
+        chains += [np.vstack([line.points, line.points[:1]]) if line.closed else line.points for line in lines]
         if isinstance(mark, Circle):
             turn = np.linspace(0.0, 2.0 * np.pi, 181)
-            yield np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)])
-
-
-def crosses(box: tuple[float, ...], points: np.ndarray) -> bool:
-    """Whether a line through points runs through the inside of a box."""
-    low, high = np.array(box[:2]) + 0.01, np.array(box[2:]) - 0.01
-    starts, ways = points[:-1], np.diff(points, axis=0)
-    still = np.where(ways == 0.0, 1e-12, ways)
-    ends = np.stack([(low - starts) / still, (high - starts) / still])
-    enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
-    return bool((np.maximum(enters, 0.0) < np.minimum(leaves, 1.0)).any())
+            chains.append(np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)]))
+    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
 
 
 def crossed(page: Page) -> Iterator[str]:
-    lines = list(strokes(page))
-    return (text.text for text in page.texts if any(crosses(text.box, line) for line in lines))
+    """Texts through whose box a line runs."""
+    starts, ends = strokes(page).swapaxes(0, 1)
+    ways = np.where(ends == starts, 1e-12, ends - starts)
+    for text in page.texts:
+        low, high = np.array(text.box[:2]) + 0.01, np.array(text.box[2:]) - 0.01
+        both = np.stack([(low - starts) / ways, (high - starts) / ways])
+        enters, leaves = both.min(axis=0).max(axis=1), both.max(axis=0).min(axis=1)
+        if (np.maximum(enters, 0.0) < np.minimum(leaves, 1.0)).any():
+            yield text.text
 
 
 def demand_clear(pages: drawing.Pages) -> None:
