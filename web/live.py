@@ -22,6 +22,7 @@ from camgeo.checks.declared import declaration
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
+from camgeo.recipe.recipe import of_source
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.report.page import tables
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeError
-    from camgeo.schema.fields import Field, Table
+    from camgeo.schema.fields import Field, Form, Table
     from kin.numeric.arrays import Array
 
 FOLDER = "/tmp/recipe"  # noqa: S108 - of the browser's own file system; the recipe, its tables, somebody's file
@@ -52,6 +53,7 @@ OUT = "/tmp/out"  # noqa: S108 - the same
 PAGE = FileRequest("html")
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
+_WORDS: dict[Form[Any], list[str]] = {}  # of forms of their own, whose schemas are large
 Path(FOLDER).mkdir(parents=True, exist_ok=True)
 
 
@@ -89,8 +91,9 @@ def design(name: str, text: str) -> dict[str, Any]:
     """Everything that the page draws of a recipe, its fields, and its faults, each with line and column."""
     output: dict[str, Any] = {"fields": [], "faults": []}
     try:
-        output["fields"] = fields(Source.of(text, name))
-        recipe = _recipe(name, text)
+        source = Source.of(text, f"{name}.yaml")
+        output["fields"] = fields(source)
+        recipe = of_source(source, Path(FOLDER) / f"{name}.yaml")
         exact = camgeo.design(recipe)
         scene = dict(exact.scene())
     except RecipeErrors as errors:
@@ -178,16 +181,23 @@ def _files(reader: Reader) -> Iterator[dict[str, Any]]:
     if re.fullmatch(r"\[[\w ,]*\]", raw) is None:
         return
     place = {"start": _utf16(source.text, start), "end": _utf16(source.text, end)}
-    choices = _words(field.form.schema(field)["items"])
+    choices = _words(field)
     words = [item.text for item in node.items if isinstance(item, Scalar)]
     about = {"path": "export.files", "about": field.about, "text": raw, "kind": "list"}
     yield {**about, **place, "choices": choices, "words": words}
 
 
-def _words(schema: dict[str, Any]) -> list[str]:
-    """The words that a schema permits, beside whatever else it does."""
+def _words(field: Field) -> list[str]:
+    """The words that a form of its own permits, beside whatever else it does, for the field itself or its entries."""
+    if field.form is None:
+        return []
+    if field.form in _WORDS:
+        return _WORDS[field.form]
+    schema = field.form.schema(field)
+    schema = schema.get("items", schema)
     options = schema.get("anyOf") or schema.get("oneOf") or [schema]
-    return [word for option in options for word in option.get("enum", ()) if isinstance(word, str)]
+    _WORDS[field.form] = [word for option in options for word in option.get("enum", ()) if isinstance(word, str)]
+    return _WORDS[field.form]
 
 
 def _entry(reader: Reader, path: str, node: Scalar) -> Iterator[dict[str, Any]]:
@@ -202,7 +212,7 @@ def _entry(reader: Reader, path: str, node: Scalar) -> Iterator[dict[str, Any]]:
         return
     place = {"start": _utf16(source.text, start), "end": _utf16(source.text, end)}
     shown = {"path": path, "about": field.about, "text": node.text, **place}
-    choices = list(field.choices) or ([] if field.form is None else _words(field.form.schema(field)))
+    choices = list(field.choices) or _words(field)
     if node.text in choices:
         yield {**shown, "kind": "choice", "choices": choices}
     elif field.kind is Kind.TRUTH:
@@ -404,13 +414,16 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     (folder / f"{stem}-motion.csv").write_text(followed.table(), "utf-8")
     output: dict[str, Any] = {"words": summary(followed), "page": "", "ok": True, "verdict": ""}
     output["files"] = [{"name": f"{stem}-motion.csv", "path": str(folder / f"{stem}-motion.csv")}]
-    if not followed.follower.yoke:
-        table = f"{stem}-lifts.csv"
-        (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
-        output |= {"name": stem, "recipe": followed.recipe(table), "tables": {table: followed.lifts()}}
-        if followed.at == (0.0, 0.0):
-            report = shown(followed)
-            output |= {"page": report.page or "", "ok": report.ok, "verdict": str(report)}
+    table = f"{stem}-lifts.csv"
+    try:
+        recipe = followed.recipe(table)
+    except camgeo.CallError as error:
+        return {**output, "words": f"{output['words']}\nNo recipe is made of it: {error}"}
+    (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
+    output |= {"name": stem, "recipe": recipe, "tables": {table: followed.lifts()}}
+    if followed.at == (0.0, 0.0):
+        report = shown(followed)
+        output |= {"page": report.page or "", "ok": report.ok, "verdict": str(report)}
     return output
 
 

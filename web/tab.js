@@ -131,7 +131,10 @@ function encodedTables() {
   return Object.fromEntries(Object.entries(recipe.tables).map(([name, text]) => [name, encoder.encode(text)]));
 }
 
+let judgedText = ""; // of the recipe that was made or judged last
+
 async function changed() {
+  byId("since").textContent = recipe.text === judgedText ? "" : "The recipe has changed since.";
   const turn = ++asked;
   await designed(recipe.name, recipe.text);
   tab.dataset.answered = String(turn);
@@ -608,13 +611,15 @@ async function long(words, call, input, files) {
   const seconds = ((performance.now() - begun) / 1000).toFixed(1);
   byId("stop").disabled = !work.current;
   busy.textContent = answer ? `${seconds} s` : "stopped";
-  tab.dataset.seconds = seconds;
+  tab.dataset.seconds = String((performance.now() - begun) / 1000);
   return answer;
 }
 
 function showJudged(answer, head, rejected = "") {
   const judged = byId("judged");
   judged.hidden = false;
+  judgedText = recipe.text;
+  byId("since").textContent = "";
   byId("judged-head").textContent = head;
   const missing = (answer.missing || []).map(({ what, why }) => `\n${what} is left out: ${why}`).join("");
   byId("outcome").textContent = `${answer.verdict}${rejected && !answer.ok ? `\n${rejected}` : ""}${missing}`;
@@ -679,13 +684,16 @@ byId("verify").addEventListener("click", async () => {
 
 byId("follow").addEventListener("click", async () => {
   const number = (id) => Number(byId(id).value.replace(",", ".").replace("−", "-"));
-  const flat = document.querySelector("[name=touch]:checked").value === "flat";
-  const arm = [byId("pivot"), byId("arm")].filter((box) => box.value.trim()).map((box) => number(box.id));
+  const given = (id) => (byId(id).value.trim() ? number(id) : null);
+  const touch = document.querySelector("[name=touch]:checked").value;
   const follower = {
-    roller: flat ? null : number("roller"),
-    flat,
+    roller: touch === "roller" ? number("radius") : null,
+    shoe: touch === "shoe" ? number("radius") : null,
+    flat: touch === "flat",
+    width: touch === "flat" ? given("width") : null,
     offset: number("offset"),
-    arm,
+    arm: [given("pivot"), given("arm")].filter((value) => value !== null),
+    track: byId("track").value,
     leading: byId("leading").checked,
     yoke: byId("yoke").checked,
     units: byId("units").value || null,

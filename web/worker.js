@@ -22,6 +22,7 @@ async function begin() {
   python.unpackArchive(await code, "zip", { extractDir: packages });
   say("camgeo is starting", 0.8);
   const live = python.pyimport("live");
+  python.runPython("import gc; gc.collect(); gc.freeze()"); // what is loaded stays: no collection looks at it again
   say("", 1);
   return { python, live };
 }

@@ -18,7 +18,7 @@ from camgeo.schema.errors import RecipeError, RecipeErrors, shown
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 50
@@ -30,6 +30,7 @@ _FORBIDDEN = "[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\
 _DISPUTED = r"[\t?]|[|>][0-9+-]*#"  # libyaml takes some that PyYAML's own reader refuses: the latter decides
 _LINE_END = r"\r\n|\r|\n"
 _DIRECTIVE = r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%"
+_BLANK = r"[ ]*(?:#[^\0\r\n\x85\u2028\u2029]*)?"
 _BARE = r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?"
 _PLAIN_KEY = r"[A-Za-z0-9_-]{1,40}"
 
@@ -251,13 +252,34 @@ def _parse(text: str, lines: tuple[str, ...], file: str) -> Node:
         with suppress(yaml.YAMLError):  # PyYAML's own reader words the same fault better, and alike on every machine
             return _build(_events(text, fast), lines, file)
     try:
-        return _build(_events(text, yaml.SafeLoader), lines, file)
+        return _build(_events(text, _Loader), lines, file)
     except yaml.MarkedYAMLError as error:
         place = _mark(error.problem_mark or error.context_mark)
         problem = ", ".join(filter(None, (error.context, error.problem)))
         raise _fault(file, place, f"YAML cannot be read: {problem}", remedy=_syntax_remedy(problem)) from None
     except _BadEscapeError as error:
         raise _fault(file, error.place, "an escape that stands for no character", remedy="write it out") from None
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's own reader; it passes over blanks and comments at once: sign by sign they take a third of its time."""
+
+    def scan_to_next_token(self) -> None:
+        """Go to the next token; a line that ends outside brackets lets a simple key begin."""
+        if self.index == 0 and self.peek() == "\ufeff":
+            self.forward()
+        scan_line_break: Callable[[], str] = self.scan_line_break
+        blanks = re.compile(_BLANK)
+        more = True
+        while more:
+            blank = blanks.match(self.buffer, self.pointer)
+            passed = 0 if blank is None else blank.end() - self.pointer
+            self.pointer += passed
+            self.index += passed
+            self.column += passed
+            more = bool(scan_line_break())
+            if more and not self.flow_level:
+                self.allow_simple_key = True
 
 
 def _events(text: str, loader: type[yaml.SafeLoader]) -> Iterator[yaml.Event]:

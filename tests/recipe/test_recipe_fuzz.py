@@ -26,6 +26,7 @@ from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.edit import without
 from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.yaml_source import _Loader
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -224,3 +225,23 @@ def test_both_readers_of_yaml_agree(data: bytes) -> None:
         fast = outcome(data)
         patch.delattr(yaml, "CSafeLoader")
         assert outcome(data) == fast
+
+
+@settings(max_examples=examples(300), deadline=None)
+@given(mutated())
+def test_blanks_and_comments_that_are_passed_at_once_change_no_place(data: bytes) -> None:
+    """Events and their marks are those of PyYAML's reader, which goes sign by sign; so is a fault that ends them."""
+    text = data.decode("utf-8", "replace").removeprefix("\ufeff")
+
+    def events(loader: type[yaml.SafeLoader]) -> list[str]:
+        told: list[str] = []
+        try:
+            told.extend(
+                f"{event} {event.start_mark.line} {event.start_mark.column} {event.end_mark.column}"
+                for event in yaml.parse(text, Loader=loader)
+            )
+        except (yaml.YAMLError, ValueError, OverflowError) as error:
+            told.append(str(error))
+        return told
+
+    assert events(_Loader) == events(yaml.SafeLoader)

@@ -183,7 +183,7 @@ def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) ->
     page.enter("cam.base_radius", "36.2")
     page.judged("verify")
     assert "FAILED" in page.text_of("outcome")
-    page.ask("byId('roller').value = '9'; byId('offset').value = '8,0'")
+    page.ask("byId('radius').value = '9'; byId('offset').value = '8,0'")
     page.judged("follow")
     assert "lift 20 mm" in page.text_of("followed-words")
     page.ask("document.querySelector('#followed-files button').click()")
