@@ -91,9 +91,10 @@ def design(name: str, text: str) -> dict[str, Any]:
     """Everything that the page draws of a recipe, its fields, and its faults, each with line and column."""
     output: dict[str, Any] = {"fields": [], "faults": []}
     try:
-        source = Source.of(text, f"{name}.yaml")
+        path = Path(FOLDER) / f"{name}.yaml"
+        source = Source.of(text, str(path))
         output["fields"] = fields(source)
-        recipe = of_source(source, Path(FOLDER) / f"{name}.yaml")
+        recipe = of_source(source, path)
         exact = camgeo.design(recipe)
         scene = dict(exact.scene())
     except RecipeErrors as errors:

@@ -296,7 +296,7 @@ def test_the_keyboard_reaches_everything(page: tab.Tab) -> None:
     page.load("disc-roller", TEXTS["disc-roller"])
     page.ask("byId('undo').focus()")
     reached = set()
-    for _ in range(80):
+    for _ in range(140):
         page.browser.key("Tab")
         reached.add(page.ask("document.activeElement.id"))
         if page.ask("document.activeElement.id") == "text":
