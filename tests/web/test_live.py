@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +17,14 @@ from camgeo.schema.yaml_source import Source, scalars
 
 live = script("live")
 TEXTS = {name: starter(name) for name in OF_CAMS} | {f"{path.stem}.yaml": path.read_text("utf-8") for path in SHIPPED}
+
+
+@pytest.fixture(autouse=True)
+def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of each test its own: in a browser nobody else is there."""
+    for name in ("FOLDER", "OUT"):
+        (tmp_path / name).mkdir()
+        monkeypatch.setattr(live, name, str(tmp_path / name))
 
 
 def part(text: str, field: dict[str, Any]) -> str:
@@ -74,7 +83,7 @@ def test_a_recipe_in_inches_makes_the_same_cam_and_comes_back(name: str) -> None
 def test_what_cannot_be_converted_is_said_and_left() -> None:
     text = next(path for path in SHIPPED if path.stem == "disc-table").read_text("utf-8")
     table = next(path for path in SHIPPED if path.stem == "disc-table").with_suffix(".csv").read_text("utf-8")
-    (live.Path(live.FOLDER) / "disc-table.csv").write_text(table, "utf-8")
+    (Path(live.FOLDER) / "disc-table.csv").write_text(table, "utf-8")
     assert "not all of these numbers" in live.converted("x", text, "inch")["faults"][0]["text"]
 
 
