@@ -28,7 +28,7 @@ MODULES = {
     for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "controller", "points")
 }
 """Module of each of the core's tables by its word."""
-OF_SOME = ("step", "tolerance", "roller", "for")
+OF_SOME = ("step", "tolerance", "roller", "for", "suffix")
 """Options that some tables have and others have not, see `Form.takes`."""
 
 
@@ -82,6 +82,13 @@ FORMAT = Format(
                 "of controller, whose table it is",
                 default="required for it",
                 choices=("codesys", "codesys-table", "plain"),
+            ),
+            Field(
+                "suffix",
+                Kind.CHOICE,
+                "of points, ending of the file's name; txt and xyz stand apart by blanks",
+                default="csv",
+                choices=("csv", "txt", "xyz"),
             ),
             length("roller", "of lift, diameter of the roller on a stem through the shaft whose lift it is"),
             RECIPE_UNITS,

@@ -96,7 +96,7 @@ class FileRequest:
         plain = (one for one in alike if len(parts) == 1 and not (one.compensation and one.compensation.altered))
         if any(request.compensation or request.units for request in plain):
             parts.append("nominal")
-        return f"{'-'.join(parts)}.{self.format.ending}"
+        return f"{'-'.join(parts)}.{self.own.get('suffix', self.format.ending)}"
 
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
         """Name every file with a cam of that many discs: one for all, or one for each disc."""

@@ -25,7 +25,7 @@ from kin.numeric.places import place_text
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
-from kin.read.formats import format_of
+from kin.read.formats import FORMATS, format_of
 from kin.read.nesting import Chain, scaled
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.judge.intent import Limits, PartIntent, ShaftIntent
     from kin.read.drawing.drawing import Drawing
-    from kin.read.formats import AnySolid, Contents
+    from kin.read.formats import AnySolid, Contents, Format
 
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 SIZE_SHARE = (
@@ -85,7 +85,7 @@ def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm:
         chains = scaled((Chain(contour, pieces=count),), 1.0, mirrored=part.mirrored)
         return [(part, _Read([], tuple(chains), chains, mm))]
 
-    return _verdict(path, read, angles, limits)
+    return _verdict(path, read, angles, limits, FORMATS["csv"])
 
 
 def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits) -> Verdict:
@@ -93,9 +93,18 @@ def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits)
     return _verdict(path, lambda: _of_solids(path, shaft, limits), angles, limits)
 
 
-def _verdict(path: Path, read: Callable[[], list[tuple[PartIntent, _Read]]], angles: int, limits: Limits) -> Verdict:
-    """Judge the surfaces of every part that is read from a file, and what is left between those of one part."""
-    kind = format_of(path)
+def _verdict(
+    path: Path,
+    read: Callable[[], list[tuple[PartIntent, _Read]]],
+    angles: int,
+    limits: Limits,
+    kind: Format | None = None,
+) -> Verdict:
+    """Judge the surfaces of every part that is read from a file, and what is left between those of one part.
+
+    The file is of the `kind`, or of that which its suffix says.
+    """
+    kind = kind or format_of(path)
     if angles < 1:
         raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
     phi = TURN / angles * np.arange(angles, dtype=np.float64)

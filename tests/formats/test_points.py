@@ -48,6 +48,25 @@ def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path
     assert 36 < len(rows) < 2000
 
 
+@pytest.mark.parametrize("suffix", ["txt", "xyz"])
+def test_a_text_has_blanks_between_the_numbers(suffix: str, tmp_path: Path) -> None:
+    report = camgeo.export(written(tmp_path, "flat", f", suffix: {suffix}"), tmp_path / "out")
+    assert report.ok
+    path = tmp_path / "out" / "cam" / f"cam.{suffix}"
+    assert re.fullmatch(r"(\S+ \S+ 0\n)+", path.read_text(encoding="ascii"))
+    contour, _ = spline_of_points(path)
+    assert contour.area == pytest.approx(np.pi * 35**2, rel=1e-4)  # an eccentric
+
+
+def test_points_beside_another_table_have_a_name_of_their_own(tmp_path: Path) -> None:
+    path = tmp_path / "cam.yaml"
+    files = "[csv, {csv: {as: points}}, {csv: {as: points, suffix: xyz}}, {csv: {as: points, suffix: txt}}]"
+    path.write_text(f"{CAMS['flat']}export: {{files: {files}}}\n", encoding="utf-8")
+    camgeo.export(path, tmp_path / "out")
+    made = sorted(item.name for item in (tmp_path / "out" / "cam").glob("cam*"))
+    assert made == ["cam-points.csv", "cam-points.txt", "cam-points.xyz", "cam.csv"]
+
+
 def test_the_error_is_that_of_another_spline(tmp_path: Path) -> None:
     """Scipy's periodic cubic over the lengths of the chords, held against the contour of a fine list."""
     path = written(tmp_path, "stem", ", step: 10", "0.05")

@@ -746,8 +746,8 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             "[{csv: }]",
             [
                 (
-                    "23: export.files[0].csv: nothing given; give a mapping with as, step, for, roller, units and "
-                    "tolerance, or leave the key out"
+                    "23: export.files[0].csv: nothing given; give a mapping with as, step, for, suffix, roller, units "
+                    "and tolerance, or leave the key out"
                 )
             ],
         ),

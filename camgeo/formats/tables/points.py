@@ -83,7 +83,8 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("points"):
         count = _count(job, request, points, tolerance)
         placed, _ = points.at(np.append(np.arange(count) / count, 0.0))
-        row = f"%.{DIGITS}g,%.{DIGITS}g,0\n"
+        mark = "," if path.suffix == ".csv" else " "
+        row = mark.join([f"%.{DIGITS}g", f"%.{DIGITS}g", "0\n"])
         path.write_bytes("".join(row % tuple(one) for one in (placed / recipe.mm + 0.0).tolist()).encode("ascii"))
     with job.clock.stage("judge csv"):
         limits = permitted(recipe, tolerance)
@@ -115,4 +116,4 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
     return fewest
 
 
-FORM = Form(name="points", listed=("as",), curve=True, takes=("step", "tolerance"), check=check, make=make)
+FORM = Form(name="points", listed=("as",), curve=True, takes=("step", "tolerance", "suffix"), check=check, make=make)
