@@ -47,6 +47,7 @@ FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good 
 BESIDE = 1e-13  # rad: from a break, less than which is rounding
 LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
 CORNERS = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
+ALIKE = 6  # decimals of degrees to which dwells are as long as one another: their ends are found to 1e-7
 
 
 @dataclass(frozen=True)
@@ -262,27 +263,36 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
         return None
     nodes = np.append(nodes, nodes[0] + TURN)
 
-    def error(theta: Array, off: float, off1: float) -> Array:
+    def meant(theta: Array) -> tuple[Array, Array, Array]:
         s, s1 = (mechanism.lift.derivatives(theta + k, 2) for k in (0.0, 0.5 * np.pi))
+        return intended.rows(theta), s, s1
+
+    def error(theta: Array, off: float, off1: float, at: tuple[Array, Array, Array]) -> Array:
+        rows, *lifts = at
+        s, s1 = (lift.copy() for lift in lifts)
         s[0] += tolerance * off
         s1[0] += tolerance * off1
-        return intended.error(theta, driven(mechanism, theta, s, s1), intended.rows(theta))
+        return intended.error(theta, driven(mechanism, theta, s, s1), rows)
 
-    output = intended.rows(nodes)[1, 0]
+    at_nodes = meant(nodes)
+    output = at_nodes[0][1, 0]
     try:
         corners = []
         for off, off1 in CORNERS:
-            at = error(nodes, off, off1)
+            at = error(nodes, off, off1, at_nodes)
             found = extremes(
                 nodes[:-1],
                 nodes[1:],
                 at[:, :-1],
                 at[:, 1:],
-                lambda theta, _, off=off, off1=off1: error(theta, off, off1),  # type: ignore[misc]
+                lambda theta, _, off=off, off1=off1: error(theta, off, off1, meant(theta)),  # type: ignore[misc]
                 resolution=_resolution(mechanism, output, at[0]),
             )
             corners.append(found.worst[0])
-        bulge = sum(np.abs(error(nodes, *d)[0] + error(nodes, -d[0], -d[1])[0]) for d in ((1.0, 0.0), (0.0, 1.0)))
+        bulge = sum(
+            np.abs(error(nodes, *off, at_nodes)[0] + error(nodes, -off[0], -off[1], at_nodes)[0])
+            for off in ((1.0, 0.0), (0.0, 1.0))
+        )
     except FrameError:
         return None
     limit = max(corners) + 0.5 * float(np.max(bulge))
@@ -360,14 +370,14 @@ def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
 
 
 def _dwells(ways: list[Resting], band: float, over: Over) -> tuple[DwellFound, ...]:
-    """Return the longest dwell of each way, the shortest of them first."""
+    """Return the longest dwell of each way, the shortest of them first; of those as short the first way's."""
     found = []
     for way in ways:
         dwell = longest_dwell(_output(way, over), band)
         degree = way.mechanism.unit == "deg"
         told = float(np.degrees(band)) if degree else band
         found.append(DwellFound(over, told, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name))
-    return tuple(sorted(found, key=lambda dwell: dwell.length_deg))
+    return tuple(sorted(found, key=lambda dwell: round(dwell.length_deg, ALIKE)))
 
 
 def _output(way: Resting, over: Over) -> Output:

@@ -18,7 +18,7 @@ from kin.linkage.loop import BindingError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.elementary import Jet
 from kin.numeric.errors import CamgeoError
-from kin.numeric.newton import zeros
+from kin.numeric.newton import cubic_inverse, zeros
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -119,8 +119,8 @@ class Resting:
         """
         interval, reduced = _place(self.shaft, shaft, side)
         low, high = self.nodes[interval], self.nodes[interval + 1]
-        share = (reduced - self.shaft[interval]) / (self.shaft[interval + 1] - self.shaft[interval])
-        theta = np.clip(low + np.clip(share, 0.0, 1.0) * (high - low), low, high)
+        ends, rates = (self.shaft[interval], self.shaft[interval + 1]), (self.low[0, 1], self.high[0, 1])
+        theta = cubic_inverse(reduced, ends, (low, high), (rates[0][interval], rates[1][interval]))
 
         def over(theta: Array) -> tuple[Array, Array]:
             value, slope = self.rows(theta, interval)[0, :2]

@@ -25,6 +25,7 @@ BLOCKS = 1024
 ROOF, RIDGE = 16.0, (1.1, 1.25)
 # Shares of the core at which its extremes stand; no two slopes between them are alike, or many windows would be.
 PASSING = (0.001, 0.0025, 0.996, 0.9983)
+ALIKE = 8  # decimals, rad, to which windows are as long as one another; of those the first counts
 
 
 class Output(NamedTuple):
@@ -66,7 +67,7 @@ def longest_dwell(output: Output, band: float) -> Dwell:
     """Find the longest window over which an output stays within the band; it begins in one period from 0."""
     spans = _spans(output, band)
     found = [_within(output, span, band) for span in spans] or [_anywhere(output, band)]
-    best = max(found, key=lambda dwell: dwell.length)
+    best = max(found, key=lambda dwell: round(dwell.length, ALIKE))
     return Dwell(best.start % output.period, best.length, best.least, best.greatest)
 
 

@@ -25,7 +25,7 @@ from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Dwell, dwells
 from kin.numeric.monotone import between, cells, pieces
-from kin.numeric.newton import zeros
+from kin.numeric.newton import cubic_inverse, zeros
 from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
 
@@ -197,11 +197,7 @@ class Mechanism:
         goal = shaft - turns * TURN
         k = np.clip(np.searchsorted(phi, goal, side="right") - 1, 0, len(phi) - 2)
         low, high = theta[k], theta[k + 1]
-        # first guess: the cubic through both ends of theta(phi)
-        h, first, last = phi[k + 1] - phi[k], 1.0 / rate[k], 1.0 / rate[k + 1]
-        x, rise = (goal - phi[k]) / h, high - low
-        x = low + x * (h * first + x * (3 * rise - h * (2 * first + last) + x * (h * (first + last) - 2 * rise)))
-        x = np.clip(x, low, high)
+        x = cubic_inverse(goal, (phi[k], phi[k + 1]), (low, high), (rate[k], rate[k + 1]))
 
         def over(x: Array) -> tuple[Array, Array]:
             at = self.at(x, 1).shaft
