@@ -14,43 +14,54 @@ from camgeo.schema.scalars import MOST_TEXT
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader
     from kin.contour.contour import Contour
-    from kin.law.contacts import Contact, Guide, Touch
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.sources.motion import Motion
 
 ANGLES = 720  # shaft angles at which the follower is felt
 _DIGITS = 3  # beyond that of the reading, to which positions are rounded
 
 DRAWING = Form(
-    "the path of a drawing",
-    "the path of a DXF or SVG, such as old.dxf",
+    "the path of a drawing, or of points",
+    "the path of a DXF or SVG, such as old.dxf, or of a CSV of points x, y round the contour",
     read_path,
     lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
 )
 
 
 class Drawn(NamedTuple):
-    """Closed contours of a drawing about the shaft at its origin, as those of a cam that turns clockwise."""
+    """Closed contours about the shaft at the origin, as those of a cam that turns clockwise; or one pitch curve."""
 
     file: str
     contours: tuple[Contour, ...]
+    pitch: bool = False
 
 
-def read_contours(reader: Reader, file: str, path: str, *, mirrored: bool, unit: float) -> Drawn | None:
-    """Read the contours of a drawing, whose unit, mm, is that of one that states none; notes what is wrong."""
+def read_contours(
+    reader: Reader, file: str, path: str, *, mirrored: bool, unit: float, pitch: bool = False
+) -> Drawn | None:
+    """Read the contours of a drawing or of points, whose unit, mm, is that of a file that states none.
+
+    Notes what is wrong.
+    """
     from kin.read.errors import ReadError
     from kin.read.files import read_drawing
+    from kin.read.points import SUFFIXES, read_contour_points
 
     where = Path(reader.source.file).parent / file
     try:
-        drawing = read_drawing(where, deepest=3, unstated=unit)  # blank, two flanks, bore
+        if where.suffix.lower() in SUFFIXES:
+            contours = read_contour_points(where, unit)
+        else:
+            drawing = read_drawing(where, deepest=3, unstated=unit)  # blank, two flanks, bore
+            contours = [chain.contour for chain in drawing.chains]
     except FileNotFoundError:
         reader.fault_at(path, "the file does not exist", repr(file), "give its path as seen from the recipe's folder")
         return None
     except (OSError, ReadError, ValueError) as error:
-        reader.fault_at(path, f"{file}: {error}", None, "give a DXF or an SVG with the cam's closed contour")
+        remedy = "give a DXF or an SVG with the cam's closed contour, or a CSV of its points x, y"
+        reader.fault_at(path, f"{file}: {error}", None, remedy)
         return None
-    contours = [chain.contour for chain in drawing.chains]
-    return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours))
+    return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours), pitch)
 
 
 @lru_cache(maxsize=8)
@@ -71,12 +82,18 @@ def felt(drawn: Drawn, contact: Contact[Guide, Touch], within: int, reading: flo
     from kin.numeric.records import replace
 
     contours = tracks(drawn.contours)
+    side: Side = -1 if within < 0 else 1
+    if drawn.pitch:
+        if not contact.touch.centred:
+            problem = f"{drawn.file}: a {contact.touch.word} has no centre and so no pitch curve"
+            raise IntentError(f"{problem}; give the cam's contour, without curve: pitch", field)
+        contact, within = contact.place, min(within, 0)  # its centre runs on the one curve that there is
     if len(contours) <= max(within, 0):
         lacking = "no second" if contours else "no"
         raise IntentError(f"{drawn.file}: {lacking} closed contour goes round the origin, where the shaft is", field)
     phi = np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) + math.pi / ANGLES
     try:
-        position = positions(contours[within], contact, -1 if within < 0 else 1, phi)
+        position = positions(contours[within], contact, side, phi)
         position -= position.min()
     except (ContactError, ValueError) as error:
         raise IntentError(f"{drawn.file}: the follower does not run on the contour: {error}", field) from error

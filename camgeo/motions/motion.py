@@ -370,12 +370,23 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
     if not whole_turn:
         return Table(fields, alternatives)
-    contour = Field("contour", Kind.OWN, "drawing of a cam, whose motion under the follower is taken", form=DRAWING)
+    contour = Field(
+        "contour", Kind.OWN, "drawing of a cam, or points, whose motion under the follower is taken", form=DRAWING
+    )
+    curve = Field(
+        "curve",
+        Kind.CHOICE,
+        "what the contour is: the cam's own, or the pitch curve of the follower's centre",
+        default="cam",
+        choices=("cam", "pitch"),
+    )
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
     form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
     inner = _segment(stroke, 360)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
-    return Table((repeat, segments, *fields, contour), (("segments", ("repeat",)), *alternatives, ("contour", ())))
+    return Table(
+        (repeat, segments, *fields, contour, curve), (("segments", ("repeat",)), *alternatives, ("contour", ()))
+    )
 
 
 def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> MotionAsked | None:
@@ -390,6 +401,8 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
     for key in (*(field.name for field in SHEET), "units", "reading", "rest", "suspect"):
         if key in values and f"{path}.table" not in reader.marks and key not in of_contours:
             reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
+    if "curve" in values and "contour" not in values:
+        reader.fault_at(f"{path}.curve", "cannot stand without a contour", None, "leave it out")
     if "units" in values and stroke in reader.angular and "contour" not in values:
         reader.fault_at(f"{path}.units", "the follower swings: its table is in degrees", None, "leave it out")
     if len(reader.errors) > found:
@@ -421,7 +434,8 @@ def _contour(reader: Reader, values: Values, path: str, scale: float) -> Contour
     turned = entries(root).get("rotation") if isinstance(root, Mapping) else None
     mirrored = isinstance(turned, Scalar) and turned.text == "ccw"
     unit = {"mm": 1.0, "inch": MM_PER_INCH, "thou": 1e-3 * MM_PER_INCH}[values.get("units", reader.units)]
-    drawn = read_contours(reader, values["contour"], path, mirrored=mirrored, unit=unit)
+    pitch = values.get("curve") == "pitch"
+    drawn = read_contours(reader, values["contour"], path, mirrored=mirrored, unit=unit, pitch=pitch)
     return None if drawn is None else ContourAsked(drawn, reading, scale)
 
 

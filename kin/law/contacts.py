@@ -59,6 +59,7 @@ class Roller:
 
     radius: float
     word: ClassVar[str] = "roller"
+    centred: ClassVar[bool] = True
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class KnifeEdge:
 
     radius: ClassVar[float] = 0.0
     word: ClassVar[str] = "knife edge"
+    centred: ClassVar[bool] = True
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,7 @@ class Shoe:
 
     radius: float
     word: ClassVar[str] = "shoe"
+    centred: ClassVar[bool] = True
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,7 @@ class Flat:
     nearer: float = 0.0
     radius: ClassVar[float] = 0.0
     word: ClassVar[str] = "flat face"
+    centred: ClassVar[bool] = False
 
 
 Guide: TypeAlias = Translating | Oscillating

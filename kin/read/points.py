@@ -14,8 +14,11 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from kin.contour.contour import Contour
+from kin.contour.intersections import crossings
 from kin.numeric.records import dataclass, replace
 from kin.read.errors import ReadError
+from kin.read.nesting import counter_clockwise
 from kin.read.rows import RowError, read_rows, short
 
 if TYPE_CHECKING:
@@ -100,6 +103,31 @@ def read_points(path: Path) -> PointTable:
     if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
         return _checked(_dmis(text, path), path)
     return _checked(_table(text, path), path)
+
+
+def read_contour_points(path: Path, unit: float) -> list[Contour]:
+    """Read closed contours, counter-clockwise, mm, from points that follow one another round each, as `read_points`.
+
+    Each surface that the file names is one. `unit`, mm, is that of a file that states none. Straight lines join the
+    points. Raises ReadError for points that are no places, and for such as are in no order: their lines cross.
+    """
+    table = read_points(path)
+    if "x" not in table.columns:
+        message = "angles and lifts make no contour; give them as table, or points x, y"
+        raise ReadError("unsupported", message, path)
+    places = np.column_stack([table.columns["x"], table.columns["y"]]) * (table.unit or unit)
+    labels = np.array(table.labels or [""] * len(table))
+    contours = []
+    for label in dict.fromkeys(labels.tolist()):
+        points = places[labels == label]
+        contour = Contour.from_vertices(points[(points != np.roll(points, 1, axis=0)).any(axis=1)])
+        crossing = crossings(contour).point
+        if len(crossing):
+            x, y = (crossing[0] / (table.unit or unit)).tolist()
+            message = f"lines from point to point cross near {x:.6g}, {y:.6g}; give the points in their order"
+            raise ReadError("crossing", f"{message} round the contour", path, (x, y))
+        contours.append(counter_clockwise(contour))
+    return contours
 
 
 def _decoded(data: bytes) -> str:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SMOOTH = ("cycloidal", "polynomial-345", "polynomial-4567")
 UNITS = {"mm": 1.0, "inch": 25.4, "thou": 0.0254}
 ANGLES = {"cam": 360.0, "crank": 720.0, "radians": 2 * math.pi, "turns": 1.0, "percent": 100.0}
-HARMS = ("cut", "twice", "swap", "word", "big", "gap", "empty", "wide", "constant", "same", "noise", "nan")
+HARMS = ("cut", "twice", "swap", "word", "big", "gap", "empty", "wide", "constant", "same", "noise", "nan", "headed")
 SUFFIXES = {"mm": "_mm", "inch": "_in", "thou": "_thou"}
 
 
@@ -90,9 +90,7 @@ def mangled(rng: Random, number: int) -> Attack:
     degrees = np.arange(0.0, 360.0, rng.choice([2, 5, 10, 20]))
     rows = [f"{a:g};{s:.3f}" for a, s in zip(degrees, motion(list(cam.rows), degrees), strict=True)]
     i = rng.randrange(len(rows))
-    harm = rng.choice(
-        ["cut", "twice", "swap", "word", "big", "gap", "empty", "wide", "constant", "same", "noise", "nan"]
-    )
+    harm = rng.choice(HARMS)
     if harm == "cut":
         rows = rows[: i + 1]
     elif harm == "twice":
@@ -113,6 +111,8 @@ def mangled(rng: Random, number: int) -> Attack:
         rows = [rows[i]] * 5
     elif harm == "noise":
         rows = [f"{a:g};{rng.uniform(0, 5):.3f}" for a in degrees]
+    elif harm == "headed":
+        rows = rng.sample(["sep=;", "Cam 7", "deg;lift", "[deg];[mm]", ";mm", "x;1"], rng.randrange(1, 4)) + rows
     keys = [
         f"reading: {rng.choice(['1e-12', '0.001', '0.5', '100', 'auto', '0', '-1'])}",
         f"angle: {rng.choice(['cam', 'crank', 'radians', 'turns', 'percent', 'grad'])}",
@@ -130,14 +130,40 @@ def mangled(rng: Random, number: int) -> Attack:
 
 
 def redrawn(rng: Random, number: int) -> Attack:
-    """A recipe whose motion is a contour that is none, or a drawing of nothing about the shaft."""
+    """A recipe whose motion is a contour that is none, a drawing of nothing about the shaft, or points of any kind."""
     cam = on_a_stem(rng)
-    kind = rng.choice(["svg", "none", "dxf"])
+    name = rng.choice(["old.svg", "missing.svg", "old.dxf", "old.csv", "old.csv"])
     radius, x = round(rng.uniform(1.0, 60.0), 3), round(rng.choice([0.0, rng.uniform(-80.0, 80.0)]), 3)
-    circle = f'<circle cx="{x}" cy="0" r="{radius}"/>' if kind == "svg" else ""
+    circle = f'<circle cx="{x}" cy="0" r="{radius}"/>' if name == "old.svg" else ""
     svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="99mm" height="99mm" viewBox="-50 -50 99 99">{circle}</svg>'
-    name = {"svg": "old.svg", "none": "missing.svg", "dxf": "old.dxf"}[kind]
-    reading = rng.choice(["0.02", "1e-9", "auto", "5"])
-    text = with_motion(cam.text("csv"), f"{{contour: {name}, reading: {reading}}}")
-    files = {"cam.yaml": text.encode(), "old.svg": svg.encode(), "old.dxf": b"0\nEOF\n"}
+    keys = [f"reading: {rng.choice(['0.02', '1e-9', 'auto', '5'])}"]
+    keys += [f"curve: {rng.choice(['cam', 'pitch', 'none'])}"] if rng.random() < 0.5 else []
+    keys += [f"units: {rng.choice([*UNITS])}"] if rng.random() < 0.2 else []
+    text = with_motion(cam.text("csv"), f"{{contour: {name}, {', '.join(keys)}}}")
+    points = round_the_shaft(rng, radius, x)
+    files = {"cam.yaml": text.encode(), "old.svg": svg.encode(), "old.dxf": b"0\nEOF\n", "old.csv": points.encode()}
     return Attack(f"contour {number}", ("check", "cam.yaml", "--json"), files, (0, 1, 2))
+
+
+def round_the_shaft(rng: Random, radius: float, x: float) -> str:
+    """Points of a lobed contour about a place, or of none: out of order, doubled, few, with a word, as lifts."""
+    count, waves, height = rng.choice([20, 36, 90, 360, 1000]), rng.randrange(1, 6), rng.uniform(0.0, 0.4)
+    places = []
+    for k in range(count):
+        angle = 2.0 * math.pi * k / count
+        r = radius * (1.0 + height * math.cos(waves * angle))
+        places.append((x + r * math.cos(angle), r * math.sin(angle)))
+    harm = rng.choice(["", "", "shuffled", "doubled", "again", "word", "lifts", "backwards"])
+    if harm == "shuffled":
+        rng.shuffle(places)
+    elif harm == "doubled":
+        places = [place for place in places for _ in (0, 1)]
+    elif harm == "again":
+        places *= 2
+    elif harm == "backwards":
+        places.reverse()
+    rows = [f"{a:.{rng.randrange(2, 6)}f},{b:.4f}" for a, b in places]
+    if harm == "word":
+        rows[rng.randrange(count)] = "x,1"
+    heading = "angle_deg,lift" if harm == "lifts" else rng.choice(["x,y", "X [mm],Y [mm]", "x_in,y_in", ""])
+    return "\n".join([heading, *rows] if heading else rows)

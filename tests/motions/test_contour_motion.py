@@ -92,6 +92,55 @@ def test_rings_and_grooves_come_back(track, outer, tmp_path):
     assert moved(made)[0] == pytest.approx(moved(cam(MOTION).cam.exact())[0], abs=0.006)
 
 
+def contacts(folder, follower, more="", name="old.csv", **changed):
+    """The places of contact at each degree, as the table of contacts has them, in a file of their own."""
+    text = recipe(MOTION, folder, follower, "{csv: {as: contacts}}", more)
+    assert pipeline.export(text, folder / "out").report["ok"]
+    lines = [line for line in (folder / "out/cam/cam.csv").read_text().splitlines() if not line.startswith("#")]
+    heading, rows = lines[0].split(","), np.array([line.split(",") for line in lines[1:-1]], dtype=float)
+    points = rows[:, [heading.index("x_mm"), heading.index("y_mm")]]
+    np.savetxt(folder / name, points, fmt="%.6f", delimiter=",", **{"header": "x_mm,y_mm", "comments": "", **changed})
+    return text.cam.exact()
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
+@pytest.mark.parametrize("follower", FOLLOWERS)
+def test_points_round_a_contour_become_the_motion_that_they_were_made_of(follower, more, tmp_path):
+    """Straight lines from point to point are some 0.01 mm within the contour."""
+    intended = contacts(tmp_path, follower, more)
+    reading = 0.02 if follower != "arm" else 0.02 * math.degrees(1 / 65)
+    made = recipe(f"{{contour: old.csv, reading: {reading:.6f}}}", tmp_path, follower, more=more).cam.exact()
+    size = 1.0 if follower != "arm" else 1 / 65
+    assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04 * size)
+    assert made.kept.distance <= 0.02 * size
+
+
+@pytest.mark.parametrize("follower", ["roller", "offset", "arm"])
+def test_points_of_a_pitch_curve_give_the_motion_of_the_centre_that_runs_on_it(follower, tmp_path):
+    """The contour of a knife edge is the pitch curve of a roller whose cam is smaller all round by its radius."""
+    edges = {name: value.replace("roller, radius: 8", "knife-edge") for name, value in FOLLOWERS.items()}
+    knife = f"cam: {{kind: disc, base_radius: 48, follower: {edges[follower]}, motion: {MOTION}}}\n"
+    text = f"{knife}part: {{thickness: 8}}\nexport: {{files: [dxf, {{csv: {{as: contacts}}}}]}}\n"
+    assert pipeline.export(load_text(text, tmp_path / "cam.yaml"), tmp_path / "out").report["ok"]
+    intended = recipe(MOTION, tmp_path, follower).cam.exact()
+    reading = 0.02 if follower != "arm" else 0.02 * math.degrees(1 / 65)
+    size = 1.0 if follower != "arm" else 1 / 65
+    for file in ("cam.csv", "cam.dxf"):
+        given = f"{{contour: out/cam/{file}, curve: pitch, reading: {reading:.6f}}}"
+        made = recipe(given, tmp_path, follower).cam.exact()
+        assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04 * size)
+
+
+def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
+    intended = contacts(tmp_path, "roller", header="x,y")
+    text = (tmp_path / "old.csv").read_text().splitlines()
+    rows = [",".join(f"{float(cell) / 25.4:.7f}" for cell in line.split(",")) for line in text[1:]]
+    (tmp_path / "inches.csv").write_text("\n".join(["x;y", *(row.replace(",", ";").replace(".", ",") for row in rows)]))
+    made = recipe("{contour: inches.csv, units: inch, reading: 0.02}", tmp_path, "roller").cam.exact()
+    assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04)
+
+
 @pytest.mark.parametrize(
     ("motion", "message"),
     [
@@ -100,10 +149,19 @@ def test_rings_and_grooves_come_back(track, outer, tmp_path):
         ("{contour: out/cam/cam.dxf}", "a contour shows no digits; give reading beside it, such as reading: 0.02"),
         ("{contour: aside.svg, reading: 0.01}", "aside.svg: no closed contour goes round the origin"),
         ("{contour: out/cam/cam.dxf, reading: 0.01, columns: [1, 2]}", "columns: cannot stand without a table"),
+        ("{contour: mixed.csv, reading: 0.01}", "cross near "),
+        ("{contour: lifts.csv, reading: 0.01}", "angles and lifts make no contour; give them as table, or points x, y"),
+        ("{contour: few.csv, reading: 0.01}", "few.csv: points: 20, and at least 36 are needed"),
+        ("{formula: 1 - cos(t), curve: pitch}", "curve: cannot stand without a contour; leave it out"),
     ],
 )
 def test_what_is_no_contour_is_refused(motion, message, tmp_path):
+    contacts(tmp_path, "roller")
     exported(tmp_path, "roller")
+    heading, *rows = (tmp_path / "old.csv").read_text().splitlines()
+    (tmp_path / "mixed.csv").write_text("\n".join([heading, *rows[::2], *rows[1::2]]))
+    (tmp_path / "few.csv").write_text("\n".join([heading, *rows[:20]]))
+    (tmp_path / "lifts.csv").write_text("\n".join(["angle_deg,lift_mm", *(f"{k},1" for k in range(360))]))
     square = "M 60 60 L 70 60 L 70 70 L 60 70 Z"
     size = 'width="99mm" height="99mm" viewBox="0 0 99 99"'
     aside = f'<svg xmlns="http://www.w3.org/2000/svg" {size}><path d="{square}"/></svg>'
@@ -112,3 +170,11 @@ def test_what_is_no_contour_is_refused(motion, message, tmp_path):
     with pytest.raises(RecipeErrors) as caught:
         pipeline.check(recipe(motion, tmp_path, "roller"))
     assert message in str(caught.value)
+
+
+def test_a_flat_face_has_no_pitch_curve(tmp_path):
+    contacts(tmp_path, "flat")
+    with pytest.raises(
+        RecipeErrors, match=r"old\.csv: a flat face has no centre and so no pitch curve; give the cam's"
+    ):
+        pipeline.check(recipe("{contour: old.csv, curve: pitch, reading: 0.02}", tmp_path, "flat"))
