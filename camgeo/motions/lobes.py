@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.law.sources.cam_card import Asked
+    from kin.law.sources.cam_card import SideCard
     from kin.law.sources.lobe import LobeSide
     from kin.law.sources.motion import Motion
 
@@ -25,7 +25,7 @@ _SIDES = ("opening", "closing")
 
 
 @dataclass(frozen=True)
-class SideGiven:
+class SideShape:
     """One side of a lobe as a recipe gives it, lengths in mm and angles in radians.
 
     `half` and `powers`, or `durations`, pairs of a lift and an angle of the crank, which is `crank` times that of the
@@ -42,7 +42,7 @@ class SideGiven:
 
 
 def lobe_motion(
-    lift: float, sides: tuple[SideGiven, SideGiven], total: float, *, nose: float, around: int | None, field: str
+    lift: float, sides: tuple[SideShape, SideShape], total: float, *, nose: float, around: int | None, field: str
 ) -> Motion:
     """Make the motion of a lobe over `total` rad; raises IntentError for what is none."""
     from kin.law.programme import IntentError
@@ -52,36 +52,38 @@ def lobe_motion(
     from kin.numeric.records import replace
 
     demand_lift(lift, field)
-    opening, closing = (_asked(lift, side, total, field) for side in sides)
+    opening, closing = (_side_card(lift, side, total, field) for side in sides)
     if opening.known is not None and closing.known is not None:
         return lobe_of(opening.known, closing.known, total, nose=nose, around=around, field=field)
     if around != 1 and nose != 0.0:
         raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
     first, second = sides_of_card(lift, opening, closing, 0.5 * total)
     motion = lobe_of(first.side, second.side, total, nose=nose, around=around, field=field)
-    told = {name: _told(*mixture) for name, mixture in zip(_SIDES, (first, second), strict=True) if mixture.members}
+    mixtures = {
+        name: _mixture_words(*mixture) for name, mixture in zip(_SIDES, (first, second), strict=True) if mixture.members
+    }
     if first == second:
-        told = {"either": told["opening"]}
-    sentence = "; ".join(f"{words} on the {name} side" for name, words in told.items())
+        mixtures = {"either": mixtures["opening"]}
+    sentence = "; ".join(f"{words} on the {name} side" for name, words in mixtures.items())
     return replace(motion, kept=Kept(None, 0, (TableRemark("cam-card", sentence.replace("the either", "either")),)))
 
 
-def _asked(lift: float, side: SideGiven, total: float, field: str) -> Asked:
+def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCard:
     """A side as kin takes it: known by its powers, or what its card says."""
-    from kin.law.sources.cam_card import Asked, Crossing
+    from kin.law.sources.cam_card import Crossing, SideCard
     from kin.law.sources.lobe import Ramp, demand_ramp, side_of
 
     ramp = None if side.ramp is None else Ramp(*side.ramp)
     field += side.field
     if side.powers is not None and side.half is not None:
-        return Asked(known=side_of(lift, side.half, side.powers, ramp, total=total, field=field))
+        return SideCard(known=side_of(lift, side.half, side.powers, ramp, total=total, field=field))
     if ramp is not None:
         demand_ramp(lift, ramp, field)
     crossings = tuple(Crossing(at, crank / side.crank) for at, crank in side.durations)
-    return Asked(crossings, side.half, ramp, crank=side.crank, field=field)
+    return SideCard(crossings, side.half, ramp, crank=side.crank, field=field)
 
 
-def _told(members: tuple[tuple[tuple[int, ...], float], ...], side: LobeSide) -> str:
+def _mixture_words(members: tuple[tuple[tuple[int, ...], float], ...], side: LobeSide) -> str:
     """The mixture of a side in words."""
     shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in members)
     return f"the card is met by {shares} over {math.degrees(side.half):.6g} degrees of the cam"
@@ -166,7 +168,7 @@ def _read_durations(
     return tuple(whole) if rows and len(whole) == len(rows) else None
 
 
-def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideGiven, SideGiven] | None:
+def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideShape, SideShape] | None:
     """The two sides of a lobe that has been read; None where one is faulty, and the fault is noted."""
     sides = []
     for name in _SIDES:
@@ -191,7 +193,7 @@ def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideGiven, Side
             return None
         ramp = side.get("ramp")
         sides.append(
-            SideGiven(
+            SideShape(
                 side.get("half"),
                 side.get("powers"),
                 side.get("duration", ()),

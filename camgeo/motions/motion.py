@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.motions.contour_motion import Drawn
-    from camgeo.motions.lobes import SideGiven
+    from camgeo.motions.lobes import SideShape
     from camgeo.motions.segments import MotionSegment
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
@@ -259,7 +259,7 @@ class LobeAsked(MotionAsked):
     """The lobe of a valve train: its lift, mm or rad, its two sides, and the shaft angle of its nose, rad."""
 
     lift: float
-    sides: tuple[SideGiven, SideGiven]
+    sides: tuple[SideShape, SideShape]
     nose: float = 0.0
     scale: float = field(default=1.0, compare=False)
     source: ClassVar[str] = ".lobe"

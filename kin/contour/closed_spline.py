@@ -45,11 +45,11 @@ def _slopes(points: Array, chords: Array) -> Array:
         factors[i] = low[i] / pivot[i - 1]
         pivot[i] -= factors[i] * high[i - 1]
         rows[i] = [a - factors[i] * b for a, b in zip(rows[i], rows[i - 1], strict=True)]
-    found = [[0.0, 0.0, 0.0]] * count
-    found[-1] = [value / pivot[-1] for value in rows[-1]]
+    solved = [[0.0, 0.0, 0.0]] * count
+    solved[-1] = [value / pivot[-1] for value in rows[-1]]
     for i in range(count - 2, 0, -1):
-        found[i] = [(a - high[i] * b) / pivot[i] for a, b in zip(rows[i], found[i + 1], strict=True)]
-    table = np.array(found)
+        solved[i] = [(a - high[i] * b) / pivot[i] for a, b in zip(rows[i], solved[i + 1], strict=True)]
+    table = np.array(solved)
     first = right[0] - low[0] * table[-1, :2] - high[0] * table[1, :2]
     first /= middle[0] + low[0] * table[-1, 2] + high[0] * table[1, 2]
     slopes: Array = table[:, :2] + table[:, 2:] * first

@@ -94,8 +94,8 @@ def read_table(path: Path) -> Table:
     head = [line for line in text.splitlines() if line.startswith("#")]
     join = next((name for name, words in JOINS.items() if any(words in line for line in head)), None)
     if join is None:
-        told = " or ".join(f"`# {words}`" for words in JOINS.values())
-        raise ReadError("unsupported", f"the head does not say how rows are joined: give a line {told}", path)
+        accepted = " or ".join(f"`# {words}`" for words in JOINS.values())
+        raise ReadError("unsupported", f"the head does not say how rows are joined: give a line {accepted}", path)
     names, wanted = _heading(text), 2 if join == "line" else 4
     slave = next((name for name in names if name in SLAVES), "")
     columns = [MASTER, slave or "slave_mm", *(RATES if wanted > 2 else ())]
@@ -110,7 +110,7 @@ def read_table(path: Path) -> Table:
     rows = numbers[:, 1:wanted].T * SLAVES[slave] * np.array([1.0, degree, degree**2])[: wanted - 1, None]
     angle = np.radians(master)
     angle[-1] = TURN
-    stated = [float(found[1]) for line in head if (found := STATED.search(line)) and _is_number(found[1])]
+    stated = [float(match[1]) for line in head if (match := STATED.search(line)) and _is_number(match[1])]
     return Table(JoinedRows(angle, rows, join), SLAVES[slave], min(stated, default=None))
 
 

@@ -39,18 +39,18 @@ class JoinedRows:
     def coefficients(self) -> Array:
         """Of each part the polynomial in the share of it, (6, n - 1), the constant first (Hermite, degree 5)."""
         width, rise = np.diff(self.master), np.diff(self.slave[0])
-        found = np.zeros((_DEGREE + 1, len(width)))
-        found[0] = self.slave[0, :-1]
+        rows = np.zeros((_DEGREE + 1, len(width)))
+        rows[0] = self.slave[0, :-1]
         if self.join == "line":
-            found[1] = rise
-            return found
+            rows[1] = rise
+            return rows
         v, w = self.slave[1, :-1] * width, self.slave[1, 1:] * width
         a, b = self.slave[2, :-1] * width**2, self.slave[2, 1:] * width**2
-        found[1], found[2] = v, 0.5 * a
-        found[3] = 10.0 * rise - 6.0 * v - 4.0 * w - 1.5 * a + 0.5 * b
-        found[4] = -15.0 * rise + 8.0 * v + 7.0 * w + 1.5 * a - b
-        found[5] = 6.0 * rise - 3.0 * (v + w) - 0.5 * (a - b)
-        return found
+        rows[1], rows[2] = v, 0.5 * a
+        rows[3] = 10.0 * rise - 6.0 * v - 4.0 * w - 1.5 * a + 0.5 * b
+        rows[4] = -15.0 * rise + 8.0 * v + 7.0 * w + 1.5 * a - b
+        rows[5] = 6.0 * rise - 3.0 * (v + w) - 0.5 * (a - b)
+        return rows
 
     def position(self, angle: Array) -> Array:
         """The slave's position at angles of the master (n,), rad."""
@@ -74,6 +74,6 @@ class JoinedRows:
         def difference(angle: Array) -> Array:
             return (position(angle) - self.position(angle))[None]
 
-        made = pieces(cells(difference, places, _SHARE * size))
-        (least, low), (greatest, high) = made.least(), made.greatest()
+        followed = pieces(cells(difference, places, _SHARE * size))
+        (least, low), (greatest, high) = followed.least(), followed.greatest()
         return max((abs(least), low), (abs(greatest), high))

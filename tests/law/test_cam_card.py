@@ -11,7 +11,7 @@ from support.cases import examples
 from support.heavy import optimize
 
 from kin.law.programme import IntentError
-from kin.law.sources.cam_card import Asked, Crossing, sides_of_card
+from kin.law.sources.cam_card import Crossing, SideCard, sides_of_card
 from kin.law.sources.lobe import LobeSide, Ramp, coefficients, lobe, lobe_of
 
 LIFT = 9.2
@@ -19,12 +19,12 @@ CARD = ((1.27, 228.0), (0.15, 270.0), (5.08, 140.0))
 HALF_TURN = math.pi
 
 
-def asked(card, crank=4.0, **more):
-    return Asked(tuple(Crossing(lift, math.radians(degrees / crank)) for lift, degrees in card), crank=crank, **more)
+def side_card(card, crank=4.0, **more):
+    return SideCard(tuple(Crossing(lift, math.radians(degrees / crank)) for lift, degrees in card), crank=crank, **more)
 
 
 def solved(card, lift=LIFT, **more):
-    side = asked(card, **more)
+    side = side_card(card, **more)
     return sides_of_card(lift, side, side, HALF_TURN)[0]
 
 
@@ -137,8 +137,8 @@ def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
 
 
 def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
-    opening = asked(((1.27, 112.0), (0.15, 134.0)), 2.0, ramp=Ramp(0.1, 0.01 * math.degrees(1.0)))
-    closing = asked(((1.27, 118.0), (0.2, 138.0)), 2.0)
+    opening = side_card(((1.27, 112.0), (0.15, 134.0)), 2.0, ramp=Ramp(0.1, 0.01 * math.degrees(1.0)))
+    closing = side_card(((1.27, 118.0), (0.2, 138.0)), 2.0)
     first, second = sides_of_card(LIFT, opening, closing, HALF_TURN)
     motion = lobe_of(first.side, second.side)
     for card, way in ((opening, -1.0), (closing, 1.0)):
@@ -149,7 +149,7 @@ def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
 
 def test_a_side_by_its_powers_keeps_its_acceleration_at_the_nose():
     known = LobeSide.of(LIFT, math.radians(66), (2, 8, 14, 20, 26), None)
-    first, second = sides_of_card(LIFT, Asked(known=known), asked(((1.27, 118.0),), 2.0), HALF_TURN)
+    first, second = sides_of_card(LIFT, SideCard(known=known), side_card(((1.27, 118.0),), 2.0), HALF_TURN)
     motion = lobe_of(first.side, second.side, nose=math.pi)
     before, after = (motion.derivatives(math.pi, 2, side)[2, 0] for side in (-1, 1))
     assert before == pytest.approx(after, rel=1e-9)
@@ -158,9 +158,9 @@ def test_a_side_by_its_powers_keeps_its_acceleration_at_the_nose():
 
 def test_sides_whose_noses_do_not_agree_are_refused_with_ones_that_do():
     with pytest.raises(IntentError, match=r"nearest has ([\d.]+); ([\d.]+) degrees") as caught:
-        sides_of_card(LIFT, asked(((1.27, 110.0),), 2.0), asked(((1.27, 60.0),), 2.0), HALF_TURN)
+        sides_of_card(LIFT, side_card(((1.27, 110.0),), 2.0), side_card(((1.27, 60.0),), 2.0), HALF_TURN)
     first, second = map(float, re.search(r"has ([\d.]+); ([\d.]+)", caught.value.message).groups())
-    sides_of_card(LIFT, asked(((1.27, first),), 2.0), asked(((1.27, second),), 2.0), HALF_TURN)
+    sides_of_card(LIFT, side_card(((1.27, first),), 2.0), side_card(((1.27, second),), 2.0), HALF_TURN)
 
 
 @pytest.mark.parametrize(

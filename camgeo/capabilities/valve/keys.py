@@ -109,5 +109,5 @@ def check(values: Values, reader: Reader) -> None:
 
 def build(values: Values) -> Valve | None:
     """Make the valve of values in which there is no fault."""
-    given = values.get("valve")
-    return None if given is None else Valve(given["ratio"], given.get("lash", 0.0))
+    entry = values.get("valve")
+    return None if entry is None else Valve(entry["ratio"], entry.get("lash", 0.0))

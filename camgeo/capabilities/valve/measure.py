@@ -47,20 +47,20 @@ def extremes(valve: Valve, design: Design) -> dict[int, Extreme]:
     def rows(t: Array) -> Array:
         tappet = exact.motion.by_parameter(np.mod(t, TURN), ORDER)
         tappet[0] -= datum
-        made = valve.travel(tappet[0])
-        return np.array([made[1] * tappet[1], made[2] * tappet[1] ** 2 + made[1] * tappet[2]])
+        travel = valve.travel(tappet[0])
+        return np.array([travel[1] * tappet[1], travel[2] * tappet[1] ** 2 + travel[1] * tappet[2]])
 
     breaks = [at + turns * TURN for at in exact.breaks.tolist() for turns in (0.0, 1.0)]
     try:
-        made = cells(rows, between(event.opening, event.closing, breaks), share=SHARE)
+        followed = cells(rows, between(event.opening, event.closing, breaks), share=SHARE)
     except RoughError as error:
         raise EventError(ABRUPT) from error
-    found = {}
+    peaks = {}
     for k in (1, 2):
-        row = pieces(made, k - 1)
+        row = pieces(followed, k - 1)
         value, at = max(row.least(), row.greatest(), key=lambda place: abs(place[0]))
-        found[k] = Extreme(abs(value), degrees(at % TURN))
-    return found
+        peaks[k] = Extreme(abs(value), degrees(at % TURN))
+    return peaks
 
 
 def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
@@ -77,25 +77,25 @@ def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measur
     opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
     motion, slope = design.exact.motion, valve.travel(np.array([valve.follower_lift(lift)]))[1, 0]
     tappet = motion.rows(opening, 1, 1)[1, 0], motion.rows(closing, 1, -1)[1, 0]
-    rate, at = max((abs(float(slope * one)), at) for one, at in zip(tappet, event[1:], strict=True))
+    rate, at = max((abs(float(slope * rate)), at) for rate, at in zip(tappet, event[1:], strict=True))
     return Measured(math.radians(rate), "mm/deg", degrees(at % TURN))
 
 
 def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, Measured]:
     """Measure figures, those at a lift at the one that the recipe's first limit states, or at the usual one."""
-    valve, found = valve_of(recipe, design), dict[str, Measured]()
+    valve, figures = valve_of(recipe, design), dict[str, Measured]()
     for name in names:
         usual = FIGURES[name].at_lift
         if usual is not None:
             lift = next((limit.lift for limit in recipe.limits if limit.figure == name), usual)
-            found[name] = measure_at(recipe, design, name, lift)
+            figures[name] = measure_at(recipe, design, name, lift)
         elif valve is None:
-            found[name] = Measured(None, _UNITS[name], detail="valve is not given")
+            figures[name] = Measured(None, _UNITS[name], detail="valve is not given")
         elif name == LIFT:
-            found[name] = Measured(greatest_lift(valve, design), "mm")
+            figures[name] = Measured(greatest_lift(valve, design), "mm")
         else:
-            found[name] = _peak(valve, design, name)
-    return found
+            figures[name] = _peak(valve, design, name)
+    return figures
 
 
 def greatest_lift(valve: Valve, design: Design) -> float:
@@ -106,7 +106,7 @@ def greatest_lift(valve: Valve, design: Design) -> float:
 
 def _peak(valve: Valve, design: Design, name: str) -> Measured:
     try:
-        found = extremes(valve, design)[1 if name == VELOCITY else 2]
+        peak = extremes(valve, design)[1 if name == VELOCITY else 2]
     except EventError as error:
         return Measured(None, _UNITS[name], detail=str(error))
-    return Measured(found.value, _UNITS[name], found.at_deg)
+    return Measured(peak.value, _UNITS[name], peak.at_deg)

@@ -51,14 +51,14 @@ def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
 
 def _event(valve: Valve, design: Design, lift: float, mm: float) -> dict[str, Any]:
     """When the valve is above a lift: cam angles, and crank degrees in all; None where it does not cross it twice."""
-    told: dict[str, Any] = {"lift": lift / mm, "tappet_lift": valve.follower_lift(lift) / mm}
+    lifts: dict[str, Any] = {"lift": lift / mm, "tappet_lift": valve.follower_lift(lift) / mm}
     try:
         event = valve_event(valve, design, lift)
     except EventError:
-        return {**told, "opens_deg": None, "closes_deg": None, "centre_deg": None, "duration_crank_deg": None}
+        return {**lifts, "opens_deg": None, "closes_deg": None, "centre_deg": None, "duration_crank_deg": None}
     opens, closes = (degrees(angle % TURN) for angle in (event.opening, event.closing))
     return {
-        **told,
+        **lifts,
         "opens_deg": opens,
         "closes_deg": closes,
         "centre_deg": event.centre,
@@ -73,7 +73,7 @@ def panel(report: dict[str, Any]) -> str:
         return ""
     unit = entry["unit"]
     ratio = number(entry["ratio"]) if isinstance(entry["ratio"], float) else "by a table"
-    told = f"Lift {number(entry['lift'])} {unit}, at a ratio {ratio} and a lash of {number(entry['lash'])} {unit}."
+    text = f"Lift {number(entry['lift'])} {unit}, at a ratio {ratio} and a lash of {number(entry['lash'])} {unit}."
     peaks = [
         f"greatest {name} {number(entry[name]['max'])} {entry[name]['unit']} at {number(entry[name]['at_deg'])}°"
         for name in ("velocity", "acceleration")
@@ -85,9 +85,9 @@ def panel(report: dict[str, Any]) -> str:
     ]
     rows = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in cells]
     heads = (f"valve lift, {unit}", f"tappet lift, {unit}", "opens, cam °", "closes, cam °", "duration, crank °")
-    told += f" While it is open: {', '.join(peaks)}." if peaks else ""
+    text += f" While it is open: {', '.join(peaks)}." if peaks else ""
     table = html_table("Valve events", heads, rows)
-    return f'<section aria-labelledby="valve-head"><h2 id="valve-head">Valve</h2><p>{told}</p>{table}</section>'
+    return f'<section aria-labelledby="valve-head"><h2 id="valve-head">Valve</h2><p>{text}</p>{table}</section>'
 
 
 def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
@@ -96,9 +96,9 @@ def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     if valve is None:
         return ()
     rows = valve.rows(design.motion.rows(SHAFT, ORDER)) / recipe.mm
-    unit, made = "in" if recipe.units == "inch" else "mm", []
+    unit, drawn = "in" if recipe.units == "inch" else "mm", []
     for order, title in enumerate(TITLES):
         factor, power, note = per(recipe, order) if order else (1.0, "", "")
         series = (Series(title.lower(), factor * rows[order]),)
-        made.append(Plot(title, unit + power, series, note=note, axis=title.split()[1], holds=(0.0,)))
-    return made
+        drawn.append(Plot(title, unit + power, series, note=note, axis=title.split()[1], holds=(0.0,)))
+    return drawn

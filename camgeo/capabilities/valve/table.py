@@ -32,10 +32,10 @@ def _columns(job: Job, request: FileRequest) -> Columns:
         raise ValueError(f"{recipe.name}: there is no valve")
     shaft = np.linspace(0.0, TURN, recipe.verify.angles + 1)
     tappet = job.design.motion.turn(shaft, ORDER)
-    made = valve.rows(tappet) / recipe.mm
+    lifts = valve.rows(tappet) / recipe.mm
     unit, degrees = "in" if recipe.units == "inch" else "mm", np.linspace(0.0, 360.0, len(shaft))
     names = ("shaft_deg", "crank_deg", f"tappet_{unit}", f"valve_{unit}", "valve_velocity", "valve_acceleration")
-    return names, np.column_stack([degrees, 2.0 * degrees, tappet[0] / recipe.mm, *made])
+    return names, np.column_stack([degrees, 2.0 * degrees, tappet[0] / recipe.mm, *lifts])
 
 
 FORM = Form(name="valve", after="motion", check=_check, make=tabled("valve", _columns))

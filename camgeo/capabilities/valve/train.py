@@ -41,10 +41,10 @@ class Valve:
 
         All are 0 where the valve is on its seat.
         """
-        made = self.travel(tappet[0])
-        lift = made[0] - self.lash
-        velocity = made[1] * tappet[1]
-        acceleration = made[2] * tappet[1] ** 2 + made[1] * tappet[2]
+        travel = self.travel(tappet[0])
+        lift = travel[0] - self.lash
+        velocity = travel[1] * tappet[1]
+        acceleration = travel[2] * tappet[1] ** 2 + travel[1] * tappet[2]
         return np.where(lift > 0.0, np.array([lift, velocity, acceleration]), 0.0)
 
     def follower_lift(self, lift: float) -> float:
@@ -68,8 +68,8 @@ def valve_of(recipe: Recipe, design: Design) -> Valve | None:
     last = valve.ratios[-1][0]
     where = "valve.ratio.table"
     if last < most * (1.0 - _WITHIN):
-        told = f"the table ends at a tappet lift of {last / recipe.mm:.6g}, the tappet lifts {most / recipe.mm:.6g}"
-        raise recipe.error(where, told, None, f"give rows up to {most / recipe.mm:.6g} or more")
+        problem = f"the table ends at a tappet lift of {last / recipe.mm:.6g}, the tappet lifts {most / recipe.mm:.6g}"
+        raise recipe.error(where, problem, None, f"give rows up to {most / recipe.mm:.6g} or more")
     slope = valve.travel(np.linspace(0.0, min(most, last), _LOOKS))[1]
     if slope.min() <= 0.0:
         raise recipe.error(where, "the valve falls while the tappet rises", None, "give ratios that fall less steeply")
@@ -80,8 +80,8 @@ def tappet_lift(design: Design) -> float:
     """Greatest lift of the tappet, mm, from its lowest place."""
     from camgeo.measures.lobe import monotone
 
-    made = monotone(design.exact)
-    return made.greatest()[0] - made.least()[0]
+    lift = monotone(design.exact)
+    return lift.greatest()[0] - lift.least()[0]
 
 
 @lru_cache(maxsize=8)

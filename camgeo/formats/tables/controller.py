@@ -107,7 +107,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("judge csv"):
         checks = drive_checks(path, gauge, limits)
     file = FileResult(path, request, units=recipe.mm)
-    return Made((file,), tuple(about(one, path.name) for one in checks))
+    return Made((file,), tuple(about(check, path.name) for check in checks))
 
 
 class _Rows:

@@ -85,7 +85,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
         placed, _ = points.at(np.append(np.arange(count) / count, 0.0))
         mark = "," if path.suffix == ".csv" else " "
         row = mark.join([f"%.{DIGITS}g", f"%.{DIGITS}g", "0\n"])
-        path.write_bytes("".join(row % tuple(one) for one in (placed / recipe.mm + 0.0).tolist()).encode("ascii"))
+        path.write_bytes("".join(row % tuple(point) for point in (placed / recipe.mm + 0.0).tolist()).encode("ascii"))
     with job.clock.stage("judge csv"):
         limits = permitted(recipe, tolerance)
         verdict = verify_points(path, intended(recipe, job.design), recipe.verify.angles, limits, recipe.mm)

@@ -52,7 +52,7 @@ class Crossing(NamedTuple):
     angle: float
 
 
-class Asked(NamedTuple):
+class SideCard(NamedTuple):
     """One side of a lobe as a card gives it; `half` rad where that is given too, or the side itself where it is known.
 
     `crank` is degrees of the crank by degrees of the cam from the nose: 4 where a duration is that of both sides, 2 of
@@ -138,15 +138,15 @@ class _Programme(NamedTuple):
     """
 
     families: tuple[_Family, ...]
-    asked: tuple[Asked, ...]
+    cards: tuple[SideCard, ...]
     nose: float | None
     within: float = 0.0
 
     def missed(self) -> tuple[float, list[Array]]:
         """By how much the rows are missed at best, 0 where they can be met, and the weights of each side that do."""
         rows, right = self._rows()
-        found = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
-        return found.missed, self._weights(found.x)
+        solution = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
+        return solution.missed, self._weights(solution.x)
 
     def least_nose(self, sign: float) -> float:
         """Least acceleration at the nose, by rad^2, of the lift, times `sign`; infinite where rows cannot be met."""
@@ -175,18 +175,18 @@ class _Programme(NamedTuple):
             )
             cost = np.zeros(whole.shape[1])
             cost[rows.shape[1]] = 1.0
-            found = minimise(cost, whole, np.concatenate([right, np.zeros(count)]), _EXACT)
-            if not math.isfinite(found.value):
+            solution = minimise(cost, whole, np.concatenate([right, np.zeros(count)]), _EXACT)
+            if not math.isfinite(solution.value):
                 return math.inf, []
-            peaks = bends @ found.x[: rows.shape[1]]
+            peaks = bends @ solution.x[: rows.shape[1]]
             highest = [int(i) for i in peaks.argsort()[-4:]]
-            new = [i for i in highest if peaks[i] > found.value * size.min() * (1.0 + _CLOSE) and i not in cuts]
+            new = [i for i in highest if peaks[i] > solution.value * size.min() * (1.0 + _CLOSE) and i not in cuts]
             if not new:
                 break
             cuts += new
-        level = found.value * size.min()
+        level = solution.value * size.min()
         cuts[:] = [i for i in cuts if peaks[i] > _ACTIVE * level]
-        return float(peaks.max()), self._weights(self._exact(found.x, rows, right))
+        return float(peaks.max()), self._weights(self._exact(solution.x, rows, right))
 
     @staticmethod
     def _exact(x: Array, rows: Array, right: Array) -> Array:
@@ -210,19 +210,19 @@ class _Programme(NamedTuple):
     def _rows(self) -> tuple[Array, Array]:
         """Rows and right sides: weights that sum to 1, crossings, one acceleration at the nose."""
         size = sum(len(family.chosen) for family in self.families)
-        slack = 0 if self.within == 0.0 else 2 * sum(len(asked.crossings) for asked in self.asked)
+        slack = 0 if self.within == 0.0 else 2 * sum(len(card.crossings) for card in self.cards)
         rows: list[Array] = []
         right: list[float] = []
         start, used = 0, size
-        for family, asked in zip(self.families, self.asked, strict=True):
+        for family, card in zip(self.families, self.cards, strict=True):
             here = slice(start, start + len(family.chosen))
             start = here.stop
             row = np.zeros(size + slack)
             row[here] = 1.0
             rows.append(row)
             right.append(1.0)
-            for lift, angle in asked.crossings:
-                off = math.radians(self.within / asked.crank)
+            for lift, angle in card.crossings:
+                off = math.radians(self.within / card.crank)
                 ways = ((0.0, 0.0),) if off == 0.0 else ((-off, -1.0), (off, 1.0))
                 for shift, sign in ways:
                     row = np.zeros(size + slack)
@@ -251,7 +251,7 @@ class _Programme(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def sides_of_card(lift: float, opening: Asked, closing: Asked, most: float) -> tuple[Mixture, Mixture]:
+def sides_of_card(lift: float, opening: SideCard, closing: SideCard, most: float) -> tuple[Mixture, Mixture]:
     """The sides of a lobe whose crossings are those of its card, with the least peak acceleration there is.
 
     `most` rad is the longest a side may be, its ramp included. Sides that are alike are mirrored; of others one that is
@@ -259,25 +259,25 @@ def sides_of_card(lift: float, opening: Asked, closing: Asked, most: float) -> t
     the least to about a thousandth. Raises IntentError where no mixture meets the card, with the nearest: that whose
     greatest difference is the least.
     """
-    sides = [opening] if opening == closing else [asked for asked in (opening, closing) if asked.known is None]
-    known = next((asked.known for asked in (opening, closing) if asked.known is not None), None)
-    for asked in sides:
-        _demand_order(lift, asked, most)
+    sides = [opening] if opening == closing else [card for card in (opening, closing) if card.known is None]
+    known = next((card.known for card in (opening, closing) if card.known is not None), None)
+    for card in sides:
+        _demand_order(lift, card, most)
     nose = None if known is None else _at_nose(known) / lift
     solved = _solved(lift, sides, nose, most)
     if solved is None:
         raise _no_card(lift, sides, nose, most)
-    made = [_mixture(family, asked, weights) for asked, (family, weights) in zip(sides, solved, strict=True)]
+    mixtures = [_mixture(family, card, weights) for card, (family, weights) in zip(sides, solved, strict=True)]
     if opening == closing:
-        return made[0], made[0]
-    others = iter(made)
-    first, second = (
-        Mixture((), asked.known) if asked.known is not None else next(others) for asked in (opening, closing)
-    )
+        return mixtures[0], mixtures[0]
+    others = iter(mixtures)
+    first, second = (Mixture((), card.known) if card.known is not None else next(others) for card in (opening, closing))
     return first, second
 
 
-def _solved(lift: float, sides: Sequence[Asked], nose: float | None, most: float) -> list[tuple[_Family, Array]] | None:
+def _solved(
+    lift: float, sides: Sequence[SideCard], nose: float | None, most: float
+) -> list[tuple[_Family, Array]] | None:
     """The mixtures of least peak acceleration that meet the sides' crossings; None where none do.
 
     Each side has the angle that is best of it alone; where the sides then have no acceleration at the nose in common,
@@ -285,39 +285,39 @@ def _solved(lift: float, sides: Sequence[Asked], nose: float | None, most: float
     """
 
     def tried(level: float | None) -> list[tuple[_Family, Array]] | None:
-        halves = [_search(lift, asked, level, most) for asked in sides]
+        halves = [_search(lift, card, level, most) for card in sides]
         programme = _programme(lift, sides, halves, nose)
         peak, weights = programme.least_peak(_first_cuts(len(sides)))
         return list(zip(programme.families, weights, strict=True)) if math.isfinite(peak) else None
 
-    found = tried(nose)
-    if found is None and len(sides) > 1 and (level := _common_nose(lift, sides, most, 0.0)) is not None:
+    solved = tried(nose)
+    if solved is None and len(sides) > 1 and (level := _common_nose(lift, sides, most, 0.0)) is not None:
         return tried(level)
-    return found
+    return solved
 
 
-def _demand_order(lift: float, asked: Asked, most: float) -> None:
+def _demand_order(lift: float, card: SideCard, most: float) -> None:
     """Raise IntentError for crossings that no lobe has."""
-    foot = 0.0 if asked.ramp is None else asked.ramp.height
-    left = most - (0.0 if asked.ramp is None else asked.ramp.over)
+    foot = 0.0 if card.ramp is None else card.ramp.height
+    left = most - (0.0 if card.ramp is None else card.ramp.over)
     if left <= 0.0:
         raise IntentError(
-            "the ramp leaves nothing of the turn; give it a greater velocity", f"{asked.field}.ramp.velocity"
+            "the ramp leaves nothing of the turn; give it a greater velocity", f"{card.field}.ramp.velocity"
         )
     before: Crossing | None = None
-    for i, crossing in sorted(enumerate(asked.crossings), key=lambda item: item[1]):
-        field = f"{asked.field}.duration[{i}]"
+    for i, crossing in sorted(enumerate(card.crossings), key=lambda item: item[1]):
+        field = f"{card.field}.duration[{i}]"
         if not foot < crossing.lift < lift:
             above = "the ramp's height" if foot else "0"
             raise IntentError(f"a lift of a card lies between {above} and the lift of the lobe", f"{field}.at_lift")
         if before is not None and not (before.lift < crossing.lift and before.angle > crossing.angle):
             raise IntentError("a card has shorter durations at greater lifts", f"{field}.degrees")
-        if not crossing.angle < (left if asked.half is None else min(asked.half, left)):
-            longest = "`half` and the turn leave" if asked.half is not None else "the turn leaves"
+        if not crossing.angle < (left if card.half is None else min(card.half, left)):
+            longest = "`half` and the turn leave" if card.half is not None else "the turn leaves"
             raise IntentError(f"longer than {longest}, with the ramp", f"{field}.degrees")
         before = crossing
-    if asked.half is not None and not asked.half < left:
-        raise IntentError("`half` and the ramp are longer than the turn leaves", f"{asked.field}.half")
+    if card.half is not None and not card.half < left:
+        raise IntentError("`half` and the ramp are longer than the turn leaves", f"{card.field}.half")
 
 
 def _at_nose(side: LobeSide) -> float:
@@ -329,9 +329,9 @@ def _at_nose(side: LobeSide) -> float:
 
 
 def _programme(
-    lift: float, sides: Sequence[Asked], halves: Sequence[float], nose: float | None, within: float = 0.0
+    lift: float, sides: Sequence[SideCard], halves: Sequence[float], nose: float | None, within: float = 0.0
 ) -> _Programme:
-    families = tuple(_family(lift, half, asked.ramp) for asked, half in zip(sides, halves, strict=True))
+    families = tuple(_family(lift, half, card.ramp) for card, half in zip(sides, halves, strict=True))
     return _Programme(families, tuple(sides), nose, within)
 
 
@@ -340,7 +340,7 @@ def _first_cuts(sides: int) -> list[int]:
     return list(range(0, 2 * sides * (_LOOKS - 1), _LOOKS // 8))
 
 
-def _search(lift: float, asked: Asked, nose: float | None, most: float, within: float | None = None) -> float:
+def _search(lift: float, card: SideCard, nose: float | None, most: float, within: float | None = None) -> float:
     """The angle of a side that has the least peak acceleration; `within` degrees of the crank, one that meets its rows.
 
     Of a side that none meets it is the one that misses by the least.
@@ -348,25 +348,25 @@ def _search(lift: float, asked: Asked, nose: float | None, most: float, within: 
     cuts = _first_cuts(1)
 
     def merit(half: float) -> tuple[float, float]:
-        programme = _programme(lift, [asked], [half], nose, within or 0.0)
+        programme = _programme(lift, [card], [half], nose, within or 0.0)
         if within is None:
             peak, _ = programme.least_peak(cuts)
             return (0.0, peak) if math.isfinite(peak) else (programme.missed()[0], peak)
         return programme.missed()[0], 0.0
 
-    return _best(_angles(asked, most, within or 0.0), merit)
+    return _best(_angles(card, most, within or 0.0), merit)
 
 
-def _common_nose(lift: float, sides: Sequence[Asked], most: float, within: float) -> float | None:
+def _common_nose(lift: float, sides: Sequence[SideCard], most: float, within: float) -> float | None:
     """An acceleration at the nose, by rad^2, of the lift, that two sides can have, each over an angle of its own.
 
     It is the middle of what both reach; None where they have none in common.
     """
     least, greatest = -math.inf, math.inf
-    for asked in sides:
+    for card in sides:
         reach: list[float] = []
-        for half in _angles(asked, most, within):
-            programme = _programme(lift, [asked], [half], None, within)
+        for half in _angles(card, most, within):
+            programme = _programme(lift, [card], [half], None, within)
             reach += (value for sign in (1.0, -1.0) if math.isfinite(value := sign * programme.least_nose(sign)))
         if not reach:
             return None
@@ -374,12 +374,12 @@ def _common_nose(lift: float, sides: Sequence[Asked], most: float, within: float
     return 0.5 * (least + greatest) if least <= greatest else None
 
 
-def _angles(asked: Asked, most: float, within: float) -> list[float]:
+def _angles(card: SideCard, most: float, within: float) -> list[float]:
     """Angles of a side to be tried first, from the least to the greatest."""
-    if asked.half is not None:
-        return [asked.half]
-    left = most - (0.0 if asked.ramp is None else asked.ramp.over)
-    least = max(crossing.angle for crossing in asked.crossings) - math.radians(within / asked.crank)
+    if card.half is not None:
+        return [card.half]
+    left = most - (0.0 if card.ramp is None else card.ramp.over)
+    least = max(crossing.angle for crossing in card.crossings) - math.radians(within / card.crank)
     least = max(least, _SHORTEST * left)
     # evenly in the logarithm of what lies beyond the last crossing
     low, high = math.log(2e-3 * least), math.log((left - least) * (1.0 - 1e-9))
@@ -390,12 +390,12 @@ def _best(angles: Sequence[float], merit: Callable[[float], tuple[float, float]]
     """The angle of least merit: the best that is tried, refined by a golden section between its neighbours."""
     if len(angles) == 1:
         return angles[0]
-    found = [merit(angle) for angle in angles]
-    i = min(range(len(angles)), key=found.__getitem__)
-    if found[i] == (0.0, 0.0):
+    merits = [merit(angle) for angle in angles]
+    i = min(range(len(angles)), key=merits.__getitem__)
+    if merits[i] == (0.0, 0.0):
         return angles[i]
     low, high = angles[max(i - 1, 0)], angles[min(i + 1, len(angles) - 1)]
-    best = found[i], angles[i]
+    best = merits[i], angles[i]
     inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
     values = [merit(x) for x in inner]
     for _ in range(_REFINED):
@@ -411,19 +411,19 @@ def _best(angles: Sequence[float], merit: Callable[[float], tuple[float, float]]
     return min(best, *zip(values, inner, strict=True))[1]
 
 
-def _mixture(family: _Family, asked: Asked, weights: Array) -> Mixture:
+def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
     """The side of a mixture; its weights are worked out again of the members as they are made."""
     used = np.flatnonzero(weights > _LEAST_WEIGHT)
     members = [_members()[family.chosen[i]] for i in used]
     share = weights[used] / math.fsum(weights[used].tolist())
-    sides = [LobeSide.of(family.lift, family.half, powers, asked.ramp) for powers in members]
+    sides = [LobeSide.of(family.lift, family.half, powers, card.ramp) for powers in members]
     order = np.argsort(-share, kind="stable")
     flank = Flank.mixed([side.flank for side in sides], share.tolist())
     side = sides[0]._replace(flank=flank)
     return Mixture(tuple((members[i], float(share[i])) for i in order), side)
 
 
-def _no_card(lift: float, sides: Sequence[Asked], nose: float | None, most: float) -> IntentError:
+def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: float) -> IntentError:
     """The error of a card that none meets, with the nearest one: the least greatest difference in degrees."""
     low, high = 0.0, 1.0
     while not _met(lift, sides, nose, most, high) and high < _FARTHEST:
@@ -432,33 +432,33 @@ def _no_card(lift: float, sides: Sequence[Asked], nose: float | None, most: floa
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _met(lift, sides, nose, most, middle) else (middle, high)
     near = _nearest(lift, sides, nose, most, high)
-    field = f"{next(asked for asked in sides if asked.crossings).field}.duration"
+    field = f"{next(card for card in sides if card.crossings).field}.duration"
     if near is None:
         return IntentError("no lobe of the family is above these lifts for so long; give fewer durations", field)
-    told = "; ".join(", ".join(f"{_crank(asked, crossing):.2f}" for crossing in asked.crossings) for asked in near)
+    degrees = "; ".join(", ".join(f"{_crank(card, crossing):.2f}" for crossing in card.crossings) for card in near)
     off = max(
-        abs(_crank(asked, crossing) - _crank(asked, meant))
-        for asked, own in zip(near, sides, strict=True)
-        for crossing, meant in zip(asked.crossings, own.crossings, strict=True)
+        abs(_crank(card, crossing) - _crank(card, meant))
+        for card, own in zip(near, sides, strict=True)
+        for crossing, meant in zip(card.crossings, own.crossings, strict=True)
     )
     return IntentError(
-        f"no lobe of the family is above these lifts for so long; the nearest has {told} degrees in their order, "
+        f"no lobe of the family is above these lifts for so long; the nearest has {degrees} degrees in their order, "
         f"{off:.3g} off: give those",
         field,
     )
 
 
-def _crank(asked: Asked, crossing: Crossing) -> float:
-    return asked.crank * math.degrees(crossing.angle)
+def _crank(card: SideCard, crossing: Crossing) -> float:
+    return card.crank * math.degrees(crossing.angle)
 
 
-def _met(lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float) -> bool:
+def _met(lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float) -> bool:
     """Whether mixtures meet all crossings within so many degrees of the crank."""
     return _weights_within(lift, sides, nose, most, within) is not None
 
 
 def _weights_within(
-    lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float
+    lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float
 ) -> list[tuple[_Family, Array]] | None:
     """Mixtures that meet all crossings within so many degrees of the crank; None where there are none."""
     if len(sides) > 1:
@@ -466,8 +466,8 @@ def _weights_within(
         if nose is None:
             return None
     mixtures = []
-    for asked in sides:
-        programme = _programme(lift, [asked], [_search(lift, asked, nose, most, within)], nose, within)
+    for card in sides:
+        programme = _programme(lift, [card], [_search(lift, card, nose, most, within)], nose, within)
         missed, (weights,) = programme.missed()
         if missed > 0.0:
             return None
@@ -475,7 +475,9 @@ def _weights_within(
     return mixtures
 
 
-def _nearest(lift: float, sides: Sequence[Asked], nose: float | None, most: float, within: float) -> list[Asked] | None:
+def _nearest(
+    lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float
+) -> list[SideCard] | None:
     """The card of a mixture that is off by no more than about `within` degrees of the crank, in round numbers; or None.
 
     What is nearest lies on the border of all that can be met. So much of every other member is added that the card in
@@ -486,15 +488,15 @@ def _nearest(lift: float, sides: Sequence[Asked], nose: float | None, most: floa
         return None
     for share in (2.0**-k for k in range(_NEAREST, 1, -1)):
         near = []
-        for asked, (family, own) in zip(sides, mixtures, strict=True):
+        for card, (family, own) in zip(sides, mixtures, strict=True):
             mixed = (1.0 - share) * own + share / len(own)
-            angles = [_angle_at(family, mixed, crossing.lift) for crossing in asked.crossings]
-            crank = [round(asked.crank * math.degrees(angle) / _DEGREES) * _DEGREES for angle in angles]
+            angles = [_angle_at(family, mixed, crossing.lift) for crossing in card.crossings]
+            crank = [round(card.crank * math.degrees(angle) / _DEGREES) * _DEGREES for angle in angles]
             crossings = tuple(
-                Crossing(crossing.lift, math.radians(degrees / asked.crank))
-                for crossing, degrees in zip(asked.crossings, crank, strict=True)
+                Crossing(crossing.lift, math.radians(degrees / card.crank))
+                for crossing, degrees in zip(card.crossings, crank, strict=True)
             )
-            near.append(asked._replace(crossings=crossings))
+            near.append(card._replace(crossings=crossings))
         if _solved(lift, near, nose, most) is not None:
             return near
     return None
