@@ -56,6 +56,7 @@ __all__ = [
     "assert_motion",
     "assert_no_undercut",
     "assert_recipe",
+    "assert_verified",
     "assert_watertight",
 ]
 
@@ -293,6 +294,26 @@ def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN40
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
     told: Entry = dict(report)
     _all_hold(told["checks"], told, recipe, recipe.name)
+    return report
+
+
+@_ending_here
+def assert_verified(
+    recipe: OrderSource,
+    path: AnyPath,
+    *paths: AnyPath,
+    **options: Any,  # noqa: ANN401 - those of camgeo.verify
+) -> Report:
+    """Assert that every check of `camgeo.verify` holds of files of any kind that it takes, as of points of a part.
+
+    Returns its report.
+    """
+    from camgeo import verify
+
+    recipe = order_of(recipe)
+    report = verify(recipe, path, *paths, **options)
+    told: Entry = dict(report)
+    _all_hold(told["checks"], told, recipe, ", ".join(str(each) for each in (path, *paths)))
     return report
 
 

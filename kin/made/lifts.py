@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.contour.arcs import dot, left, unit
 from kin.follower.follower import follower_of
-from kin.law.contacts import KnifeEdge, Roller
+from kin.law.contacts import Flat, Translating
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.made.metal import Metal
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kin.follower.base import Follower
-    from kin.law.contacts import Side
+    from kin.law.contacts import Side, Touch
     from kin.numeric.arrays import Array
 
     Exact = Callable[[Array], tuple[Array, Array]]  # shaft angles: what the exact cam gives the probe, and where
@@ -47,25 +48,25 @@ class Lifts(NamedTuple):
     zero: float
 
 
-def probe_of(follower: Follower, side: Side, radius: float | None) -> Follower:
-    """The follower with a roller of another radius, mm, on its guide; itself for None."""
-    if radius is None:
+def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
+    """The follower with another touch on its guide; itself for None."""
+    if touch is None:
         return follower
     (contact,) = follower.contacts
-    touch = Roller(radius) if radius else KnifeEdge()
     still = Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN)
     return follower_of([replace(contact.away_from(side), touch=touch)], still, side)
 
 
 def points_of_lifts(
-    follower: Follower, side: Side, shaft: Array, lift: Array, radius: float | None = None, *, aligned: bool = False
+    follower: Follower, side: Side, shaft: Array, lift: Array, touch: Touch | None = None, *, aligned: bool = False
 ) -> Lifts:
     """Make points of lifts (n,), mm or rad, at shaft angles (n,), rad, of a follower with one contact.
 
-    `radius` is that of the probe's roller, None for the follower's own. `aligned` lets the zero of the shaft angle be
-    found. Raises UnlikePointsError for readings that are far off, saying what they look like.
+    `touch` is that of the probe, None for the follower's own. `aligned` lets the zero of the shaft angle be
+    found. Raises UnlikePointsError for readings that are far off, saying what they look like, and where the contact
+    would leave the probe's face.
     """
-    probe = probe_of(follower, side, radius)
+    probe = probe_of(follower, side, touch)
 
     def exact(angle: Array, raised: float = 0.0) -> tuple[Array, Array]:
         metal = Metal.of(follower, side, lambda t: np.stack([np.full_like(t, raised), np.zeros_like(t)]), gauge=probe)
@@ -79,8 +80,24 @@ def points_of_lifts(
     _demand_alike(exact, shaft, lift, off, aligned=aligned)
     gain = (exact(shaft + turn, RAISED)[0] - exact(shaft + turn, -RAISED)[0]) / (2.0 * RAISED)
     frame = follower.envelope.frames(places)
+    if touch is not None:
+        _demand_on_face(probe, frame.points, shaft + turn)
     metal = frame.points + (side * off / gain)[:, None] * frame.normals
     return Lifts(SurfacePoints(follower, side, metal), turn, zero)
+
+
+def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
+    """Raise UnlikePointsError where points (n, 2) touched at shaft angles (n,) lie beyond a probe's face."""
+    (contact,) = probe.contacts
+    if not isinstance(contact.touch, Flat) or contact.touch.width is None or not isinstance(contact.guide, Translating):
+        return
+    across = dot(points, left(unit(shaft + contact.turned))) - contact.guide.offset
+    farthest = float(np.abs(across).max())
+    if farthest > 0.5 * contact.touch.width:
+        raise UnlikePointsError(
+            f"the contact would leave the probe's face, {contact.touch.width:.6g} mm wide: it goes {farthest:.4g} mm "
+            f"from its middle; the face has to be {2.0 * farthest:.4g} mm wide"
+        )
 
 
 def _turn(exact: Exact, shaft: Array, lift: Array) -> float:

@@ -58,6 +58,8 @@ OPTIONS = (
     ["--as", "measured"],
     ["--out", "out"],
     ["--out", "cam.yaml"],
+    ["--probe-face", "20"],
+    ["--probe-face", "0"],
     ["-v"],
     ["--json"],
 )

@@ -119,7 +119,7 @@ def _points(recipe: Recipe, design: Design, file: PointFile, place: int) -> Poin
     """Points of a file, which is the `place`-th of its run."""
     path = Path(recipe.path).parent / file.file
     try:
-        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.units), place)
+        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.face, file.units), place)
     except CallError as error:
         faults = [fault.removeprefix(f"{escaped(str(path))}: ") for fault in error.faults]
         raise CallError(*(f"{escaped(file.file)}: {fault}" for fault in faults)) from error

@@ -10,6 +10,7 @@ from camgeo.capabilities.made.reading import OnSurface, averaged, disc_of, label
 from camgeo.common.errors import CallError
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
+from kin.law.contacts import Flat, KnifeEdge, Roller
 from kin.made.points import Placing, demand_alike, demand_round, settled, turned_at
 from kin.numeric.records import dataclass, replace
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
+    from kin.law.contacts import Touch
     from kin.read.points import PointTable
 
 BORE = 0.05  # of its diameter: points so near to it are on the bore
@@ -76,6 +78,8 @@ def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Pr
     if any(table.measured == "lift" for table in tables):
         lifts, placed = _of_lifts(parts, tables, scale, probing)
         return Points((_disc(recipe, parts[0], placed, ""),), lifts, tuple(remarks), scale)
+    if probing.face is not None:
+        raise CallError("a face is of an indicator, and these are places: leave it out; a ball has a radius")
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
     for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
         for disc, rows in _by_disc(parts, table, path, first + place):
@@ -154,7 +158,14 @@ def _of_lifts(
     if not swings and any(table.degrees for table in tables):
         raise CallError("its lifts are in degrees, and the follower of this cam does not swing")
     lift = np.radians(lift) if swings else lift * scale
-    lifts = points_of_lifts(surface.gauge, surface.side, shaft, lift, probing.ball, aligned=bool(probing.align))
+    touch: Touch | None = None
+    if probing.face is not None:
+        if swings or surface.side < 0:
+            raise CallError("an indicator with a flat face is one on the line of a stem, outside the cam")
+        touch = Flat(width=probing.face)
+    elif probing.ball is not None:
+        touch = Roller(probing.ball) if probing.ball else KnifeEdge()
+    lifts = points_of_lifts(surface.gauge, surface.side, shaft, lift, touch, aligned=bool(probing.align))
     files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
     lines = np.concatenate([table.lines for table in tables])
     return (lifts.zero, lifts.turn), [OnSurface(surface, lifts.points, files, lines, len(lines))]

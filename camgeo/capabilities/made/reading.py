@@ -50,11 +50,13 @@ class Probing:
 
     align   unknowns that are placed by least squares before all else: of g, x, y
     ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    face    width of an indicator's flat face, mm
     units   mm in a unit of files whose headings state none; None for that of the recipe
     """
 
     align: str = ""
     ball: float | None = None
+    face: float | None = None
     units: float | None = None
 
 
@@ -98,6 +100,9 @@ class Call:
         if align not in ALIGN:
             faults.append(f"--align: one of {', '.join(ALIGN)}, not {spelled(align)}")
         ball = length("probe_radius", options["probe_radius"]) if "probe_radius" in options else None
+        face = length("probe_face", options["probe_face"]) if "probe_face" in options else None
+        if face is not None and ball is not None:
+            faults.append("--probe-face: a probe has a face or a radius: leave one of them out")
         error = length("probe_error", options["probe_error"]) if "probe_error" in options else None
         axes = None
         if "axes_error" in options:
@@ -126,7 +131,7 @@ class Call:
             faults.append("--out: an empty name")
         if faults:
             raise CallError(*faults)
-        return Call(Probing(ALIGN[align], ball, units), error, axes, spans, None if out is None else str(out))
+        return Call(Probing(ALIGN[align], ball, face, units), error, axes, spans, None if out is None else str(out))
 
 
 @dataclass(frozen=True, eq=False)

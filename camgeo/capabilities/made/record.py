@@ -27,6 +27,7 @@ OPTIONS = {
         choices=("none", "rotation", "best-fit"),
     ),
     "probe_radius": CallOption("points are centres of a ball of this radius; of a lift, that of its roller", "R"),
+    "probe_face": CallOption("of a lift, the indicator has a flat face of this width on the stem's line", "W"),
     "probe_error": CallOption("expanded uncertainty (k = 2) of a point along its normal", "U"),
     "axes_error": CallOption("that of the part's axes: a length and an angle in degrees, 0.005,0.02", "L,DEG"),
     "spans": CallOption("spans of the smoothed deviation (default: by cross-validation)", "N"),

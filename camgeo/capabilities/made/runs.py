@@ -29,6 +29,7 @@ class PointFile:
     units   mm in its unit where its heading states none; None for that of the recipe
     align   unknowns that are placed by least squares: of g, x, y
     ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    face    width of an indicator's flat face, mm
     error   expanded uncertainty (k = 2) of a point, mm
     """
 
@@ -36,6 +37,7 @@ class PointFile:
     units: float | None = None
     align: str = ""
     ball: float | None = None
+    face: float | None = None
     error: float | None = None
 
 
@@ -57,6 +59,7 @@ POINT_FILE = Table(
             "probe",
             "what measured them",
             length("radius", "radius of the ball whose centres they are; of lifts, of its roller"),
+            length("face", "width of the flat face of an indicator of lifts"),
             length("error", "expanded uncertainty (k = 2) of a point along its normal"),
         ),
     )
@@ -83,7 +86,7 @@ def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFil
             return None
         probe = values.get("probe", {})
         units, align = UNITS.get(values.get("units", "")), ALIGN[values.get("align", "none")]
-        return PointFile(values["file"], units, align, probe.get("radius"), probe.get("error"))
+        return PointFile(values["file"], units, align, probe.get("radius"), probe.get("face"), probe.get("error"))
     if isinstance(node, Sequence):
         reader.fault(node.mark, path, "not the path of a file", described(node), reader.wanted(field))
         return None

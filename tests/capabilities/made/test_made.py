@@ -317,3 +317,44 @@ def test_points_of_camshafts_are_held_against_their_lobes(tmp_path):
     file.write_text("x,y\n1,2\n")
     with pytest.raises(camgeo.CamgeoError):
         camgeo.verify(shaft, file)
+
+
+def test_lifts_of_an_indicator_with_a_flat_face(tmp_path):
+    """It stands on the support of the metal: waves are found where they are, a face too narrow is refused."""
+    text = disc("kind: roller, radius: 10, offset: 6")
+    recipe = tmp_path / "part.yaml"
+    recipe.write_text(text, "utf-8")
+    ((_, _, surface),) = surfaces(text)
+    t = np.linspace(0.0, 2.0 * np.pi, 14_401)[:-1]
+    frame = surface.gauge.envelope.frames(t)
+    metal = frame.points + (0.01 * np.sin(3.0 * t))[:, None] * frame.normals
+    angle = np.arange(720) * np.pi / 360.0
+    lift = np.array([(metal @ [np.cos(a), np.sin(a)]).max() for a in angle])
+    rows = "\n".join(f"{math.degrees(a):.4f},{s:.7f}" for a, s in zip(angle, lift, strict=True))
+    (tmp_path / "lift.csv").write_text(f"angle_deg,lift_mm\n{rows}\n", "utf-8")
+    made = camgeo.verify(recipe, tmp_path / "lift.csv", probe_face="60mm")["made"]
+    assert abs(made["motion"]["error"]["max"]) == pytest.approx(0.0102, abs=3e-4)
+    wave = next(cause for cause in made["discs"][0]["causes"] if cause["cause"] == "waves")
+    assert wave["waves"] == 3
+    assert wave["value"] == pytest.approx(0.01, abs=4e-4)
+    with pytest.raises(camgeo.CallError, match=r"the contact would leave the probe's face, 5 mm wide: it goes 1"):
+        camgeo.verify(recipe, tmp_path / "lift.csv", probe_face=5)
+    with pytest.raises(camgeo.CallError, match="a probe has a face or a radius"):
+        camgeo.verify(recipe, tmp_path / "lift.csv", probe_face=5, probe_radius=2)
+    (tmp_path / "points.csv").write_text(table(frame.points[::20]), "utf-8")
+    with pytest.raises(camgeo.CallError, match="a face is of an indicator, and these are places"):
+        camgeo.verify(recipe, tmp_path / "points.csv", probe_face=5)
+
+
+def test_points_in_tests_of_ones_own(tmp_path):
+    from camgeo.testing import assert_verified
+
+    recipe, (file,) = measured(tmp_path, limited(ROLLER), noise=0.001)
+    report = assert_verified(recipe, file, probe_error=0.001)
+    assert report["made"]["verdicts"] == {"made-profile": "ok", "made-motion": "ok"}
+    recipe, (file,) = measured(tmp_path, limited(ROLLER), bump(0.05))
+    with pytest.raises(AssertionError, match=r"made-profile: 0\.1 mm, at most 0\.04 mm"):
+        assert_verified(recipe, file, probe_error=0.001)
+    file.write_text("x,y\n1,2\n", "utf-8")
+    with pytest.raises(camgeo.CallError, match="at least 36 are needed"):
+        assert_verified(recipe, file)
