@@ -12,6 +12,7 @@ from __future__ import annotations
 import fnmatch
 import glob
 import os
+import shlex
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.expected_checks import Foreseen
 
 INI = "camgeo_recipes"
+VERIFIED = "camgeo_verify"
 OPTION = "camgeo_{}"  # ini line of an option of a capability
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
 TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # of xdist's ways those that leave a recipe to one process
@@ -44,6 +46,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type="args",
         default=[],
     )
+    about = "lines of a recipe, files such as points measured on its part, and options such as probe_error=0.002"
+    parser.addini(VERIFIED, about, type="linelist", default=[])
     for name, text in registry.options().items():
         parser.addini(OPTION.format(name), f"of camgeo's recipes: {text}", type="bool", default=False)
     group = parser.getgroup("camgeo")
@@ -60,6 +64,8 @@ def pytest_configure(config: pytest.Config) -> None:
         config.addinivalue_line("markers", "camgeo: a check of a recipe")
         kept = None if out is None else Path(config.invocation_params.dir, out)
         config.pluginmanager.register(Recipes(config, patterns, kept), "camgeo-recipes")
+    elif config.getini(VERIFIED) and not config.getoption("help"):
+        raise pytest.UsageError(f"{VERIFIED}: no recipes are named; give {INI} in the pytest configuration")
     elif out is not None and not config.getoption("help"):
         raise pytest.UsageError(f"--camgeo-out: no recipes are named; give {INI} in the pytest configuration")
 
@@ -87,6 +93,8 @@ class Recipes:
         for path in self._found():
             shown = _relative(path, self.config.invocation_params.dir)
             self.runs[path.resolve()] = RecipeRun(path, shown, self.out, options)
+        for line in self.config.getini(VERIFIED):
+            self._verified(line)
         sources = type(self.config).ArgsSource
         whole = self.config.invocation_params.dir == self.config.rootpath
         if whole and self.config.args_source is not sources.ARGS:
@@ -108,7 +116,7 @@ class Recipes:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep one of each item: a recipe may have been found both by itself and on the way through its folder."""
         seen: set[str] = set()
-        for item in [item for item in items if isinstance(item, CheckItem)]:
+        for item in [item for item in items if isinstance(item, RecipeItem)]:
             if item.nodeid in seen:
                 items.remove(item)
             seen.add(item.nodeid)
@@ -136,6 +144,20 @@ class Recipes:
             raise pytest.UsageError("\n".join(faults))
         return list(found)
 
+    def _verified(self, line: str) -> None:
+        """Have a recipe verify the files of a line; raises UsageError."""
+        words = shlex.split(line)
+        options = {name: _value(text) for name, text in (word.split("=", 1) for word in words[1:] if "=" in word)}
+        files = [self.base / word for word in words[1:] if "=" not in word]
+        run = self.runs.get((self.base / words[0]).resolve())
+        missing = [str(file) for file in files if not file.is_file()]
+        if run is None:
+            raise pytest.UsageError(f"{VERIFIED}: {words[0]!r} is not among the recipes of {INI}")
+        if missing or not files:
+            told = f"no file {', '.join(missing)}" if missing else "no file is named"
+            raise pytest.UsageError(f"{VERIFIED}: {line!r}: {told}")
+        run.verified.append((tuple(files), options))
+
     def _can_be_named(self, run: RecipeRun) -> bool:
         """Whether a recipe may stand among pytest's arguments, which outrank --ignore and give [ and :: a meaning."""
         folder = self.config.invocation_params.dir
@@ -162,6 +184,7 @@ class RecipeRun:
     fault: str = ""
     certain: bool = False
     selected: set[str] = field(default_factory=set)
+    verified: list[tuple[tuple[Path, ...], dict[str, Any]]] = field(default_factory=list)
     _report: Entry | None = field(default=None, repr=False)
 
     def load(self) -> None:
@@ -216,8 +239,8 @@ class RecipeFile(pytest.File):
         self.run = run
         self.others = others
 
-    def collect(self) -> Iterator[CheckItem]:
-        """One item for the recipe as a whole, and one for each check that is foreseen."""
+    def collect(self) -> Iterator[RecipeItem]:
+        """One item for the recipe, one for each check that is foreseen, and one for files that it verifies."""
         self.run.load()
         recipe = self.run.recipe
         if recipe is not None and self.run.out is not None:
@@ -231,6 +254,10 @@ class RecipeFile(pytest.File):
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
             yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
+        for files, options in self.run.verified:
+            told = [file.name for file in files] + [f"{key}={value}" for key, value in options.items()]
+            name = f"verify[{' '.join(told)}]"
+            yield VerifyItem.from_parent(self, name=name, run=self.run, files=files, options=options)
 
 
 def _foreseen(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
@@ -244,32 +271,21 @@ def _foreseen(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
         return ()
 
 
-class CheckItem(pytest.Item):
-    """One check of a recipe; or, without a check, the recipe as a whole with all checks that were not foreseen."""
+def _value(text: str) -> float | str:
+    """A number, or the text that is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
-    def __init__(
-        self,
-        *,
-        run: RecipeRun,
-        check: Foreseen | None,
-        foreseen: frozenset[Foreseen],
-        **rest: Any,  # noqa: ANN401 - pytest's own
-    ) -> None:
+
+class RecipeItem(pytest.Item):
+    """An item of a recipe."""
+
+    def __init__(self, *, run: RecipeRun, **rest: Any) -> None:  # noqa: ANN401 - pytest's own
         super().__init__(**rest)
         self.run = run
-        self.check = check
-        self.known = foreseen
         self.add_marker("camgeo")
-
-    def runtest(self) -> None:
-        """Hold the check's figure against its limit."""
-        report = self.run.report
-        if self.check is None:
-            self._whole(report)
-        elif report is None:
-            self._not_judged(self.run.fault.partition("\n")[0], WHOLE if self.run.certain else None)
-        else:
-            self._one(self.check, report)
 
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
@@ -281,6 +297,69 @@ class CheckItem(pytest.Item):
     def reportinfo(self) -> tuple[Path, None, str]:
         """Say where the item comes from."""
         return self.path, None, self.name
+
+    def _hold(self, checks: list[Entry], report: Entry) -> None:
+        from camgeo.api.report import explained
+
+        assert self.run.recipe is not None
+        failed = [explained(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
+        if failed:
+            _fail("\n".join(failed))
+
+
+class VerifyItem(RecipeItem):
+    """Files of any origin that a recipe verifies, such as points measured on its part."""
+
+    def __init__(
+        self,
+        *,
+        files: tuple[Path, ...],
+        options: dict[str, Any],
+        **rest: Any,  # noqa: ANN401 - pytest's own
+    ) -> None:
+        super().__init__(**rest)
+        self.files = files
+        self.options = options
+
+    def runtest(self) -> None:
+        """Hold every check of the files."""
+        from camgeo import verify
+        from camgeo.common.errors import CallError
+
+        if self.run.recipe is None:
+            _fail(self.run.fault)
+            return
+        try:
+            report: Entry = dict(verify(self.run.recipe, *self.files, **self.options))
+        except CallError as error:
+            _fail(str(error))
+            return
+        self._hold(report["checks"], report)
+
+
+class CheckItem(RecipeItem):
+    """One check of a recipe; or, without a check, the recipe as a whole with all checks that were not foreseen."""
+
+    def __init__(
+        self,
+        *,
+        check: Foreseen | None,
+        foreseen: frozenset[Foreseen],
+        **rest: Any,  # noqa: ANN401 - pytest's own
+    ) -> None:
+        super().__init__(**rest)
+        self.check = check
+        self.known = foreseen
+
+    def runtest(self) -> None:
+        """Hold the check's figure against its limit."""
+        report = self.run.report
+        if self.check is None:
+            self._whole(report)
+        elif report is None:
+            self._not_judged(self.run.fault.partition("\n")[0], WHOLE if self.run.certain else None)
+        else:
+            self._one(self.check, report)
 
     def _whole(self, report: Entry | None) -> None:
         if report is None:
@@ -296,14 +375,6 @@ class CheckItem(pytest.Item):
             self._hold(found, report)
             return
         self._missing(foreseen, report)
-
-    def _hold(self, checks: list[Entry], report: Entry) -> None:
-        from camgeo.api.report import explained
-
-        assert self.run.recipe is not None
-        failed = [explained(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
-        if failed:
-            _fail("\n".join(failed))
 
     def _missing(self, foreseen: Foreseen, report: Entry) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""

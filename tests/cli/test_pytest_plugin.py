@@ -553,3 +553,30 @@ def test_keeping_files_needs_a_name(project: Pytester) -> None:
     result = run(project, "--camgeo-out", "")
     assert result.ret == pytest.ExitCode.USAGE_ERROR
     result.stderr.fnmatch_lines(["*--camgeo-out: an empty name*"])
+
+
+def test_files_of_any_origin_are_verified_beside_their_recipe(project: Pytester) -> None:
+    pipeline.export(load(project.path / "cams" / "small.yaml"), project.path / "out")
+    drawing = project.path / "out" / "small" / "small.dxf"
+    (project.path / "back.dxf").write_bytes(drawing.read_bytes())
+    project.makeini(
+        f"{INI}camgeo_verify =\n    cams/small.yaml back.dxf\n    cams/small.yaml back.dxf tolerance=0.0001\n"
+    )
+    result = run(project, "-k", "verify")
+    result.assert_outcomes(passed=1, failed=1, deselected=len(ITEMS))
+    result.stdout.fnmatch_lines(["*verify[[]back.dxf tolerance=0.0001]*", "*contour of back.dxf: 0.00*"])
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("cams/other.yaml back.dxf", "'cams/other.yaml' is not among the recipes of camgeo_recipes"),
+        ("cams/small.yaml none.dxf", "no file *none.dxf"),
+        ("cams/small.yaml", "no file is named"),
+    ],
+)
+def test_a_line_of_files_that_leads_nowhere_is_a_usage_error(project: Pytester, line: str, told: str) -> None:
+    project.makeini(f"{INI}camgeo_verify = {line}\n")
+    result = run(project)
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines([f"*camgeo_verify: *{told}*"])
