@@ -15,9 +15,8 @@ import numpy as np
 
 from camgeo.files.errors import demand_package
 from camgeo.fit.pieces import BSpline, Outline, Polygon
-from camgeo.formats.options import OF_DRAWING
-from camgeo.registry.formats import Form, Format
-from camgeo.schema.fields import Field, Kind, Table
+from camgeo.formats.drawings import drawing_format
+from camgeo.schema.fields import Field, Kind
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
     from kin.judge.check import Check
@@ -304,13 +303,6 @@ def _comment(text: str) -> str:
 COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
 
 
-def make_dxf(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge one drawing; raises as `camgeo.output.dispatch.make` does."""
-    from camgeo.output.drawing import make_drawing
-
-    return make_drawing(job, request, path, _draw)
-
-
 def _draw(
     job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
 ) -> Sequence[Check]:
@@ -383,35 +375,17 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
         reader.fault_at(f"{file['path']}.dxf.as", "R12 has no splines", "'spline'", remedy)
 
 
-FORMAT = Format(
-    name="dxf",
-    options=Table(
-        (
-            Field(
-                "as",
-                Kind.CHOICE,
-                "what the contour is made of",
-                default="arcs",
-                choices=("arcs", "polyline", "spline"),
-            ),
-            Field(
-                "version",
-                Kind.CHOICE,
-                "version of the format; R12 has no splines",
-                default=VERSION,
-                choices=tuple(VERSIONS),
-            ),
-            *OF_DRAWING,
-        ),
+FORMAT = drawing_format(
+    "dxf",
+    _draw,
+    Field(
+        "version",
+        Kind.CHOICE,
+        "version of the format; R12 has no splines",
+        default=VERSION,
+        choices=tuple(VERSIONS),
     ),
-    named=("version",),
-    forms={
-        name: Form(name=name, surfaces=2, discs=2, pieces=pieces, listed=("as", "version"))
-        for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))
-    },
-    check=_check,
-    by_disc=True,
     path=True,
-    make=make_dxf,
+    check=_check,
     foresee=_foresee,
 )

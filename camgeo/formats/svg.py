@@ -19,10 +19,8 @@ import numpy as np
 from camgeo.curve.ring import ArcChain, radius_of, steps_along
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
+from camgeo.formats.drawings import drawing_format
 from camgeo.formats.dxf import UNITS
-from camgeo.formats.options import OF_DRAWING
-from camgeo.registry.formats import Form, Format
-from camgeo.schema.fields import Field, Kind, Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.fit.bound import Box
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
@@ -153,13 +151,6 @@ def _numbers(values: Array) -> str:
 # --- its files --------------------------------------------------------------------------------------------------------
 
 
-def make_svg(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge one drawing; raises as `camgeo.output.dispatch.make` does."""
-    from camgeo.output.drawing import make_drawing
-
-    return make_drawing(job, request, path, _draw)
-
-
 def _draw(
     job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
 ) -> Sequence[Check]:
@@ -169,24 +160,4 @@ def _draw(
     return ()
 
 
-FORMAT = Format(
-    name="svg",
-    options=Table(
-        (
-            Field(
-                "as",
-                Kind.CHOICE,
-                "what the contour is made of",
-                default="arcs",
-                choices=("arcs", "polyline", "spline"),
-            ),
-            *OF_DRAWING,
-        ),
-    ),
-    forms={
-        name: Form(name=name, surfaces=2, discs=2, pieces=pieces, listed=("as",))
-        for name, pieces in (("arcs", "arcs"), ("polyline", "edges"), ("spline", "spans"))
-    },
-    by_disc=True,
-    make=make_svg,
-)
+FORMAT = drawing_format("svg", _draw)

@@ -53,7 +53,12 @@ def row(field, optional_together):
         default = "one of these"
     else:
         default = field.default or ""
-    return f"| `{field.name}` | {field.wanted()} | {unit} | {default} | {field.about} |".replace("  ", " ")
+    # figures and formats that capabilities add have pages of their own
+    wanted = "a figure" if field.choices and set(field.choices) <= set(FIGURES) else field.wanted()
+    about = field.about
+    for name in registry.formats():
+        about = about.replace(f", {name}", "")
+    return f"| `{field.name}` | {wanted} | {unit} | {default} | {about} |".replace("  ", " ")
 
 
 def table(found):

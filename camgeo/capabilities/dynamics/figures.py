@@ -59,39 +59,21 @@ def _is_rigid(paths: AbstractSet[str]) -> bool:
 
 
 FIGURES: dict[str, Figure] = {
-    AT_SPEED[0]: Figure(
-        "peak-velocity a second, at the shaft's speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-        after=PEAKS[2],
-    ),
-    AT_SPEED[1]: Figure(
-        "peak-acceleration a second squared, at that speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s^2",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-        after=PEAKS[2],
-    ),
-    AT_SPEED[2]: Figure(
-        "peak-jerk a second cubed, at that speed",
-        Kind.MOTION,
-        "least",
-        OF_SPEED,
-        per="/s^3",
-        dear=True,
-        eased_by="motion",
-        keys=(_RPM,),
-        after=PEAKS[2],
-    ),
+    **{
+        name: Figure(
+            about, Kind.MOTION, "least", OF_SPEED, per=per, dear=True, eased_by="motion", keys=(_RPM,), after=PEAKS[2]
+        )
+        for name, about, per in zip(
+            AT_SPEED,
+            (
+                "peak-velocity a second, at the shaft's speed",
+                "peak-acceleration a second squared, at that speed",
+                "peak-jerk a second cubed, at that speed",
+            ),
+            ("/s", "/s^2", "/s^3"),
+            strict=True,
+        )
+    },
     JAM_MARGIN: Figure(
         "by how much the pressure angle stays below that at which the stem jams in its guide",
         Kind.ANGLE,

@@ -1,0 +1,58 @@
+"""Formats of drawings: a contour of arcs, lines or a spline on layers, a file for each disc."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.options import OF_DRAWING
+from camgeo.registry.formats import Form, Format, foresee_nothing, no_fault
+from camgeo.schema.fields import Field, Kind, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.output.drawing import Draw
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+    from camgeo.schema.reader import Reader, Values
+
+PIECES = {"arcs": "arcs", "polyline": "edges", "spline": "spans"}
+"""What a piece of a contour is called, by the form of the drawing."""
+_AS = Field("as", Kind.CHOICE, "what the contour is made of", default="arcs", choices=tuple(PIECES))
+
+
+def drawing_format(
+    name: str,
+    draw: Draw,
+    *more: Field,
+    path: bool = False,
+    check: Callable[[Values, Values, Reader], None] = no_fault,
+    foresee: Callable[[Job, FileRequest], None] = foresee_nothing,
+) -> Format:
+    """Make the record of a format of drawings; `draw` writes one, as `make_drawing` takes it.
+
+    `more` are options of its own, which tell files of one form apart in their names and in reports; `path` is whether
+    it shows the path of the cutter.
+    """
+    named = tuple(item.name for item in more)
+
+    def make(job: Job, request: FileRequest, path: Path) -> Made:
+        from camgeo.output.drawing import make_drawing
+
+        return make_drawing(job, request, path, draw)
+
+    return Format(
+        name=name,
+        options=Table((_AS, *more, *OF_DRAWING)),
+        named=named,
+        forms={
+            form: Form(name=form, surfaces=2, discs=2, pieces=pieces, listed=("as", *named))
+            for form, pieces in PIECES.items()
+        },
+        check=check,
+        by_disc=True,
+        path=path,
+        make=make,
+        foresee=foresee,
+    )
