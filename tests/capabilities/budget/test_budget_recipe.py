@@ -112,9 +112,9 @@ def test_the_profile_is_half_the_zone_of_measured_points() -> None:
 
 
 def test_play_is_of_the_motion_and_has_its_unit() -> None:
-    arms = (ROOT / "recipes" / "print-double-roller.yaml").read_text(encoding="utf-8")
+    arms = (ROOT / "recipes" / "w-figure-5.yaml").read_text(encoding="utf-8")
     assert budget("tolerances: {profile: 0.01}, play: 0.2", arms).play == pytest.approx(math.radians(0.2))
-    four_bar = (ROOT / "recipes" / "print-four-bar.yaml").read_text(encoding="utf-8")
+    four_bar = (ROOT / "recipes" / "as-figure-9-1.yaml").read_text(encoding="utf-8")
     assert budget("tolerances: {profile: 0.01}, play: 0.2", four_bar).play == pytest.approx(math.radians(0.2))
 
 
