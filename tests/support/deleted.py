@@ -1,10 +1,10 @@
 """The repository without a capability: its folder, tests, page, shipped recipes, and what is marked as needing it.
 
-A mark is a comment, `# needs: sweep` in Python, `<!-- needs: sweep -->` in Markdown. Behind a line it is of that line.
-On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a statement
-or an entry with all that is indented below it; in Markdown of a block of code, of a section or a page where its heading
-follows, else up to the next empty line. A page of which nothing is left is gone, and so is the gallery's line of a
-recipe that is.
+A mark is a comment, `# needs: sweep` in Python and TOML, `<!-- needs: sweep -->` in Markdown. Behind a line it is of
+that line. On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a
+statement or an entry with all that is indented below it; in Markdown of a block of code, of a section or a page where
+its heading follows, else up to the next empty line. A page of which nothing is left is gone, and so is the gallery's
+line of a recipe that is.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def copy_without(name: str, folder: Path) -> Path:
             continue
         copied = folder / place
         copied.parent.mkdir(parents=True, exist_ok=True)
-        whole = path.read_text(encoding="utf-8") if path.suffix in {".py", ".md"} else ""
+        whole = path.read_text(encoding="utf-8") if path.suffix in {".py", ".md", ".toml"} else ""
         if "needs: " not in whole and place != "docs/gallery.md":
             shutil.copy2(path, copied)
             continue
