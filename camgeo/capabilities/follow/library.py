@@ -373,7 +373,7 @@ def shown(followed: Followed) -> Report:
     from camgeo.api.run import verify
 
     if followed.at != (0.0, 0.0):
-        raise CallError("a page shows a contour about the origin of its file: leave at out")
+        raise CallError("a page judges a file about its own origin: move the shaft there, or leave page out")
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         (Path(folder) / "lift.csv").write_text(followed.lifts(), encoding="utf-8")
         recipe = Path(folder) / f"{followed.path.stem}.yaml"
