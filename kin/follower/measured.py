@@ -75,7 +75,7 @@ class MeasuredMotion:
         """Stretches of at least 10 degrees that rest within `reading`, mm or rad, of their middle position.
 
         A stretch that is much longer at four times the depth is the top of a nose, and none. A dwell ends where the
-        follower leaves its level by half the reading.
+        follower leaves its level, the median, by half the reading.
         """
         position, free = self.rows[0], np.ones(len(self.phi), dtype=bool)
         n, step = len(position), TURN / len(position)
@@ -91,9 +91,11 @@ class MeasuredMotion:
             near = np.abs(np.roll(position, -(start + count // 2)) - middle) <= (2.0 * DEEPER - 1.0) * reading
             if _ahead(near) + _ahead(near[::-1]) > WIDENS * count and count < n:
                 continue
-            level = float(np.median(rest))
+            level = float(np.sort(rest)[count // 2])
             inner = np.flatnonzero(np.abs(rest - level) <= 0.5 * reading)
             low, high = int(inner[0]), int(inner[-1])
+            if (high - low) * step < LEAST_DWELL:
+                continue
             begin = start % n
             flatness = float(np.ptp(rest[low : high + 1]))
             dwells.append(Dwell((begin + low) * step, (begin + high) * step, level, flatness))

@@ -152,8 +152,12 @@ SOUND = {
 # needs: follow
 def followed(rng: Random, number: int) -> Attack:
     """A follower of any kind on contours by chance: a lobed disc, a ring, a groove, off their places now and then."""
-    lobes, lift, radius = rng.randrange(1, 7), rng.choice([0.0, 0.1, 1.0, 6.0, 18.0]), rng.choice([3.0, 20.0, 400.0])
-    count, off = rng.choice([3, 40, 360, 1500]), rng.choice([0.0, 0.0, 0.0, 2.0, 50.0])
+    lobes, lift, radius = (
+        rng.randrange(1, 7),
+        rng.choice([0.0, 0.1, 1.0, 6.0, 18.0]),
+        rng.choice([20.0, 20.0, 30.0, 3.0, 400.0]),
+    )
+    count, off = rng.choice([3, 40, 360, 1500]), rng.choice([0.0] * 7 + [2.0, 50.0])
 
     def path(reach: float) -> str:
         angles = [2.0 * math.pi * k / count for k in range(count)]
@@ -162,9 +166,9 @@ def followed(rng: Random, number: int) -> Attack:
         return f'<path d="M {points} Z"/>'
 
     kind = rng.choice([*SOUND, *SOUND, "any"])
-    nested = [[1.0], [1.0, 1.8], [1.0, 1.4, 2.0]]
+    nested = [[1.0], [1.0, 1.8], [1.0, 1.4, 2.0], [0.3, 1.0], [1.0]]
     shapes = [path(radius * scale) for scale in {"ring": nested[1], "groove": nested[2]}.get(kind, rng.choice(nested))]
-    size = rng.choice(['width="99mm" height="99mm" viewBox="0 0 99 99"'] * 6 + ['viewBox="0 0 99 99"', ""])
+    size = rng.choice(['width="99mm" height="99mm" viewBox="0 0 99 99"'] * 12 + ['viewBox="0 0 99 99"', ""])
     drawing = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(shapes)}</svg>'
     follower = rng.choice(
         SOUND.get(kind, [" ".join(rng.choice(words) for words in zip(*SOUND.values(), strict=False))])
@@ -172,5 +176,5 @@ def followed(rng: Random, number: int) -> Attack:
     more = rng.choice([[], ["--recipe", "found.yaml"], ["--page", "page.html"], ["--table", "turn.csv", "--json"]])
     words = ["follow", "cam.svg", *follower.split(), *more]
     words += rng.choice([[], [], ["--rotation", "ccw"], ["--reading", "0.2"], ["--at", "2,0"]])
-    words += rng.choice([[], [], [], [], ["--units", "inch"]])
+    words += rng.choice([[]] * 9 + [["--units", "inch"]])
     return Attack(f"follower {number}", tuple(words), {"cam.svg": drawing.encode()})

@@ -17,7 +17,7 @@ from camgeo.capabilities.follow.library import shown
 from camgeo.cli.exit_status import OK, WRONG
 from camgeo.cli.main import main
 from kin.contour.about import tracks
-from kin.follower.measured import measured
+from kin.follower.measured import MeasuredMotion, measured
 from kin.law.contacts import Contact
 from kin.read.files import read_drawing
 
@@ -112,6 +112,17 @@ def test_dwells_are_found_and_noses_are_none(drawings: dict[str, Path]) -> None:
         assert math.degrees(rest.end) == pytest.approx(end, abs=4.0)
         assert rest.flatness <= 0.01
     assert camgeo.follow(drawings["disc-knife-edge"], **asked("disc-knife-edge"), reading=0.05).rests == ()
+
+
+def test_positions_at_two_levels_are_no_dwell_between_them() -> None:
+    """Of 720 every other one is 1.9 readings higher over half the turn, and all rest over 30 degrees."""
+    phi = 2.0 * np.pi * np.arange(720) / 720
+    position = np.where(phi < np.pi, 1.9e-2 * (np.arange(720) % 2), np.where(phi < 1.1 * np.pi, 1.0, 5.0 * np.sin(phi)))
+    rows = np.stack([position, 0.0 * phi, 0.0 * phi])
+    motion = MeasuredMotion("mm", phi, rows, 0.0 * phi, 0.0 * phi, (0.0, 0.0), (1.0, 0.0))
+    dwells = motion.dwells(0.01)
+    assert [round(dwell.level, 3) for dwell in dwells if dwell.begin > 3.0] == [1.0]
+    assert all(dwell.flatness <= 0.02 for dwell in dwells)
 
 
 def polygon(path: Path, points: np.ndarray[Any, Any], *, unit: int = 4) -> Path:
