@@ -16,8 +16,8 @@ import yaml
 
 import camgeo
 from camgeo.api.report import explained
-from camgeo.capabilities.follow.command import summary
-from camgeo.capabilities.follow.library import shown
+from camgeo.capabilities.follow.command import summary  # needs: follow
+from camgeo.capabilities.follow.library import shown  # needs: follow
 from camgeo.checks.declared import declaration
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
@@ -400,6 +400,7 @@ def verify(name: str, text: str, file: str, units: str) -> dict[str, Any]:
     return {**_judged(report, report.page or ""), "files": [{"name": f"{file}.report.json", "path": str(path)}]}
 
 
+# needs: follow
 def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     """The motion that somebody's file gives a follower: in words, its table, its recipe and the page of that."""
     arm, at = follower.pop("arm"), follower.pop("at")
@@ -435,5 +436,5 @@ CALLS: dict[str, Callable[..., dict[str, Any]]] = {
     "converted": converted,
     "make": make,
     "verify": verify,
-    "follow": follow,
+    "follow": follow,  # needs: follow
 }

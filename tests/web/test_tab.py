@@ -174,6 +174,7 @@ def test_files_are_made_judged_and_downloaded(page: tab.Tab, tmp_path: Path) -> 
     assert page.browser.problems == []
 
 
+# needs: follow
 def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) -> None:
     report = camgeo.export(camgeo.load(TEXTS["disc-roller"]), tmp_path, only=["dxf"])
     page.load("disc-roller", TEXTS["disc-roller"])
@@ -192,6 +193,7 @@ def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) ->
     assert page.text_of("verdict") == "every check of the design holds"
 
 
+# needs: follow
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
