@@ -6,8 +6,10 @@ import base64
 import functools
 import http.server
 import json
+import re
 import threading
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from support import pyodide
@@ -16,7 +18,6 @@ from support.places import script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from support.browser import Browser
 
@@ -37,7 +38,15 @@ def built(folder: Path) -> Path:
     return folder
 
 
-class _Quiet(http.server.SimpleHTTPRequestHandler):
+class _Strict(http.server.SimpleHTTPRequestHandler):
+    """A static server that says nothing, and sends the page's own policy with every file, the worker's among them."""
+
+    def end_headers(self) -> None:
+        index = (Path(self.directory) / "index.html").read_text("utf-8")
+        (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', index)
+        self.send_header("Content-Security-Policy", policy)
+        super().end_headers()
+
     def log_message(self, *_: object) -> None:
         """Say nothing."""
 
@@ -45,7 +54,7 @@ class _Quiet(http.server.SimpleHTTPRequestHandler):
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
     """Serve a folder meanwhile, and give its address."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Strict, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         yield f"http://127.0.0.1:{server.server_port}/"

@@ -55,6 +55,28 @@ def test_it_loads_from_its_own_server_alone_and_without_complaint(page: tab.Tab)
     assert {url for url in page.browser.requests if not url.startswith((page.address, "data:", "about:"))} == set()
 
 
+def test_starters_have_pictures_and_begin_a_recipe(page: tab.Tab) -> None:
+    page.ask("byId('begin').open = true")
+    page.wait("document.querySelectorAll('#shipped li').length > 0")
+    assert page.ask("document.querySelectorAll('.starters li').length") == len(TEXTS)
+    missing = """(async () => {
+      const pictures = [...document.querySelectorAll(".starters img")].map((one) => one.src);
+      const answers = await Promise.all(pictures.map((address) => fetch(address)));
+      return answers.filter((answer) => !answer.ok).map((answer) => answer.url).join(" ");
+    })()"""
+    assert page.ask(missing) == ""
+    page.ask("byId('find').value = 'swings roller'; byId('find').dispatchEvent(new Event('input'))")
+    shown = page.ask(
+        "[...document.querySelectorAll('#starters li:not([hidden]) b')].map((b) => b.textContent).join(' ')"
+    )
+    assert shown == "disc-arm"
+    page.ask("document.querySelector('#starters li:not([hidden]) button').click()")
+    page.settle()
+    assert page.text == TEXTS["disc-arm"]
+    assert page.text_of("verdict") == "every check of the design holds"
+    page.ask("byId('find').value = ''; byId('find').dispatchEvent(new Event('input'))")
+
+
 CHECKS = """(async () => {{
   const answer = await work.ask("design", {{ name: {}, text: {} }}, {});
   if (!answer.scene) return JSON.stringify(answer.faults);
