@@ -566,7 +566,6 @@ async function listStarters() {
     item.dataset.words = `${one.name} ${one.title}`.toLowerCase();
     byId(one.shipped ? "shipped" : "starters").append(item);
   }
-  tab.dataset.starters_listed = "true";
 }
 byId("begin").addEventListener("toggle", () => !byId("starters").children.length && listStarters());
 byId("find").addEventListener("input", () => {
