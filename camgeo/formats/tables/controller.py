@@ -13,9 +13,9 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.files.table import DIGITS, write_table
-from camgeo.formats.tables.tabled import check_step
+from camgeo.formats.tables.tabled import check_step, fewest_rows
 from camgeo.measures.file_result import FileResult
-from camgeo.recipe.machining import COARSEST, FINEST
+from camgeo.recipe.machining import FINEST
 from camgeo.registry.formats import Form
 from kin.judge.check import about
 from kin.judge.drive import JOINS, MASTER, RATES, drive_checks
@@ -24,7 +24,6 @@ from kin.numeric.angles import TURN
 from kin.numeric.monotone import between, cells, pieces
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from camgeo.output.job import Job, Made
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
     from kin.law.joined_rows import Join
     from kin.numeric.arrays import Array
 
-TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
 SHARE = 1e-12  # of the stroke, to which the lowest place is found
 NOTHING = 1e-13  # of the greatest value: rounding about 0
 
@@ -165,11 +163,11 @@ def _count(job: Job, request: FileRequest, rows: _Rows, most: float) -> int:
         if error <= most:
             return count
         what = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
-        fewest = _fewest(rows.error, most)
+        fewest = fewest_rows(rows.error, most)
         remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
         remedy += f"a tolerance of {upward(error / rows.scale)} {rows.unit}"
         raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
-    fewest = _fewest(rows.error, most)
+    fewest = fewest_rows(rows.error, most)
     if fewest is None:
         error = rows.error(round(360.0 / FINEST))
         left = f"{error / rows.scale:.4g} {rows.unit}"
@@ -177,21 +175,6 @@ def _count(job: Job, request: FileRequest, rows: _Rows, most: float) -> int:
         remedy = f"give at least {upward(error / rows.scale)} {rows.unit}"
         raise recipe.error(job.tolerance_field(request), what, None, remedy)
     return fewest
-
-
-def _fewest(error: Callable[[int], float], most: float) -> int | None:
-    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is."""
-    whole = 360 * TICKS
-    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
-    low, high = 0, len(ticks) - 1
-    while low < high:  # finer steps leave less, but for a few that meet the motion's breaks
-        middle = (low + high) // 2
-        low, high = (low, middle) if error(whole // ticks[middle]) <= most else (middle + 1, high)
-    while low < len(ticks):
-        if error(whole // ticks[low]) <= most:
-            return whole // ticks[low]
-        low += 1
-    return None
 
 
 FORM = Form(name="controller", surfaces=2, takes=("step", "tolerance", "for"), check=check, make=make)

@@ -12,8 +12,9 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.files.table import DIGITS
+from camgeo.formats.tables.tabled import check_step, fewest_rows
 from camgeo.measures.file_result import FileResult
-from camgeo.recipe.machining import COARSEST, FINEST
+from camgeo.recipe.machining import FINEST
 from camgeo.registry.formats import Form
 from kin.contour.closed_spline import closed_spline
 from kin.numeric.angles import TURN
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from kin.numeric.arrays import Array
 
-TICKS = 10_000  # of a degree: steps are whole ones
-WHOLE = 1e-9  # rad by which steps may miss a turn
 SHARES = (0.2, 0.5, 0.8)  # of the way between two points, at which the spline is looked at
 MARGIN = 0.95  # of the tolerance that an estimate may take: the judge has the last word
 CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], dtype=float)  # Bernstein's, by powers
@@ -36,11 +35,7 @@ CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], d
 
 def check(file: Values, _: Values, reader: Reader) -> None:
     """Note a step that does not divide the turn."""
-    if "step" in file:
-        count = round(TURN / file["step"])
-        if abs(count * file["step"] - TURN) > WHOLE:
-            remedy = f"give {360.0 / count:.9g} or another divisor of 360"
-            reader.fault_at(f"{file['path']}.csv.step", "360 degrees are no whole number of it", None, remedy)
+    check_step(file, reader)
 
 
 class _Points(NamedTuple):
@@ -95,9 +90,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) -> int:
     """How many points there are, by the request's step or the tolerance, mm."""
     recipe, field = job.recipe, job.field(request)
-    whole = 360 * TICKS
-    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
-    fewest = next((whole // tick for tick in ticks if points.error(whole // tick) <= MARGIN * tolerance), None)
+    fewest = fewest_rows(points.error, MARGIN * tolerance)
     step = request.own.get("step")
     if step is not None:
         count = round(TURN / float(step))
@@ -109,7 +102,7 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
         remedy += f"a tolerance of {upward(error / MARGIN / recipe.mm)} {recipe.units}"
         raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
     if fewest is None:
-        error = points.error(whole // ticks[-1])
+        error = points.error(round(360.0 / FINEST))
         what = f"a spline through points {FINEST:g} degrees apart is off by {error / recipe.mm:.4g} {recipe.units}"
         remedy = f"give at least {upward(error / MARGIN / recipe.mm)} {recipe.units}"
         raise recipe.error(job.tolerance_field(request), what, None, remedy)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.files.table import write_table
+from camgeo.recipe.machining import COARSEST, FINEST
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     Columns: TypeAlias = tuple[tuple[str, ...], Array]
 
-
+TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
 WHOLE = 1e-9  # rad by which steps may miss a turn
 
 
@@ -31,6 +32,21 @@ def check_step(file: Values, reader: Reader) -> None:
             remedy = f"give {360.0 / count:.9g} or another divisor of 360"
             path = f"{file['path']}.{file['kind']}.step"
             reader.fault_at(path, "360 degrees are no whole number of it", None, remedy)
+
+
+def fewest_rows(error: Callable[[int], float], most: float) -> int | None:
+    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is."""
+    whole = 360 * TICKS
+    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
+    low, high = 0, len(ticks) - 1
+    while low < high:  # finer steps leave less, but for a few that meet the motion's breaks
+        middle = (low + high) // 2
+        low, high = (low, middle) if error(whole // ticks[middle]) <= most else (middle + 1, high)
+    while low < len(ticks):
+        if error(whole // ticks[low]) <= most:
+            return whole // ticks[low]
+        low += 1
+    return None
 
 
 def tabled(
