@@ -608,7 +608,7 @@ async function long(words, call, input, files) {
   const begun = performance.now();
   const answer = await work.ask(call, input, files);
   const seconds = ((performance.now() - begun) / 1000).toFixed(1);
-  byId("stop").disabled = !work.current;
+  byId("stop").disabled = true;
   busy.textContent = answer ? `${seconds} s` : "stopped";
   tab.dataset.seconds = String((performance.now() - begun) / 1000);
   return answer;

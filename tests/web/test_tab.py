@@ -252,12 +252,42 @@ def test_what_is_too_large_is_refused_before_it_is_read(page: tab.Tab) -> None:
     assert "1000 MB" in page.text_of("faults")
 
 
+def test_of_designs_that_wait_the_newest_is_made(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    before = page.ask("work.number")
+    page.ask("""(() => {
+      const slider = document.querySelector('[data-path="cam.base_radius"] [type=range]');
+      for (let value = 37; value <= 56; value++) {
+        slider.value = value;
+        slider.dispatchEvent(new Event("input"));
+      }
+      slider.dispatchEvent(new Event("change"));
+    })()""")
+    page.settle()
+    assert page.ask("work.number") - before == 2  # the first, which was under way, and the last
+    assert "base_radius: 56" in page.text
+    page.press("undo")  # one movement is one step
+    assert page.text == TEXTS["disc-roller"]
+
+
+def test_a_file_that_the_server_lacks_is_told(tmp_path: Path) -> None:
+    site = tab.built(tmp_path / "site")
+    (site / "camgeo.zip").unlink()
+    with tab.served(site) as lacking, Browser(tmp_path / "profile") as browser:
+        browser.open(lacking)
+        browser.wait("byId('faults').textContent", tab.PATIENCE)
+        told = browser.ask("byId('faults').textContent")
+    assert "Python could not be loaded: camgeo.zip" in told
+    assert "404" in told
+
+
 def test_stop_ends_the_worker_and_another_one_goes_on(page: tab.Tab) -> None:
     page.load("four-bar", TEXTS["four-bar"])
     page.click("make")
     page.click("stop")
     page.wait("byId('busy').textContent === 'stopped'")
     page.settle()
+    assert page.ask("byId('stop').disabled")
     page.slide("linkage.ground", 81)
     assert "81" in page.text_of("form") or "ground: 81" in page.text
     assert page.ask("document.body.dataset.answered") == str(page.ask("asked"))
