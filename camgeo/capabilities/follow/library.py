@@ -217,7 +217,7 @@ class Followed:
             f"rotation: {self.rotation}",
             "cam:",
             *(f"  {key}: {value}" for key, value in cam.items()),
-            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}",
+            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}, suspect: keep}}",
             *([f"part: {{{keys}}}"] if keys else []),
             "export:",
             f"  tolerance: {self.reading:.6g}",

@@ -159,6 +159,22 @@ def test_a_polygon_of_few_points_comes_near_its_law(tmp_path: Path) -> None:
     assert -2.0 * 0.00372 < float(low.min()) < float(low.max()) < 1e-9
 
 
+def test_rows_of_a_recipe_are_no_slips_of_a_pen(tmp_path: Path) -> None:
+    """In the hollow of a limacon the rows of a polygon bend so sharply that a table as read off would be refused."""
+    angle = 2.0 * np.pi * np.arange(360) / 360
+    reach = 400.0 + 360.0 * np.cos(angle)
+    path = polygon(tmp_path / "limacon.dxf", np.column_stack((reach * np.cos(angle), reach * np.sin(angle))))
+    followed = camgeo.follow(path, shoe=60.0, rotation="ccw")
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(followed.recipe("lift.csv"), encoding="utf-8")
+    (tmp_path / "lift.csv").write_text(followed.lifts(), encoding="utf-8")
+    lift = camgeo.design(recipe).motion(followed.theta)
+    np.testing.assert_allclose(lift, followed.position - followed.least[0], atol=0.0101)
+    recipe.write_text(recipe.read_text("utf-8").replace(", suspect: keep", ""), encoding="utf-8")
+    with pytest.raises(camgeo.RecipeErrors, match="the row stands out"):
+        camgeo.design(recipe)
+
+
 def test_an_eccentric_circle_by_hand(tmp_path: Path) -> None:
     """A knife edge, a flat face and a yoke on a circle of radius 20 about a point 5 mm from the shaft."""
     path = tmp_path / "eccentric.dxf"
