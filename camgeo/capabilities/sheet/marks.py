@@ -128,8 +128,8 @@ class Page:
     @property
     def texts(self) -> list[Text]:
         """All texts, those of dimensions among them."""
-        found = (mark.text if isinstance(mark, Dimension) else mark for mark in self.marks)
-        return [mark for mark in found if isinstance(mark, Text)]
+        marks = (mark.text if isinstance(mark, Dimension) else mark for mark in self.marks)
+        return [mark for mark in marks if isinstance(mark, Text)]
 
 
 def arrow(tip: Point, angle: float) -> Line:

@@ -56,9 +56,9 @@ def table_of(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -
 
 
 def _error(name: str, off: float) -> str:
-    of = f" of the {name} contour" if name else ""
+    whose = f" of the {name} contour" if name else ""
     seen = f"{off:.2g} mm at most (estimated, {BETWEEN} places a step)"
-    return f"A periodic cubic spline through the rows{of} is off by {seen}."
+    return f"A periodic cubic spline through the rows{whose} is off by {seen}."
 
 
 def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> Table:
@@ -73,8 +73,8 @@ def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> 
         columns += list(np.where(there[::BETWEEN, None], points[::BETWEEN], np.nan).T)
         heads += [f"X {name}".strip(), f"Y {name}".strip()]
         if there.all():
-            made = _spline(points[::BETWEEN], BETWEEN)
-            notes.append(_error(name, float(np.hypot(*(made - points).T).max())))
+            splined = _spline(points[::BETWEEN], BETWEEN)
+            notes.append(_error(name, float(np.hypot(*(splined - points).T).max())))
         else:
             notes.append(
                 "Rows without numbers are places that were trimmed away; interpolation across them is not estimated."
@@ -90,8 +90,8 @@ def _spline(rows: Array, between: int) -> Array:
     bend = np.linalg.solve(matrix, 6.0 * (after - 2.0 * rows + before))
     t = (np.arange(between) / between)[None, :, None]
     a, b, c, d = rows[:, None], after[:, None], bend[:, None], np.roll(bend, -1, axis=0)[:, None]
-    made: Array = a * (1.0 - t) + b * t + (c * ((1.0 - t) ** 3 - (1.0 - t)) + d * (t**3 - t)) / 6.0
-    return made.reshape(n * between, -1)
+    splined: Array = a * (1.0 - t) + b * t + (c * ((1.0 - t) ** 3 - (1.0 - t)) + d * (t**3 - t)) / 6.0
+    return splined.reshape(n * between, -1)
 
 
 def table_pages(table: Table, paper: str) -> list[Page]:

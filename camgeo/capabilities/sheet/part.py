@@ -83,20 +83,20 @@ def chords(outline: ArcSpline) -> Array:
         beside = np.where(half == 0.0, 0.0, -0.5 * (np.cos((2.0 * share - 1.0) * half) - np.cos(half)) / np.sin(half))
     chord = (ends - starts)[piece]
     left = np.column_stack([-chord[:, 1], chord[:, 0]])
-    found: Array = starts[piece] + along[:, None] * chord + beside[:, None] * left
-    return found
+    points: Array = starts[piece] + along[:, None] * chord + beside[:, None] * left
+    return points
 
 
 def loops_of(outlines: Sequence[LayerOutline], body: Body, contours: int) -> tuple[Loop, ...]:
     """Loops of a disc's outlines, of which the first are its contours and those of its openings the last."""
     depths = [opening.depth for opening in body.openings]
     through = [True] * (len(outlines) - len(depths)) + [depth is None for depth in depths]
-    found = []
-    for k, one in enumerate(outlines):
-        if not isinstance(one.outline, ArcSpline):
+    loops = []
+    for k, outline in enumerate(outlines):
+        if not isinstance(outline.outline, ArcSpline):
             raise TypeError("a shop drawing is made of arcs")
-        found.append(Loop(chords(one.outline), one.layer, through[k], k < contours))
-    return tuple(found)
+        loops.append(Loop(chords(outline.outline), outline.layer, through[k], k < contours))
+    return tuple(loops)
 
 
 # --- the section through the shaft, across the axis at 0 --------------------------------------------------------------
@@ -137,14 +137,16 @@ def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
     floor = thick if body.pocket is None else thick - body.pocket
     reach = 0.0 if hub is None else 0.5 * hub.diameter
     ground = whole if body.pocket is None else [loop for loop in whole if not loop.surface]
-    found = []
-    for one in metal(ground):
-        above = [one] if body.pocket is None else [other for other in metal(whole) if one.low <= other.low < one.high]
-        hubs = max(one.low, -reach), min(one.high, reach)
-        low = _side(one, [one], (0.0, 0.0), (body.bottom, hubs), body.chamfer or 0.0)
-        high = _side(one, above, (floor, thick), (body.top, hubs), -(body.chamfer or 0.0))
-        found.append([*low, *reversed(high)])
-    return found
+    chains = []
+    for base in metal(ground):
+        above = (
+            [base] if body.pocket is None else [other for other in metal(whole) if base.low <= other.low < base.high]
+        )
+        hubs = max(base.low, -reach), min(base.high, reach)
+        low = _side(base, [base], (0.0, 0.0), (body.bottom, hubs), body.chamfer or 0.0)
+        high = _side(base, above, (floor, thick), (body.top, hubs), -(body.chamfer or 0.0))
+        chains.append([*low, *reversed(high)])
+    return chains
 
 
 def _side(
@@ -183,7 +185,7 @@ def _side(
 
 def hatching(chains: Sequence[Sequence[tuple[float, float]]], pitch: float) -> list[Array]:
     """Lines at 45 degrees within closed chains, each (2, 2), `pitch` apart."""
-    found = []
+    lines = []
     root = math.sqrt(0.5)
     for chain in chains:
         points = np.array(chain)
@@ -194,5 +196,5 @@ def hatching(chains: Sequence[Sequence[tuple[float, float]]], pitch: float) -> l
             places = np.sort(u[crossed] + (level - v[crossed]) / (after_v - v)[crossed] * (after_u - u)[crossed])
             for start, end in zip(places[::2], places[1::2], strict=True):
                 ends = np.array([(start, level), (end, level)])
-                found.append(root * np.column_stack([ends[:, 0] - ends[:, 1], ends[:, 0] + ends[:, 1]]))
-    return found
+                lines.append(root * np.column_stack([ends[:, 0] - ends[:, 1], ends[:, 0] + ends[:, 1]]))
+    return lines

@@ -197,31 +197,31 @@ def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance)
 
 def _holes(drawn: Drawn) -> list[Callout]:
     """Bolt holes, the dowel's, and those that lighten the disc."""
-    part, found = drawn.part, list[Callout]()
-    places = {one.name: one.circle for one in drawn.body.openings if one.circle is not None}
+    part, callouts = drawn.part, list[Callout]()
+    places = {opening.name: opening.circle for opening in drawn.body.openings if opening.circle is not None}
     if part.bolts is not None:
         bolts = part.bolts
         centre, radius = min(circle for name, circle in places.items() if name.startswith("bolt hole"))
         text, note = f"{bolts.count} × Ø{number(bolts.hole)}", f"first at {drawn.degrees(bolts.start)}"
-        found.append(Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole))
-        found.append(_pitch_circle("bolt circle", bolts.circle, 0.93))
+        callouts.append(Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole))
+        callouts.append(_pitch_circle("bolt circle", bolts.circle, 0.93))
     if part.dowel is not None:
         dowel = part.dowel
         centre, radius = places["dowel hole"]
         note = f"dowel at {drawn.degrees(dowel.at)}"
-        found.append(Callout(f"Ø{number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole))
-        found.append(_pitch_circle("dowel circle", dowel.circle, 1.07))
+        callouts.append(Callout(f"Ø{number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole))
+        callouts.append(_pitch_circle("dowel circle", dowel.circle, 1.07))
     holes = [circle for name, circle in places.items() if name.startswith("lightening hole")]
     if holes and part.lightening is not None and part.lightening.ring is not None:
         centre, radius = min(holes)
         text, note = f"{len(holes)} × Ø{number(2.0 * radius)}", f"first at {drawn.degrees(part.lightening.start)}"
-        found.append(Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius))
-        found.append(_pitch_circle("hole circle", 2.0 * math.hypot(*centre), 1.13))
+        callouts.append(Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius))
+        callouts.append(_pitch_circle("hole circle", 2.0 * math.hypot(*centre), 1.13))
     elif holes:
         for centre, radius in holes:
             note = f"at X{number(centre[0])} Y{number(centre[1])}"
-            found.append(Callout(f"Ø{number(2.0 * radius)}", note, centre, radius, math.pi, 2.0 * radius))
-    return found
+            callouts.append(Callout(f"Ø{number(2.0 * radius)}", note, centre, radius, math.pi, 2.0 * radius))
+    return callouts
 
 
 def _pitch_circle(name: str, diameter: float, half_turns: float) -> Callout:
@@ -516,20 +516,20 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
 def _behind(drawn: Drawn, sense: float) -> list[tuple[Point, ...]]:
     """Edges behind the cutting plane: rims of the bore, and what stands out further than the cut."""
     body = drawn.body
-    found: list[tuple[Point, ...]] = []
+    edges: list[tuple[Point, ...]] = []
     thick = body.thickness or 0.0
     if drawn.part.bore is not None:
         bore = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
         beyond = bore[sense * bore[:, 0] >= 0.0]
         low, high = float(beyond[:, 1].min()), float(beyond[:, 1].max())
-        found += [((body.bottom, low), (body.bottom, high)), ((body.top, low), (body.top, high))]
+        edges += [((body.bottom, low), (body.bottom, high)), ((body.top, low), (body.top, high))]
     outer = max((loop for loop in drawn.loops if loop.through), key=lambda loop: float(np.ptp(loop.points[:, 1])))
     beyond = outer.points[sense * outer.points[:, 0] >= 0.0]
     cut = [height for chain in sections(drawn) for _, height in chain]
     for end, edge in ((float(beyond[:, 1].max()), max(cut)), (float(beyond[:, 1].min()), min(cut))):
         if abs(end) > abs(edge) + 1e-3:
-            found.append(((0.0, edge), (0.0, end), (thick, end), (thick, edge)))
-    return found
+            edges.append(((0.0, edge), (0.0, end), (thick, end), (thick, edge)))
+    return edges
 
 
 def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -> None:
