@@ -39,11 +39,11 @@ STYLE = (
 )
 
 
-def write(recipe: Recipe, made: PartMade, found: dict[str, Any], call: Call) -> list[str]:
+def write(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call) -> list[str]:
     """Write the three files; returns their paths. Raises SurroundingsError as the disk does not do what it should."""
     folder = Path(call.out or "")
     drawing = _drawing(recipe, made)
-    page = _page(recipe, made, found, call, drawing)
+    page = _page(recipe, made, section, call, drawing)
     files = {".html": page.encode(), ".svg": drawing.encode()}
     written = []
     try:
@@ -135,16 +135,18 @@ def _path(points: Array) -> str:
 # --- the page ---------------------------------------------------------------------------------------------------------
 
 
-def _page(recipe: Recipe, made: PartMade, found: dict[str, Any], call: Call, drawing: str) -> str:
+def _page(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call, drawing: str) -> str:
     unit, mm = UNIT_NAMES[recipe.units], recipe.mm
     scale, moved = scale_of(recipe, made)
-    parts = [f"<h1>{one_line(recipe.name)}</h1><p>{one_line(', '.join(found['files']))}</p>"]
+    parts = [f"<h1>{one_line(recipe.name)}</h1><p>{one_line(', '.join(section['files']))}</p>"]
     rows = "".join(
         f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>"
-        for label, value in table_rows(found, everything=True)
+        for label, value in table_rows(section, everything=True)
     )
-    verdicts = "".join(f"<p><b>{one_line(name)}: {one_line(word)}</b></p>" for name, word in found["verdicts"].items())
-    remarks = "".join(f"<li>{one_line(text)}</li>" for text in found["remarks"])
+    verdicts = "".join(
+        f"<p><b>{one_line(name)}: {one_line(word)}</b></p>" for name, word in section["verdicts"].items()
+    )
+    remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
     parts.append(f"{verdicts}<table>{rows}</table><ul>{remarks}</ul>")
     parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
     for one in made.surfaces:
@@ -241,11 +243,11 @@ def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
     over, e, t = np.roll(over, -turn), np.roll(e, -turn), np.roll(t, -turn)
     edges = np.flatnonzero(np.diff(over.astype(np.intp), prepend=0, append=0))
     shaft = np.mod(np.degrees(one.on.points.follower.shaft_angle(t)), 360.0)
-    found = []
+    stretches = []
     for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         worst = a + int(np.argmax(e[a:b]))
-        found.append((float(shaft[a]), float(shaft[b - 1]), float(e[worst]), float(shaft[worst])))
-    return found
+        stretches.append((float(shaft[a]), float(shaft[b - 1]), float(e[worst]), float(shaft[worst])))
+    return stretches
 
 
 def _take_off(made: PartMade, mm: float, unit: str) -> str:

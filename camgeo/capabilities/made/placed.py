@@ -11,7 +11,7 @@ from camgeo.common.errors import CallError
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
 from kin.law.contacts import Flat, KnifeEdge, Roller
-from kin.made.points import Placing, demand_alike, demand_round, settled, turned_at
+from kin.made.points import Placing, UnlikePointsError, demand_alike, demand_round, settled, turned_at
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -172,9 +172,9 @@ def _of_lifts(
 
 
 def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:
-    """Raise CallError for points of the bore."""
+    """Raise UnlikePointsError for points of the bore."""
     bore = recipe.part.bore
     radius = np.concatenate([np.hypot(one.points.places[:, 0], one.points.places[:, 1]) for one in points])
     if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
         across = f"{bore / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} across"
-        raise CallError(f"the points lie on the bore, {across}: measure the contour")
+        raise UnlikePointsError(f"the points lie on the bore, {across}: measure the contour")

@@ -86,15 +86,15 @@ class Call:
 
         def length(name: str, value: object, *, least: float = 0.0) -> float | None:
             try:
-                found = read_quantity(str(value), recipe.units) * recipe.mm
+                number = read_quantity(str(value), recipe.units) * recipe.mm
             except Complaint:
-                found = math.nan
-            if not least <= found <= MOST_LENGTH:
+                number = math.nan
+            if not least <= number <= MOST_LENGTH:
                 faults.append(
                     f"--{name.replace('_', '-')}: a length such as 0.002 or 0.0001in is expected, not {spelled(value)}"
                 )
                 return None
-            return found
+            return number
 
         align = str(options.get("align", "none"))
         if align not in ALIGN:
@@ -167,8 +167,8 @@ def tables_of(paths: Sequence[Path]) -> list[PointTable]:
 
 def disc_of(path: Path, place: int, discs: int) -> int:
     """Which disc a file is of: the end of its name, `-1` or `-2`, or its place among the files."""
-    found = re.fullmatch(r".+-([1-9])", path.stem)
-    number = int(found[1]) - 1 if found else place
+    ending = re.fullmatch(r".+-([1-9])", path.stem)
+    number = int(ending[1]) - 1 if ending else place
     if not 0 <= number < discs:
         raise CallError(f"{escaped(str(path))}: the cam has {discs} discs; name the files NAME-1.csv and NAME-2.csv")
     return number
@@ -187,7 +187,7 @@ def places_of(table: PointTable, scale: float, *, mirrored: bool) -> tuple[Array
 
 def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]], probing: Probing) -> list[OnSurface]:
     """Give each surface of a disc its points, by a column that names it or by the nearest; repeats are averaged."""
-    found = []
+    surfaces = []
     gathered: dict[str, list[tuple[Array, Array | None, Indices, Indices]]] = {s.name: [] for s in part.surfaces}
     for file, table, scale in pieces:
         places, directions = places_of(table, scale, mirrored=part.mirrored)
@@ -207,8 +207,8 @@ def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]]
         )
         places, files, lines = (np.concatenate([row[k] for row in rows]) for k in (0, 2, 3))
         points = SurfacePoints(surface.gauge, surface.side, places, probing.ball or 0.0, directions)
-        found.append(OnSurface(surface, points, files, lines, len(points)))
-    return found
+        surfaces.append(OnSurface(surface, points, files, lines, len(points)))
+    return surfaces
 
 
 def label_of(name: str) -> str:

@@ -33,7 +33,7 @@ def section(
     recipe: Recipe, paths: Sequence[Path], made: PartMade, call: Call, verdicts: Mapping[str, str]
 ) -> dict[str, Any]:
     """Give the section `made`."""
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],
         "verdicts": dict(verdicts),
@@ -44,17 +44,17 @@ def section(
     if made.play is not None:
         worst = {key: int(pick(made.play.gap)) for key, pick in (("least", np.argmin), ("most", np.argmax))}
         scale, unit = scale_of(recipe, made)
-        found["play"] = {"unit": unit}
+        entry["play"] = {"unit": unit}
         for key, at in worst.items():
-            found["play"][key] = scale * float(made.play.gap[at])
-            found["play"][f"{key}_at_deg"] = degrees(float(made.play.shaft[at]))
-        found["play"]["uncertainty"] = scale * COVERAGE * float(made.play.sds.max())
+            entry["play"][key] = scale * float(made.play.gap[at])
+            entry["play"][f"{key}_at_deg"] = degrees(float(made.play.shaft[at]))
+        entry["play"]["uncertainty"] = scale * COVERAGE * float(made.play.sds.max())
     if made.output is not None:
         linkage = made.discs[0].part.linkage
         swings = linkage is not None and linkage.mechanism.unit == "deg"
         factor = math.degrees(1.0) if swings else 1.0 / recipe.mm
         worst_at = int(np.argmax(np.abs(made.output.worst)))
-        found["output"] = {
+        entry["output"] = {
             "unit": "deg" if swings else UNIT_NAMES[recipe.units],
             "max": factor * abs(float(made.output.worst[worst_at])),
             "at_deg": degrees(float(made.output.shaft[worst_at])),
@@ -63,9 +63,9 @@ def section(
         }
     if made.lifts is not None:
         scale, _ = scale_of(recipe, made)
-        found["lifts"] = {"zero": scale * made.lifts[0], "turned_deg": math.degrees(made.lifts[1])}
-    found["remarks"] = list(made.remarks)
-    return found
+        entry["lifts"] = {"zero": scale * made.lifts[0], "turned_deg": math.degrees(made.lifts[1])}
+    entry["remarks"] = list(made.remarks)
+    return entry
 
 
 def scale_of(recipe: Recipe, made: PartMade) -> tuple[float, str]:
@@ -80,7 +80,7 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
     surface, index = _of_all(disc, worst)
     parameter = held.deviations[surface].parameter[index : index + 1]
     gauge = disc.surfaces[surface].on.surface.gauge
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "name": disc.part.name,
         "datum": held.datum,
         "profile": 2.0 * held.greatest / mm,
@@ -93,18 +93,18 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         **_placing(recipe, held.placing),
     }
     if held.turns is not None and held.turns[1] - held.turns[0] > 1e-9:
-        found["turned_from_deg"], found["turned_to_deg"] = (math.degrees(turn) for turn in held.turns)
+        entry["turned_from_deg"], entry["turned_to_deg"] = (math.degrees(turn) for turn in held.turns)
     if held.certified is not None:
-        found["certificate"] = 2.0 * held.certified.certificate / mm
-        found["multipliers"] = held.certified.multipliers.tolist()
-    found["causes"] = _causes(recipe, disc)
+        entry["certificate"] = 2.0 * held.certified.certificate / mm
+        entry["multipliers"] = held.certified.multipliers.tolist()
+    entry["causes"] = _causes(recipe, disc)
     zone = recipe.of(Made)
     lack = 0.0 if zone is None or zone.profile is None else -float(held.e.min()) - 0.5 * zone.profile
     if lack > 0.0:
-        found["reduction"] = _reduction(recipe, disc, lack)
+        entry["reduction"] = _reduction(recipe, disc, lack)
     if disc.placing.turn or any(disc.placing.shift):
-        found["aligned"] = _placing(recipe, disc.placing)
-    return found
+        entry["aligned"] = _placing(recipe, disc.placing)
+    return entry
 
 
 def _reduction(recipe: Recipe, disc: DiscMade, lack: float) -> dict[str, Any]:
@@ -196,20 +196,20 @@ def motion_section(recipe: Recipe, made: PartMade, call: Call) -> dict[str, Any]
     phase, remaining = errors.phase
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
     common: Array = np.abs(errors.gain) * systematic(call)
-    found: dict[str, Any] = {"unit": unit, "offset": scale * errors.offset}
-    found["offset_uncertainty"] = scale * float(common.mean())
+    entry: dict[str, Any] = {"unit": unit, "offset": scale * errors.offset}
+    entry["offset_uncertainty"] = scale * float(common.mean())
     for k, name in enumerate(DERIVATIVES):
         at = int(np.nanargmax(np.abs(rows[k])))
         own = uncertain[at] if k == 0 else COVERAGE * errors.sds[k, at]
-        found[name] = {
+        entry[name] = {
             "max": scale * float(rows[k, at]),
             "at_deg": degrees(float(errors.shaft[at])),
             "uncertainty": scale * float(own),
             "unit": unit + ("", "/rad", "/rad^2")[k],
         }
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
-    found["phase_deg"] = sign * math.degrees(phase)
-    found["without_phase"] = scale * float(np.abs(remaining).max())
+    entry["phase_deg"] = sign * math.degrees(phase)
+    entry["without_phase"] = scale * float(np.abs(remaining).max())
     made_peak, meant_peak = errors.peak_acceleration
-    found["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * meant_peak, "unit": f"{unit}/rad^2"}
-    return found
+    entry["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * meant_peak, "unit": f"{unit}/rad^2"}
+    return entry

@@ -59,7 +59,7 @@ class Started(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
+class _MeasuredCam:
     """What points say of a motion: base radius and its uncertainty (k = 2), mm, and strokes where there are such."""
 
     recipe: Recipe
@@ -78,30 +78,29 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
     names = ", ".join(escaped(str(path)) for path in paths)
     rough = _placeholders(recipe, paths)
     try:
-        found, source = _found(rough, recipe), Source.of(rough.text, str(recipe))
+        measured, source = _measured_cam(rough, recipe), Source.of(rough.text, str(recipe))
     except (GapError, UnsettledError, ContactError) as error:
         raise CallError(f"{names}: {error}") from error
     except IntentError as error:
         raise CallError(f"{names}: these points give the follower no motion: {error.message}") from error
-    base = _number(found.base / found.recipe.mm, found.unsure / found.recipe.mm)
+    base = _number(measured.base / measured.recipe.mm, measured.unsure / measured.recipe.mm)
     made = _with(source, BASE, base)
     segments, why = None, "there are no strokes between dwells or turning points"
-    if found.programme is not None:
-        segments, why = _segments(found, found.programme)
+    if measured.programme is not None:
+        segments, why = _segments(measured, measured.programme)
     beside: dict[str, str] = {}
-    unit = UNIT_NAMES[found.recipe.units]
-    told = f"base radius {found.base / found.recipe.mm:.6g} +- {found.unsure / found.recipe.mm:.2g} {unit}"
+    unit = UNIT_NAMES[measured.recipe.units]
+    told = f"base radius {measured.base / measured.recipe.mm:.6g} +- {measured.unsure / measured.recipe.mm:.2g} {unit}"
     lines = [*rough.remarks, f"{told}; {base:.9g} is written"]
-    if segments is None or found.programme is None:
+    if segments is None or measured.programme is None:
         table = f"{Path(name).stem}-lift.csv"
-        beside[table] = _lifts(found)
-        made = _with(made, MOTION, {"table": table, "angle": "cam", "reading": _in_unit(found, found.reading)})
-        lines.append(
-            f"the motion is a table, {table}, within {_in_unit(found, found.reading):.3g} {_unit(found)}: {why}"
-        )
+        beside[table] = _lifts(measured)
+        made = _with(made, MOTION, {"table": table, "angle": "cam", "reading": _in_unit(measured, measured.reading)})
+        reading = f"{_in_unit(measured, measured.reading):.3g} {_unit(measured)}"
+        lines.append(f"the motion is a table, {table}, within {reading}: {why}")
     else:
         made = _with(made, MOTION, segments)
-        lines += _told(found, found.programme)
+        lines += _told(measured, measured.programme)
     lines += _verified(made.text, beside, name, paths)
     return Started(made.text, beside, tuple(lines))
 
@@ -147,7 +146,7 @@ def _strokes(height: float) -> list[Value]:
     return [{kind: height, "over": 180.0, "law": "cycloidal"} for kind in ("rise", "return")]
 
 
-def _found(rough: _Rough, path: Path) -> _Found:
+def _measured_cam(rough: _Rough, path: Path) -> _MeasuredCam:
     """Base radius, motion, and its programme if there is one."""
     recipe = load_text(rough.text, path)
     exact = recipe.cam.exact(framed=recipe.linkage is not None)
@@ -167,16 +166,16 @@ def _found(rough: _Rough, path: Path) -> _Found:
         at = int(np.argmin(programme.levels))
         lowest, unsure = float(programme.levels[at]), float(programme.uncertainty[1][at])
     circle, more = (motion.lifted_circle(level) for level in (lowest, lowest + unsure))
-    return _Found(recipe, motion, rough.base + circle, abs(more - circle), reading, programme)
+    return _MeasuredCam(recipe, motion, rough.base + circle, abs(more - circle), reading, programme)
 
 
-def _in_unit(found: _Found, value: float) -> float:
+def _in_unit(measured: _MeasuredCam, value: float) -> float:
     """A displacement in the recipe's unit, or degrees."""
-    return math.degrees(value) if found.motion.gauge.unit == "deg" else value / found.recipe.mm
+    return math.degrees(value) if measured.motion.gauge.unit == "deg" else value / measured.recipe.mm
 
 
-def _unit(found: _Found) -> str:
-    return "deg" if found.motion.gauge.unit == "deg" else UNIT_NAMES[found.recipe.units]
+def _unit(measured: _MeasuredCam) -> str:
+    return "deg" if measured.motion.gauge.unit == "deg" else UNIT_NAMES[measured.recipe.units]
 
 
 def _number(value: float, uncertainty: float) -> float:
@@ -188,7 +187,7 @@ def _number(value: float, uncertainty: float) -> float:
     return float(f"{value:.9g}")
 
 
-def _segments(found: _Found, programme: Programme) -> tuple[list[Value] | None, str]:
+def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value] | None, str]:
     """Segments of the motion from angle 0 on, in the recipe's units and degrees; None with the reason why not."""
     angles = [
         _angle(float(k), float(off)) for k, off in zip(programme.boundaries, programme.uncertainty[0], strict=True)
@@ -196,12 +195,12 @@ def _segments(found: _Found, programme: Programme) -> tuple[list[Value] | None, 
     order = sorted(programme.strokes, key=lambda stroke: angles[stroke.first])
     if any(0.0 < angles[stroke.last] < angles[stroke.first] for stroke in order):
         return None, "the turn begins within a stroke: turn the points so that it begins in a dwell"
-    heights = _heights(found, programme)
-    unit = math.radians(1.0) if found.motion.gauge.unit == "deg" else found.recipe.mm
+    heights = _heights(measured, programme)
+    unit = math.radians(1.0) if measured.motion.gauge.unit == "deg" else measured.recipe.mm
     levels = programme.levels.min() + unit * np.array(heights)
-    left = programme.written(found.motion, np.radians(angles), levels).greatest
-    if left > MOST_LEFT * found.reading:
-        return None, f"the laws that fit best leave {_in_unit(found, left):.3g} {_unit(found)}"
+    left = programme.written(measured.motion, np.radians(angles), levels).greatest
+    if left > MOST_LEFT * measured.reading:
+        return None, f"the laws that fit best leave {_in_unit(measured, left):.3g} {_unit(measured)}"
     segments: list[Value] = []
     at = 0.0
     for stroke in order:
@@ -223,16 +222,14 @@ def _angle(boundary: float, uncertainty: float) -> float:
     return 0.0 if abs(near) <= AT_ZERO else near % 360.0
 
 
-def _heights(found: _Found, programme: Programme) -> list[float]:
+def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
     """Levels above the lowest, in the recipe's unit or degrees, as round as their uncertainties let them be."""
     above = programme.levels - programme.levels.min()
-    unsure = programme.uncertainty[1]
-    return [
-        _number(_in_unit(found, float(k)), _in_unit(found, float(off))) for k, off in zip(above, unsure, strict=True)
-    ]
+    pairs = zip(above.tolist(), programme.uncertainty[1].tolist(), strict=True)
+    return [_number(_in_unit(measured, height), _in_unit(measured, unsure)) for height, unsure in pairs]
 
 
-def _told(found: _Found, programme: Programme) -> list[str]:
+def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
     """What was recognised of each stroke, and how sure that is."""
     unsure, lines = programme.uncertainty[0], []
     order = sorted(programme.strokes, key=lambda one: _angle(programme.boundaries[one.first], unsure[one.first]))
@@ -241,24 +238,24 @@ def _told(found: _Found, programme: Programme) -> list[str]:
         begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
         end = begin + (end - begin) % 360.0
         widest = max(math.degrees(unsure[k]) for k in (stroke.first, stroke.last))
-        height = _in_unit(found, float(programme.levels[stroke.high] - programme.levels[stroke.low]))
-        off = _in_unit(found, float(np.hypot(*(programme.uncertainty[1][k] for k in (stroke.low, stroke.high)))))
-        law = f"{stroke.law} leaves {_in_unit(found, stroke.residual):.2g} {_unit(found)}"
+        height = _in_unit(measured, float(programme.levels[stroke.high] - programme.levels[stroke.low]))
+        off = _in_unit(measured, float(np.hypot(*(programme.uncertainty[1][k] for k in (stroke.low, stroke.high)))))
+        law = f"{stroke.law} leaves {_in_unit(measured, stroke.residual):.2g} {_unit(measured)}"
         if stroke.others:
             law += f", {', '.join(stroke.others)} hardly more: look at which it was"
         lines.append(
-            f"stroke {number}: {height:.6g} +- {off:.2g} {_unit(found)} from {begin:.5g} to {end:.5g} +- {widest:.2g} "
-            f"degrees; {law}"
+            f"stroke {number}: {height:.6g} +- {off:.2g} {_unit(measured)} "
+            f"from {begin:.5g} to {end:.5g} +- {widest:.2g} degrees; {law}"
         )
-    lines.append(f"the motion is within {_in_unit(found, programme.greatest):.3g} {_unit(found)} of the points'")
+    lines.append(f"the motion is within {_in_unit(measured, programme.greatest):.3g} {_unit(measured)} of the points'")
     return lines
 
 
-def _lifts(found: _Found) -> str:
+def _lifts(measured: _MeasuredCam) -> str:
     """Lifts over the shaft angle, a row each half degree and one for the whole turn."""
-    motion = found.motion
+    motion = measured.motion
     step = len(motion.position) // 720
-    lift = [_in_unit(found, float(value)) for value in (motion.position - motion.position.min())[::step]]
+    lift = [_in_unit(measured, float(value)) for value in (motion.position - motion.position.min())[::step]]
     rows = [f"{0.5 * k:.12g},{value:.9f}\n" for k, value in enumerate([*lift, lift[0]])]
     return "".join(["angle,lift\n", *rows])
 

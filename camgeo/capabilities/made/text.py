@@ -11,24 +11,24 @@ PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  ac
 
 def shown(report: dict[str, Any], *, everything: bool) -> str:
     """Give the table; with everything also spans, multipliers and each outlier."""
-    found, verdict = report["made"], "ok" if report["ok"] else "FAILED"
-    if not report["ok"] and "failed" not in found["verdicts"].values():
+    section, verdict = report["made"], "ok" if report["ok"] else "FAILED"
+    if not report["ok"] and "failed" not in section["verdicts"].values():
         if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):
             verdict = "FAILED"
         else:
             verdict = "NOT PROVED"
-    lines = [f"{report['recipe']}: {verdict}  {escaped(', '.join(found['files']))}"]
-    lines += [f"  {label:<30}{value}" for label, value in table_rows(found, everything=everything)]
-    lines += [f"  remark: {text}" for text in found["remarks"]]
+    lines = [f"{report['recipe']}: {verdict}  {escaped(', '.join(section['files']))}"]
+    lines += [f"  {label:<30}{value}" for label, value in table_rows(section, everything=everything)]
+    lines += [f"  remark: {text}" for text in section["remarks"]]
     lines += [f"  {check['name']}: {escaped(check['detail'])}" for check in report["checks"] if not check["ok"]]
-    lines += [f"  wrote {escaped(path)}" for path in found.get("written", ())]
+    lines += [f"  wrote {escaped(path)}" for path in section.get("written", ())]
     return "\n".join(lines)
 
 
-def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
+def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
     """Give what was found, row by row: what it is, and its figures."""
-    unit, rows = found["unit"], []
-    for one in found["surfaces"]:
+    unit, rows = section["unit"], []
+    for one in section["surfaces"]:
         on = f" on {one['name']}" if one["name"] else ""
         told = f"{one['points']}{on}"
         told += f", noise {one['noise']:.3g} {unit}" if one["noise"] else ""
@@ -44,8 +44,8 @@ def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, st
         point, wave, over = one["least_fault_point"], one["least_fault_span"], 2.0 * one["span_deg"]
         faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
         rows.append(("  least fault that is found", f"{faults} {unit}"))
-    for disc in found["discs"]:
-        of = f" of {disc['name']}" if len(found["discs"]) > 1 else ""
+    for disc in section["discs"]:
+        of = f" of {disc['name']}" if len(section["discs"]) > 1 else ""
         value = f"{disc['profile']:.4g} +- {disc['uncertainty']:.2g} {unit}"
         where = f"{disc['greatest']:+.4g} at {disc['at_deg']:.2f} degrees, line {disc['line']}"
         rows.append((f"profile{of}, datum {disc['datum']}", f"{value}; {where}"))
@@ -66,7 +66,7 @@ def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, st
             cure = disc["reduction"]
             told = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
             rows.append(("  good if smaller all round by", f"{told}, within {cure['change']:.2g} of that"))
-    motion = found["motion"]
+    motion = section["motion"]
     for name, label in PER.items():
         own = motion[name]
         rows.append(
@@ -81,16 +81,16 @@ def table_rows(found: dict[str, Any], *, everything: bool) -> list[tuple[str, st
     )
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
-    if "play" in found:
-        play = found["play"]
+    if "play" in section:
+        play = section["play"]
         least, most = (f"{play[key]:+.4g} at {play[f'{key}_at_deg']:.2f}" for key in ("least", "most"))
         rows.append(("play", f"{least} to {most} degrees, +- {play['uncertainty']:.2g} {play['unit']}"))
-    if "output" in found:
-        output = found["output"]
+    if "output" in section:
+        output = section["output"]
         told = f"{output['max']:.4g} +- {output['uncertainty']:.2g} {output['unit']} at {output['at_deg']:.2f} degrees"
         rows.append(("output, error", f"{told}; {output['centred']:.4g} centred"))
-    if "lifts" in found:
-        rows.append(("zero of the readings", f"{found['lifts']['zero']:+.6g} {motion['unit']}"))
+    if "lifts" in section:
+        rows.append(("zero of the readings", f"{section['lifts']['zero']:+.6g} {motion['unit']}"))
     return rows
 
 
