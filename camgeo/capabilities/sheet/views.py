@@ -483,8 +483,9 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
         page.marks.append(Line(np.array(chain), THICK, "VIEW", closed=True))
     for ends in hatching(chains, HATCH):
         page.marks.append(Line(ends, THIN, "HATCH"))
-    for edges in _behind(drawn, sense):
-        page.line(*(placed(*point) for point in edges), weight=THICK, layer="VIEW")
+    behind = [[placed(*point) for point in edges] for edges in _behind(drawn, sense)]
+    for edges in behind:
+        page.line(*edges, weight=THICK, layer="VIEW")
     right = left + k * drawn.depth
     page.line((left - 4.0, y), (right + 4.0, y), layer="CENTRE", pattern="chain")
     if body.screw is not None and body.screw_height is not None and body.hub is not None:
@@ -495,7 +496,7 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
             )
     top = y + k * drawn.reach + ROUND + 2.0
     page.text((0.5 * (left + right), top + 1.5), "A-A", PLAIN, "middle")
-    low = min(height for chain in chains for _, height in chain)
+    low = min(height for chain in [*chains, *behind] for _, height in chain)
     # the lengths stand below the part, and below the datum of its bore where that reaches lower
     lanes = low if sizes.bore is None else min(low, y - 0.5 * k * sizes.bore.diameter - DATUM)
     spans = [sorted(placed(z, 0.0)[0] for z in (length.low, length.high)) for length in sizes.under]

@@ -160,6 +160,13 @@ def test_of_a_part_with_everything(paper: str, projection: str, drawn: list[draw
     demand_clear(pages)
 
 
+def test_lengths_stand_below_what_is_seen_behind_the_cut(drawn: list[drawing.Pages], tmp_path: Path) -> None:
+    """A rosette's leaf beside the cut reaches further down than the cut."""
+    path = next(path for path in SHIPPED if path.stem == "w-rosette")
+    camgeo.export(load_text(with_sheet(path.read_text(encoding="utf-8"), "paper: A3"), path), tmp_path)
+    demand_clear(drawn[0])
+
+
 def test_a_planted_text_over_another_is_seen(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(CAM, tmp_path)
     (pages,) = drawn
