@@ -12,6 +12,7 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.machining.cutter import cutter_path, no_hollow
 from camgeo.synthesis.checks import hollow_radius
 from kin.judge.check import Check, failed
+from kin.numeric.lengths import amount_words
 
 if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
@@ -67,7 +68,7 @@ def _reached(
     told = "no hollow"
     if not no_hollow(contour):
         radius, at = hollow_radius(surface.side, contour)
-        told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
+        told = f"least hollow radius {amount_words(radius, 'mm')} at {design.motion.shaft_deg(at):.6g} deg"
     try:
         path = cutter_path(contour, manufacture.radius)
     except UndercutError as error:
@@ -78,7 +79,8 @@ def _reached(
     worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
     first, last = design.motion.shaft_deg(worst.start), design.motion.shaft_deg(worst.end)
     free = 2.0 * min(cut.free_at for cut in path.lost)
-    detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
+    would = f"a cutter {amount_words(free, 'mm')} across would reach all"
+    detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; {would}"
     at_deg = design.motion.shaft_deg(worst.at)
     return Check(
         REACH.name,

@@ -16,6 +16,7 @@ from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file, shaft_of_file
 from camgeo.synthesis.intent import permitted
+from kin.numeric.lengths import marked
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -212,7 +213,7 @@ class Job:
             return check
         less = self.recipe.cam.advice.less_swing(self.recipe.mm)
         why = f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {less} would satisfy it"
-        return replace(check, detail=f"{check.detail}: {why}")
+        return replace(check, detail=f"{marked(check.detail)}: {why}")
 
 
 def looked_at(path: Path, request: FileRequest, units: float) -> Made:

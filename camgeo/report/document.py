@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
-from camgeo.measures.units import in_units, pounds
+from camgeo.measures.units import UNIT_NAMES, in_units, pounds
 from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import is_strict, sign, title, unit_text, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 from kin.judge.verdict import UNREAD
+from kin.numeric.lengths import in_unit
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
     if check.surface:
         entry["surface"] = check.surface
     if check.detail:
-        entry["detail"] = check.detail
+        entry["detail"] = in_unit(check.detail, recipe.mm, UNIT_NAMES[recipe.units])
     return entry
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from kin.follower.drive import Shifted
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
 from kin.law.contacts import METRE
+from kin.numeric.lengths import span_words
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -72,9 +73,11 @@ class Closure:
     def detail(self, play: Play) -> str:
         """What the check reports of a play that was found."""
         if self.breadth is not None:
-            return f"breadth {self.breadth - play.most:.9g} to {self.breadth - play.least:.9g} mm"
+            return f"breadth {span_words(self.breadth - play.most, self.breadth - play.least)}"
         sampled = ", sampled" if play.extremes == "sampled" else ""
-        return f"backlash from {play.least:.3g} to {play.most:.3g} {play.unit}{sampled}"
+        span = f"{play.least:.3g} to {play.most:.3g} {play.unit}"
+        span = span_words(play.least, play.most, ".3g") if play.unit == "mm" else span
+        return f"backlash from {span}{sampled}"
 
 
 @dataclass(frozen=True, eq=False)

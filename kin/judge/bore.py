@@ -9,7 +9,7 @@ import numpy as np
 from kin.contour.arcs import dot, left
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.numeric.extrema import extremes, resolution
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -
             return None
         return failed("bore", f"{len(holes)} hole(s), where none is expected", unit="mm", limit=tolerance)
     if len(holes) != 1:
-        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is expected"
+        detail = f"{len(holes)} holes, where one of diameter {length_words(bore, '.9g')} {UNIT} is expected"
         return failed("bore", detail, unit="mm", limit=tolerance)
     return round_check("bore", holes[0], bore, tolerance)
 
@@ -35,8 +35,8 @@ def round_check(name: str, contour: Contour, diameter: float, tolerance: float) 
     least, most = _distance_range(contour)
     across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
     worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
-    place = place_text(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max))
-    detail = f"diameter {across:.9g} mm about {place}"
+    place = place_words(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max))
+    detail = f"diameter {length_words(across, '.9g')} {UNIT} about {place}"
     return at_most(name, worst, tolerance, "mm", detail=detail, slack=ROUNDING * diameter)
 
 

@@ -21,6 +21,7 @@ from kin.judge.layers import SAME, between_sections, settled
 from kin.judge.limits import limit_of
 from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
+from kin.numeric.lengths import UNIT, length_words, span_words
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.files import kind_of, read_solid
@@ -221,9 +222,11 @@ def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Chec
             meant.remove(z)
     nearest = [float(faces[np.abs(faces - z).argmin()]) for z in meant]
     off = max((abs(face - z) for face, z in zip(nearest, meant, strict=True)), default=0.0)
-    named, right = (" and ".join(f"{z:.9g}" for z in heights) for heights in (nearest, meant))
+    named, right = (" and ".join(length_words(z, ".9g") for z in heights) for heights in (nearest, meant))
     detail = (
-        f"faces at z = {named} mm, {right} mm are meant" if meant else "it has no face of its own beside its equals"
+        f"faces at z = {named} {UNIT}, {right} {UNIT} are meant"
+        if meant
+        else "it has no face of its own beside its equals"
     )
     checked = at_most("position", off, lobe.limits.tolerance, "mm", detail=detail, slack=SAME)
     return less_sure(checked, solid.uneven)
@@ -234,8 +237,8 @@ def _ends(solid: AnySolid, intent: CamshaftIntent) -> Check:
     shaft, meant = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
     off = max(abs(solid.z_min - shaft.low), abs(solid.z_max - shaft.high))
     stray = [z for z in solid.faces if float(np.abs(meant - z).min()) > intent.tolerance + SAME]
-    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, {shaft.low:.9g} to {shaft.high:.9g} mm is expected"
-    faults = [f"a horizontal face at z = {z:.9g} mm, where none is expected" for z in stray]
+    detail = f"z from {span_words(solid.z_min, solid.z_max)}, {span_words(shaft.low, shaft.high)} is expected"
+    faults = [f"a horizontal face at z = {length_words(z, '.9g')} {UNIT}, where none is expected" for z in stray]
     faults += [fault for _, fault in between_sections(solid, np.unique(meant).tolist(), (), intent.tolerance)]
     if faults:
         return failed("thickness", "; ".join([*faults[:MOST_NAMED], detail]), unit="mm", limit=intent.tolerance)
@@ -257,7 +260,7 @@ def _volume(solid: AnySolid, intent: CamshaftIntent, surfaces: Sequence[SurfaceV
             area, length = envelope.area_and_perimeter() if envelope.regular else read[part.name]
         volume += (area - 0.25 * np.pi * bore**2) * (high - low)
         wall += (length + np.pi * bore + 2.0 * np.pi * intent.tolerance) * (high - low) + 2.0 * area
-    detail = f"{solid.volume:.9g} mm^3, by the intent {volume:.9g}"
+    detail = f"{length_words(solid.volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(volume, '.9g', 3)}"
     return at_most(
         "volume", abs(solid.volume - volume), intent.tolerance * wall, "mm^3", detail=detail, slack=ROUNDING * volume
     )

@@ -6,6 +6,7 @@ import math
 from typing import Literal
 
 from kin.numeric.angles import degrees
+from kin.numeric.lengths import FIRST, Words, amount_words, marked
 from kin.numeric.records import dataclass, replace
 
 Sense = Literal["at_least", "at_most"]
@@ -31,6 +32,11 @@ class Check:
     file: str | None = None
     detail: str = ""
     surface: str = ""
+
+    def __post_init__(self) -> None:
+        """Show the lengths of `detail` in mm; `kin.numeric.lengths.in_unit` gives them in another unit."""
+        if FIRST in self.detail:
+            object.__setattr__(self, "detail", Words(self.detail))
 
 
 def at_most(
@@ -62,8 +68,8 @@ def less_sure(check: Check, by: float) -> Check:
     if not by or check.value is None or check.limit is None:
         return check
     value = check.value + by
-    told = f"heights differ by up to {by:.3g} {check.unit} through rounding"
-    detail = f"{check.detail}; {told}" if check.detail else told
+    told = f"heights differ by up to {amount_words(by, check.unit, '.3g')} through rounding"
+    detail = f"{marked(check.detail)}; {told}" if check.detail else told
     return replace(check, ok=check.ok and value <= check.limit, value=value, detail=detail)
 
 

@@ -16,6 +16,7 @@ from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, 
 from kin.judge.verdict import SurfaceVerdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
+from kin.numeric.lengths import UNIT, amount_words, length_words, marked
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -93,7 +94,7 @@ def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float
     from kin.contour.placement import placement  # what is right does without
 
     elsewhere = placement(contour, envelope.points(PLACED), tolerance)
-    return replace(check, detail=f"{check.detail}; {elsewhere}") if elsewhere else check
+    return replace(check, detail=f"{marked(check.detail)}; {elsewhere}") if elsewhere else check
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:
@@ -123,12 +124,13 @@ def _contour_check(
     worst, parameter = deviation.worst
     if standing:
         worst = max(worst - standing, deviation.inside if surface.side > 0 else deviation.outside)
-    detail = f"{deviation.outside:.3g} mm outside, {deviation.inside:.3g} mm inside the exact contour"
+    outside, inside = (f"{length_words(off, '.3g')} {UNIT}" for off in (deviation.outside, deviation.inside))
+    detail = f"{outside} outside, {inside} inside the exact contour"
     if deviation.rounds != 1:
         detail = f"the contour goes {deviation.rounds} times round the exact one; {detail}"
         return failed("contour", detail, unit="mm", limit=tolerance)
     if deviation.backwards > tolerance + slack:
-        detail = f"the contour turns back on itself by {deviation.backwards:.3g} mm; {detail}"
+        detail = f"the contour turns back on itself by {length_words(deviation.backwards, '.3g')} {UNIT}; {detail}"
         worst = max(worst, deviation.backwards)
     at = float(surface.gauge.shaft_angle(np.array([parameter]))[0])
     return at_most("contour", worst, tolerance, "mm", angle=at, detail=detail, slack=slack)
@@ -162,12 +164,14 @@ def _motion_checks(
 
 def beside_interference(check: Check, play: Play, own: Play) -> Check:
     """A check on what a gauge has left, said of its follower: a limit that lets all of an interference go is none."""
-    interference, detail = play.least - own.least, f"interference from {-own.most:.6g} to {-own.least:.6g} {own.unit}"
+    least, most = length_words(-own.most), f"{length_words(-own.least)} {UNIT}"
+    if own.unit != "mm":
+        least, most = f"{-own.most:.6g}", f"{-own.least:.6g} {own.unit}"
+    interference, detail = play.least - own.least, f"interference from {least} to {most}"
     if check.limit is None or check.limit < interference:
         return replace(check, detail=detail)
-    permitted = (
-        f"{check.limit:.3g} {check.unit} would be permitted, as much as the interference; give a finer tolerance"
-    )
+    amount = amount_words(check.limit, check.unit, ".3g")
+    permitted = f"{amount} would be permitted, as much as the interference; give a finer tolerance"
     return replace(check, ok=False, limit=None, detail=f"{permitted}; {detail}")
 
 
@@ -196,4 +200,4 @@ def _found(motion: MotionError) -> str:
     """Tell how the greatest motion error was found, where that leaves a remainder."""
     if motion.extremes == "sampled":
         return f"sampled; {motion.remainder:.3g} {motion.unit} more is an estimate of what lies between"
-    return f"true within {motion.remainder:.2g} {motion.unit}" if motion.remainder else ""
+    return f"true within {amount_words(motion.remainder, motion.unit, '.2g')}" if motion.remainder else ""

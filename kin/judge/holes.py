@@ -14,7 +14,7 @@ import numpy as np
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
 from kin.judge.check import Check, at_most
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, length_words, place_words
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -100,11 +100,13 @@ def tally(
         told = tallies.setdefault(hole.kind, Tally())
         if contour is None:
             x, y = _middle(hole.contour)
-            told.faults.append(f"{hole.name} at {place_text(x, y)} is missing{where}")
+            told.faults.append(f"{hole.name} at {place_words(x, y)} is missing{where}")
             continue
         off = apart(contour, hole.contour, FINE * tolerance)
         x, y = _middle(contour)
-        told.measured(off, f"{hole.name}, about {place_text(x, y)}{where}, is off by {off:.3g} mm")
+        told.measured(
+            off, f"{hole.name}, about {place_words(x, y)}{where}, is off by {length_words(off, '.3g')} {UNIT}"
+        )
     for contour in left_over:
         x, y = _middle(contour)
         alike = [hole for hole, one in _matched([contour], settled)[0] if one is not None]
@@ -112,7 +114,8 @@ def tally(
             kind = alike[0].kind
         else:
             kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
-        fault = f"an opening of {abs(contour.area):.6g} mm^2 about {place_text(x, y)}{where}, where none is expected"
+        area = f"{length_words(abs(contour.area), '.6g', 2)} {UNIT}^2"
+        fault = f"an opening of {area} about {place_words(x, y)}{where}, where none is expected"
         tallies.setdefault(kind, Tally()).faults.append(fault)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from kin.contour.arcs import cross
 from kin.contour.contour import Contour
+from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
 
@@ -197,7 +198,8 @@ def between_sections(
     for z in levels:
         here = found[(np.abs(found[:, None] - places).min(axis=1) == np.abs(found - z)) & (np.abs(found - z) <= slack)]
         if here.size and float(np.ptp(here)) > SAME:
-            fault = f"faces at z = {here.min():.9g} and {here.max():.9g} mm, where one is expected"
+            both = " and ".join(length_words(z, ".9g") for z in (here.min(), here.max()))
+            fault = f"faces at z = {both} {UNIT}, where one is expected"
             told.append(("thickness", fault))
     rows = solid.leaning
     for lean in leaning:
@@ -205,7 +207,8 @@ def between_sections(
     for low, high, *_ in rows[:MOST_NAMED].tolist():
         bottom, top = _together(solid.leaning, low, high, slack)
         near = (lean.kind for lean in leaning if bottom < lean.high + slack and lean.low - slack < top)
-        fault = f"walls lean between z = {low:.9g} and {high:.9g} mm, where none should"
+        both = f"{length_words(low, '.9g')} and {length_words(high, '.9g')} {UNIT}"
+        fault = f"walls lean between z = {both}, where none should"
         told.append((next(near, "thickness"), fault))
     return told
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.feet import grid
+from kin.numeric.lengths import amount_words, marked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,8 +43,8 @@ def direct_play(closure: Closure, follower: Follower, tolerance: float) -> float
 
 def unlimited(check: Check) -> Check:
     """Fail a check whose limit is none."""
-    detail = f"{NO_LIMIT}; {check.limit:.3g} {check.unit} would be permitted"
-    return replace(check, ok=False, limit=None, detail=f"{detail}; {check.detail}" if check.detail else detail)
+    detail = f"{NO_LIMIT}; {amount_words(check.limit or 0.0, check.unit, '.3g')} would be permitted"
+    return replace(check, ok=False, limit=None, detail=f"{detail}; {marked(check.detail)}" if check.detail else detail)
 
 
 def limit_of(

@@ -10,6 +10,7 @@ import numpy as np
 from kin.follower.frame import FrameError, implied_limit, judge_frame
 from kin.judge.check import Check, at_most, failed
 from kin.linkage.loop import BindingError
+from kin.numeric.lengths import amount_words, span_words
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -89,10 +90,11 @@ def _band_less_sure(dwell: DwellAsked, mechanism: Mechanism, off: float) -> floa
 
 def _output_check(linkage: LinkageVerdict, limits: Limits, slack: float) -> Check:
     error, across, along = linkage.error, linkage.play_across, linkage.play_along
+    centred = amount_words(linkage.centred.max, error.unit, ".3g")
     detail = (
-        f"{linkage.centred.max:.3g} {error.unit} with the frame centred; "
-        f"backlash {across.least:.3g} to {across.most:.3g} mm across, "
-        f"{along.least:.3g} to {along.most:.3g} mm along the frame"
+        f"{centred} with the frame centred; "
+        f"backlash {span_words(across.least, across.most, '.3g')} across, "
+        f"{span_words(along.least, along.most, '.3g')} along the frame"
     )
     limit = linkage.limit if limits.output is None else limits.output
     if limit is None:
@@ -108,5 +110,5 @@ def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:
     ok, over = shortest.length_deg >= at_least - DWELL_ROUNDING, shortest.over
     at = shortest.start_deg if over == "shaft" else None
     where = f"from {shortest.start_deg:.6g} degrees of the {over} angle"
-    detail = f"{where}, within {shortest.band:.6g} {unit}, {shortest.rest}"
+    detail = f"{where}, within {amount_words(shortest.band, unit)}, {shortest.rest}"
     return Check("dwell", ok, shortest.length_deg, at_least, "deg", at, "at_least", detail=detail)

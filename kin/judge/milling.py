@@ -16,7 +16,7 @@ from kin.contour.least_distance import least_distance
 from kin.contour.nearest import nearest, signed_distance
 from kin.judge.check import Check, at_most, failed
 from kin.judge.cuts import across, at_the_floor, cuts_of, features_of, rounds, trace
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, length_words, place_words
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
@@ -74,10 +74,10 @@ def _cutter_check(program: Program, milling: Milling) -> Check:
     if not named:
         return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
     diameter = named[0] * program.units_mm
-    off, detail = abs(diameter - 2.0 * milling.radius), f"the program names {diameter:.9g} mm across"
-    return at_most(
-        "cutter", off, 1e-6 * milling.radius, "mm", detail=f"{detail}, {2.0 * milling.radius:.9g} are expected"
-    )
+    expected = 2.0 * milling.radius
+    named_so = f"the program names {length_words(diameter, '.9g')} {UNIT} across"
+    detail = f"{named_so}, {length_words(expected, '.9g')} are expected"
+    return at_most("cutter", abs(diameter - expected), 1e-6 * milling.radius, "mm", detail=detail)
 
 
 def _arcs_check(program: Program) -> Check:
@@ -92,7 +92,7 @@ def _rapid_check(program: Program, milling: Milling) -> Check:
     for move in program.moves:
         low = min(move.start[2], move.end[2])
         if move.rapid and low <= 0.0 and (across(move) or move.end[2] < move.start[2]):
-            bad.append(f"line {move.line} moves fast at z = {low:.6g} mm")
+            bad.append(f"line {move.line} moves fast at z = {length_words(low)} {UNIT}")
     return _counted("rapid", bad)
 
 
@@ -132,9 +132,9 @@ def _depth_check(features: list[Feature], milling: Milling, tolerance: float) ->
     for cuts, depth, _ in features:
         cut = min(cuts, key=lambda cut: cut.z) if milling.pocket == depth else cuts[-1]
         if abs(cut.z + depth) > tolerance:
-            meant = f"the groove is to be {depth:.6g} mm deep" if milling.pocket == depth else ""
-            what = f"the last pass, from line {cut.loop[0].line}, is at z = {cut.z:.6g} mm, "
-            what += meant or f"the part {depth:.6g} mm thick"
+            meant = f"the groove is to be {length_words(depth)} {UNIT} deep" if milling.pocket == depth else ""
+            what = f"the last pass, from line {cut.loop[0].line}, is at z = {length_words(cut.z)} {UNIT}, "
+            what += meant or f"the part {length_words(depth)} {UNIT} thick"
             return failed("depth", what, unit="mm", limit=milling.depth_of_cut)
         reached: dict[Key, tuple[Arcs, float]] = {}
         along: dict[tuple[Key, Key], bool] = {}
@@ -147,7 +147,10 @@ def _depth_check(features: list[Feature], milling: Milling, tolerance: float) ->
                 before = min(before, z) if along[other, key] else before
             step = before - cut.z
             if step >= worst:
-                worst, detail = step, f"from z = {before:.6g} to {cut.z:.6g} mm, line {cut.loop[0].line}"
+                worst, detail = (
+                    step,
+                    f"from z = {length_words(before)} to {length_words(cut.z)} {UNIT}, line {cut.loop[0].line}",
+                )
             reached[key] = loop, min(cut.z, reached[key][1] if key in reached else 0.0)
     return at_most("depth", worst, milling.depth_of_cut, "mm", detail=detail, slack=tolerance)
 
@@ -232,5 +235,5 @@ def _gouge_check(features: list[Feature], milling: Milling, tolerance: float) ->
                 near, place = least_distance(arcs_of(fresh), chain, float(edge.side), milling.radius, tolerance)
                 if milling.radius - near > worst:
                     worst = milling.radius - near
-                    detail = f"the path from line {fresh[0].line} near {place_text(place[0], place[1])}"
+                    detail = f"the path from line {fresh[0].line} near {place_words(place[0], place[1])}"
     return at_most("gouge", max(worst, 0.0), tolerance, "mm", detail=detail if worst > tolerance else "")

@@ -10,6 +10,7 @@ from kin.follower.deviation import deviation
 from kin.judge.check import Check, less_sure
 from kin.judge.holes import FINE, Tallies, Tally, apart, tally
 from kin.judge.layers import SAME, between_sections, faces, heights, leans, slotted
+from kin.numeric.lengths import UNIT, length_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,22 +73,27 @@ def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance
     for kind, z in meant:
         told = tallies.setdefault(kind, Tally())
         if not found.size:
-            told.faults.append(f"no horizontal face at z = {z:.9g} mm")
+            told.faults.append(f"no horizontal face at z = {length_words(z, '.9g')} {UNIT}")
             continue
         nearest = float(found[np.abs(found - z).argmin()])
-        told.measured(abs(nearest - z), f"a face at z = {nearest:.9g} mm, where {z:.9g} mm is expected")
+        told.measured(
+            abs(nearest - z),
+            f"a face at z = {length_words(nearest, '.9g')} {UNIT}, where {length_words(z, '.9g')} {UNIT} is expected",
+        )
     places = np.array([z for _, z in meant])
     for z in solid.faces:
         k = int(np.abs(places - z).argmin())
         if abs(float(places[k]) - z) > tolerance + SAME:
             kind = meant[k][0]
-            tallies[kind].faults.append(f"a horizontal face at z = {z:.9g} mm, where none is expected")
+            tallies[kind].faults.append(
+                f"a horizontal face at z = {length_words(z, '.9g')} {UNIT}, where none is expected"
+            )
 
 
 def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part: PartIntent, tolerance: float) -> None:
     """Hold one section against what is meant at its level."""
     z, layer = level
-    where = f" at z = {z:.6g} mm"
+    where = f" at z = {length_words(z)} {UNIT}"
     if layer.outline is None:
         tally(tallies, section.holes, layer.holes, tolerance, where=where, settled=part.holes)
         for chain, surface in zip(section.surfaces, part.surfaces, strict=True):
@@ -102,14 +108,16 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
             if strayed.rounds != 1:
                 tallies[kind].faults.append(f"the section{where} goes {strayed.rounds} times round the exact one")
             off = strayed.worst[0]
-            tallies[kind].measured(max(off, 0.0), f"the section{where} is off by {off:.3g} mm")
+            tallies[kind].measured(max(off, 0.0), f"the section{where} is off by {length_words(off, '.3g')} {UNIT}")
         return
     (chain,) = section.surfaces
     bored = next((one for one in part.cross_holes if one.half_width(z) > 0.0), None)
     if bored is None:
         tally(tallies, section.holes, layer.holes, tolerance, where=where, settled=part.holes)
         off = apart(chain.contour, layer.outline.contour, FINE * tolerance)
-        tallies[layer.outline.kind].measured(off, f"{layer.outline.name}{where} is off by {off:.3g} mm")
+        tallies[layer.outline.kind].measured(
+            off, f"{layer.outline.name}{where} is off by {length_words(off, '.3g')} {UNIT}"
+        )
         return
     # the ring is cut open: its outline runs in along one side of the slot, round the bore and out along the other
     bore, *others = layer.holes
@@ -120,4 +128,4 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
         return
     meant = slotted(layer.outline, bore, bored.at, bored.half_width(z))
     off = apart(chain.contour, meant, FINE * tolerance)
-    told.measured(off, f"{bored.name}{where} is off by {off:.3g} mm")
+    told.measured(off, f"{bored.name}{where} is off by {length_words(off, '.3g')} {UNIT}")

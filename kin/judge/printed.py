@@ -9,6 +9,7 @@ import numpy as np
 from kin.contour.contour import Contour
 from kin.judge.check import Check, at_most
 from kin.numeric.distinct import distinct
+from kin.numeric.lengths import UNIT, length_words, span_words
 from kin.read.errors import ReadError
 from kin.read.mesh.mesh import welded
 from kin.read.mesh.stl import rings, section
@@ -41,7 +42,7 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
     low, high = min(slab.low for slab in slabs), max(slab.high for slab in slabs)
     z = mesh.points[:, 2]
     off = max(abs(float(z.min()) - low), abs(float(z.max()) - high))
-    told = f"{name}: z from {z.min():.9g} to {z.max():.9g} mm, {low:.9g} to {high:.9g} mm is expected"
+    told = f"{name}: z from {span_words(z.min(), z.max())}, {span_words(low, high)} is expected"
     checks = [
         at_most("watertight", sum(faults), 0, "faults", detail=name),
         at_most("thickness", off, tolerance, "mm", detail=told, slack=ROUNDING),
@@ -67,7 +68,7 @@ def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, pat
                 told = f"{name}: {error.message}"
                 return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=told)
             if off > worst:
-                worst, where = off, f" at z = {height:.6g} mm"
+                worst, where = off, f" at z = {length_words(height)} {UNIT}"
     return at_most("outline", worst, tolerance, "mm", detail=f"{name}{where}", slack=ROUNDING)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kin.judge.check import about
 from kin.judge.closure import judge_closures
 from kin.judge.verify import verify, verify_together
+from kin.numeric.lengths import marked
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -64,5 +65,7 @@ def left_between(
     closures, checks = judge_closures(surfaces, shaft.closures, limits, max(file.uneven for file in files))
     others = ", ".join(file.file for file in files[:-1])
     if others:
-        checks = [replace(check, detail=f"{check.detail}; with {others}".removeprefix("; ")) for check in checks]
+        checks = [
+            replace(check, detail=f"{marked(check.detail)}; with {others}".removeprefix("; ")) for check in checks
+        ]
     return closures, tuple(about(check, files[-1].file) for check in checks)

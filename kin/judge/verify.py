@@ -21,7 +21,7 @@ from kin.judge.surfaces import SIZED, Parted, deepest, parted
 from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, length_words, marked, place_words, shown, span_words
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
@@ -260,18 +260,18 @@ def _size(part: PartIntent, parts: Parted) -> float:
 def _closed_check(drawing: Drawing, parts: Parted, limits: Limits, joined: float) -> Check:
     """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length."""
     faults = list(drawing.openings)
-    faults += [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
+    faults += [f"{fault.kind} {fault.entity} at {place_words(fault.x, fault.y)}" for fault in drawing.faults]
     faults += _crossing_places(parts, joined)
     check = _count_check("closed", faults)
     if drawing.openings:
         remedy = f"--gap {float(f'{WIDE * joined:.1e}'):g}mm joins what lies so near"
         told = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
-        return replace(check, detail=f"{check.detail}; {told}")
+        return replace(check, detail=f"{marked(check.detail)}; {told}")
     if limits.gap is not None:
-        short = [f"{one.entity} at {place_text(one.x, one.y)}" for one in drawing.short]
+        short = [f"{one.entity} at {place_words(one.x, one.y)}" for one in drawing.short]
         told = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
         named = f"{told}: {_listed(short)}" if short else told
-        return replace(check, detail=f"{check.detail}; {named}".removeprefix("; "))
+        return replace(check, detail=f"{marked(check.detail)}; {named}".removeprefix("; "))
     return check
 
 
@@ -284,7 +284,7 @@ def _crossing_places(parts: Parted, joined: float = 0.0) -> list[str]:
             lines = np.flatnonzero(np.hypot(*(contour.end - contour.start).T) <= WIDE * joined)
             apart = np.hypot(*np.moveaxis(points[:, None] - contour.start[None, lines], 2, 0))
             points = points[~(apart <= 2.0 * WIDE * joined).any(axis=1)]
-        places += [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in points.tolist()]
+        places += [f"the contour crosses or touches itself at {place_words(x, y)} {UNIT}" for x, y in points.tolist()]
     return places
 
 
@@ -310,15 +310,21 @@ def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[Par
     solids = read_bodies(path, [_sought(part) for part in shaft.parts], shaft.levels)
     found = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
-        way = f"{abs(solid.z_min):.6g} mm {'lower' if solid.z_min < 0.0 else 'higher'}"
+        way = f"{length_words(abs(solid.z_min))} {UNIT} {'lower' if solid.z_min < 0.0 else 'higher'}"
         moved = f"{part.name} lies {way} than it should" if abs(solid.z_min) > limits.tolerance else ""
         try:
             file = _solid_read(solid, part, limits, path, None)
         except ReadError as error:
-            raise ReadError(error.reason, "; ".join(filter(None, [error.message, moved])), path) from None
-        above = f"heights are counted from z = {level:.9g} mm, where {part.name} belongs" if level else ""
+            raise ReadError(error.reason, "; ".join(filter(None, [error.message, shown(moved)])), path) from None
+        above = (
+            f"heights are counted from z = {length_words(level, '.9g')} {UNIT}, where {part.name} belongs"
+            if level
+            else ""
+        )
         above = "; ".join(filter(None, [above, moved]))
-        checks = [replace(check, surface=part.name, detail=_joined(check.detail, above)) for check in file.checks]
+        checks = [
+            replace(check, surface=part.name, detail=_joined(marked(check.detail), above)) for check in file.checks
+        ]
         found.append((part, file._replace(checks=checks)))
     return found
 
@@ -416,7 +422,7 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
     Walls that only the rounding of the file's own numbers makes lean do stand upright; what they differ by is counted.
     """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
-    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is expected"
+    detail = f"z from {span_words(solid.z_min, solid.z_max)}, 0 to {length_words(thickness, '.9g')} {UNIT} is expected"
     for unit, mm, _ in OTHERS:
         if mm != 1.0 and abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
             detail += f"; as if drawn in {unit} and stated as mm"

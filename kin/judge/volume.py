@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.judge.check import ROUNDING, Check, at_most
+from kin.numeric.lengths import UNIT, length_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +40,7 @@ def volume_check(
     bore = part.bore or 0.0
     expected = (area - 0.25 * np.pi * bore**2) * height
     limit = tolerance * (perimeter + np.pi * bore + 2.0 * np.pi * tolerance) * height  # to second order
-    detail = f"{measured:.9g} mm^3, by the {source} {expected:.9g}"
+    detail = f"{length_words(measured, '.9g', 3)} {UNIT}^3, by the {source} {length_words(expected, '.9g', 3)}"
     return at_most("volume", abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)
 
 
@@ -50,5 +51,5 @@ def layers_volume_check(measured: float, contours: Sequence[Contour], part: Part
     area, perimeter, source = exact_area(contours, part)
     expected = volume(part.layers, part.cross_holes, area, perimeter)
     limit = tolerance * wall_area(part.layers, part.cross_holes, perimeter)
-    detail = f"{measured:.9g} mm^3, by the {source} {expected:.9g}"
+    detail = f"{length_words(measured, '.9g', 3)} {UNIT}^3, by the {source} {length_words(expected, '.9g', 3)}"
     return at_most("volume", abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)

@@ -17,7 +17,7 @@ from kin.clearance.sweep import swept_box
 from kin.contour.contour import Contour
 from kin.judge.check import Check
 from kin.numeric.angles import TURN
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -54,14 +54,16 @@ def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
     """
     running = [fit for fit in assembly.fits if not fit.pressed]
     least = min(fit.clearance for fit in running)
-    told = [f"{fit.name} {'-' if fit.pressed else ''}{fit.clearance:.6g}" for fit in assembly.fits]
+    told = [f"{fit.name} {'-' if fit.pressed else ''}{length_words(fit.clearance)}" for fit in assembly.fits]
     held = [
-        f"{fit.name} drives: {fit.held:.4g} mm too wide to slip round" for fit in assembly.fits if fit.held is not None
+        f"{fit.name} drives: {length_words(fit.held, '.4g')} {UNIT} too wide to slip round"
+        for fit in assembly.fits
+        if fit.held is not None
     ]
     wall, where = thinnest(assembly)
-    thin = f"thinnest wall {wall:.3g} mm: {where}"
+    thin = f"thinnest wall {length_words(wall, '.3g')} {UNIT}: {where}"
     room = "takes up " + " by ".join(f"{length:.0f}" for length in swept_room(bodies)) + " mm as it turns"
-    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *held, thin, room, *assembly.remarks])
+    detail = "; ".join([f"{UNIT} wider by construction: {', '.join(told)}", *held, thin, room, *assembly.remarks])
     return Check(CLEARANCE.name, least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
 
 
@@ -138,7 +140,7 @@ def _checked(pair: Clearance) -> Check:
     if pair.holds:
         detail = f"{pair.a} and {pair.b}"
     elif pair.collides:
-        detail = f"{pair.a} and {pair.b} interfere, near {place_text(x, y, digits=4)} mm"
+        detail = f"{pair.a} and {pair.b} interfere, near {place_words(x, y, digits=4)} {UNIT}"
     else:
-        detail = f"{pair.a} and {pair.b}: no clearance is proved, {pair.least:.4g} mm was found"
+        detail = f"{pair.a} and {pair.b}: no clearance is proved, {length_words(pair.least, '.4g')} {UNIT} was found"
     return Check(COLLISION.name, pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)

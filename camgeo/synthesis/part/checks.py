@@ -17,7 +17,7 @@ from camgeo.curve.support import is_sharp
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
 from kin.judge.check import Check
-from kin.numeric.places import place_text
+from kin.numeric.lengths import UNIT, amount_words, length_words, place_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -40,8 +40,8 @@ class Pair(NamedTuple):
 
     def __str__(self) -> str:
         """Tell the pair, the wall and the place."""
-        place = "" if self.gap.place == NOWHERE else f" at {place_text(*self.gap.place, digits=4)}"
-        return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
+        place = "" if self.gap.place == NOWHERE else f" at {place_words(*self.gap.place, digits=4)}"
+        return f"{self.one} and {self.other}: {length_words(self.gap.wall, '.4g')} {UNIT}{place}"
 
 
 class Possible(NamedTuple):
@@ -91,8 +91,13 @@ def part_checks(
     if body.placed is not None:
         placed = body.placed
         count = len(placed.diameters)
-        sizes = f", {min(placed.diameters):.6g} to {max(placed.diameters):.6g} mm across" if count else ""
-        detail = f"{count} of {placed.asked} holes{sizes}, {placed.wall:.6g} mm from every edge, {placed.area:.4g} mm^2"
+        sizes = (
+            f", {length_words(min(placed.diameters))} to {length_words(max(placed.diameters))} {UNIT} across"
+            if count
+            else ""
+        )
+        wall, area = f"{length_words(placed.wall)} {UNIT}", f"{length_words(placed.area, '.4g', 2)} {UNIT}^2"
+        detail = f"{count} of {placed.asked} holes{sizes}, {wall} from every edge, {area}"
         least_count = placed.asked if placed.exactly else 1
         checks.append(
             Check(LIGHTENING.name, count >= least_count, count, least_count, "holes", None, "at_least", detail=detail)
@@ -153,7 +158,8 @@ def _mark_check(unmarked: Unmarked) -> Check:
         would = f"; {{width: {downward(fits.width)} mm, length: {downward(fits.length)} mm}} has"
     elif unmarked.wall > 0.0:
         would = f"; a part.wall of {downward(unmarked.wall)} mm leaves some"
-    detail = f"no room on the ray at 0 for a mark {mark.width:.6g} mm wide and {mark.length:.6g} mm long{would}"
+    wide, long = (amount_words(size, "mm") for size in (mark.width, mark.length))
+    detail = f"no room on the ray at 0 for a mark {wide} wide and {long} long{would}"
     return Check(MARK.name, ok=False, value=mark.width, limit=width, unit="mm", sense="at_most", detail=detail)
 
 

@@ -1,0 +1,77 @@
+"""Lengths in the words of a verdict: composed in mm, and shown in the unit of whoever reads them.
+
+Words are put together in many places, by which nobody knows yet who reads them. So a length stands among them as its
+whole value and its form, between two characters of Unicode's private use, and becomes digits at the end.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kin.numeric.places import ROUNDING
+
+if TYPE_CHECKING:
+    from typing import Self
+
+FIRST, LAST = "\ue000", "\ue001"
+UNIT = f"{FIRST}{LAST}"
+"""The name of the unit, among words."""
+_MARKED = re.compile(f"{FIRST}(?:([^{LAST}]*?):([^{LAST}]*?):([123]))?{LAST}")
+
+
+def length_words(mm: float, form: str = ".6g", power: int = 1) -> str:
+    """Mark a length, mm, or an area or volume by its power, to stand among words in this form without its unit."""
+    return f"{FIRST}{float(mm)!r}:{form}:{power}{LAST}"
+
+
+def amount_words(value: float, unit: str, form: str = ".6g") -> str:
+    """Give a figure with its unit, marked where that is mm."""
+    return f"{length_words(value, form)} {UNIT}" if unit == "mm" else f"{value:{form}} {unit}"
+
+
+def span_words(low: float, high: float, form: str = ".9g") -> str:
+    """Mark two lengths, mm, as a span with its unit."""
+    return f"{length_words(low, form)} to {length_words(high, form)} {UNIT}"
+
+
+def place_words(*coordinates: float, digits: int = 6) -> str:
+    """Mark coordinates, mm, in brackets; one below `ROUNDING` is 0."""
+    return f"({', '.join(length_words(0.0 if abs(c) < ROUNDING else float(c), f'.{digits}g') for c in coordinates)})"
+
+
+class Words(str):
+    """Words in mm, which remember their marked lengths."""
+
+    __slots__ = ("marked",)
+    marked: str
+
+    def __new__(cls, marked: str) -> Self:
+        """Show the lengths of marked words in mm."""
+        words = super().__new__(cls, shown(marked))
+        words.marked = marked
+        return words
+
+    def __reduce__(self) -> tuple[type[Words], tuple[str]]:
+        """Go to another process with the marks."""
+        return Words, (self.marked,)
+
+
+def marked(words: str) -> str:
+    """Give words with their marks, to stand among others."""
+    return words.marked if isinstance(words, Words) else words
+
+
+def in_unit(words: str, mm: float, unit: str) -> str:
+    """Give words with their lengths in a unit of so many mm; those without marks as they are."""
+    return shown(marked(words), mm, unit)
+
+
+def shown(words: str, mm: float = 1.0, unit: str = "mm") -> str:
+    """Show the lengths of marked words in a unit of so many mm."""
+
+    def digits(found: re.Match[str]) -> str:
+        value, form, power = found.groups()
+        return unit if value is None else f"{float(value) / mm ** int(power):{form}}"
+
+    return _MARKED.sub(digits, words)

@@ -1,0 +1,106 @@
+"""Details of checks are in the recipe's unit: lengths, areas, volumes and places."""
+
+from __future__ import annotations
+
+import pickle
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from support.cases import few
+
+from camgeo.output import pipeline
+from camgeo.recipe.loading import load_text
+from kin.judge.check import at_most, less_sure
+from kin.numeric.lengths import UNIT, in_unit, length_words, place_words, span_words
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+INCH = 25.4
+VERIFY = "export: {tolerance: 0.01, files: [FILES]}\nverify: {angles: 24}\n"
+MOTION = "motion: [{rise: 12, over: 120, law: cycloidal}, {return: 12, over: 120, law: cycloidal}, {dwell: 120}]"
+DISC = f"cam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 9}}, {MOTION}"
+RECIPES = {
+    "layers": DISC + "}\npart: {thickness: 10, bore: 12, hub: {diameter: 30, height: 8}, chamfer: 0.5, "
+    "lightening: {ring: 3, wall: 4}}\n" + VERIFY.replace("FILES", "dxf, stl, 3mf"),
+    "groove": DISC
+    + ", track: {groove: {clearance: 0.05, depth: 7}}}\npart: {thickness: 14, bore: 12, outer: 150}\n"
+    + VERIFY.replace("FILES", "dxf, stl"),
+    "pair": DISC
+    + ", conjugate: {radius: 9, distance: 120}}\npart: {thickness: 10, bore: 12}\n"
+    + VERIFY.replace("FILES", "dxf, 3mf"),
+    "yoke": "cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}\npart: {thickness: 8, bore: 10}\n"
+    + VERIFY.replace("FILES", "dxf, stl"),
+    "milled": DISC
+    + "}\npart: {thickness: 10, bore: 12}\nmanufacture: {cutter: 6, feed: 300, plunge: 100, spindle: 8000,"
+    + " depth_of_cut: 2, safe_height: 5}\n"  # needs: milling
+    + VERIFY.replace("FILES", "gcode"),
+}
+
+
+def in_inches(text: str) -> str:
+    """The same cam in a recipe of inches: every length carries its unit."""
+    keys = "base_radius|radius|rise|return|thickness|bore|diameter|height|circle|hole|chamfer|wall|clearance|depth|outer|distance"
+    more = "tolerance|cutter|feed|plunge|depth_of_cut|safe_height"
+    text = re.sub(rf"\b({keys}|{more}): ([\d.]+)", r"\1: \2 mm", text)
+    text = text.replace("shaft: [3, 2]", "shaft: [3 mm, 2 mm]").replace(
+        "p: 25 + 1.5*cos(3*t)", "p: (25 + 1.5*cos(3*t))/25.4"
+    )
+    return f"units: inch\n{text}"
+
+
+NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
+# figures of a detail, and what they make of a check's own figure
+FIGURES = {
+    "wall": (rf": {NUMBER} in at", lambda wall: wall),
+    "contour": (rf"{NUMBER} in outside, {NUMBER} in inside", max),
+    "volume": (rf"{NUMBER} in\^3, by the \w+ {NUMBER}", lambda found, meant: abs(found - meant)),
+    "thickness": (rf"z from {NUMBER} to {NUMBER} in, 0 to", None),
+    "bore": (rf"about \({NUMBER}, {NUMBER}\)", None),
+}
+
+
+@pytest.mark.parametrize("name", few(RECIPES, 2))
+def test_details_of_an_inch_recipe_are_in_inches(name: str) -> None:
+    """No figure is left in mm; those of some checks make the check's own value, which is in inches."""
+    recipe = load_text(in_inches(RECIPES[name]), "cam.yaml")
+    report = pipeline.check(recipe).report
+    assert len(report["checks"]) > 5
+    for check in report["checks"]:
+        detail = check.get("detail", "")
+        if check["name"] == "units":  # it says how long a drawing's unit is
+            continue
+        assert not re.search(r"\bmm\b|[\ue000-\uf8ff]", detail), (check["name"], detail)
+        pattern, value = FIGURES.get(check["name"], ("", None))
+        found = re.search(pattern, detail) if pattern else None
+        if found and value:
+            figures = [float(number) for number in found.groups()]
+            assert value(*figures) == pytest.approx(check["value"], rel=1e-2, abs=1e-7), (check["name"], detail)
+        elif found and check["name"] == "thickness" and not recipe.part.hub:
+            assert float(found[2]) == pytest.approx(recipe.part.thickness / INCH, abs=1e-3)
+        elif found and check["name"] == "bore":
+            assert max(abs(float(number)) for number in found.groups()) < 0.2  # about the shaft, 3 and 2 mm off at most
+
+
+def test_a_place_is_in_inches_too() -> None:
+    text = RECIPES["yoke"].replace("bore: 10", "bore: 10, bolts: {count: 3, circle: 30, hole: 4}")
+    for words, scale in ((text, 1.0), (in_inches(text), INCH)):
+        checks = pipeline.check(load_text(words, "cam.yaml")).report["checks"]
+        (detail,) = [check["detail"] for check in checks if check["name"] == "wall"]
+        x, y = (float(number) for number in re.findall(r"at \(([-\d.e]+), ([-\d.e]+)\)", detail)[0])
+        assert 5.0 < scale * (x * x + y * y) ** 0.5 < 30.0
+
+
+def test_words_without_marks_stay_and_marks_go_everywhere(tmp_path: Path) -> None:
+    check = at_most("a", 0.5, 1.0, "mm", detail=f"{span_words(1.0, 50.8)} at {place_words(1e-9, 25.4)}")
+    assert check.detail == "1 to 50.8 mm at (0, 25.4)"
+    assert in_unit(check.detail, INCH, "in") == "0.0393700787 to 2 in at (0, 1)"
+    assert in_unit(pickle.loads(pickle.dumps(check)).detail, INCH, "in").startswith("0.0393700787 to 2 in")
+    more = less_sure(check, 0.254)
+    assert in_unit(more.detail, INCH, "in").endswith("heights differ by up to 0.01 in through rounding")
+    assert in_unit("no length in it", INCH, "in") == "no length in it"
+    area = f"{length_words(645.16, '.6g', 2)} {UNIT}^2"
+    assert in_unit(at_most("b", 0.0, 1.0, "mm^2", detail=area).detail, INCH, "in") == "1 in^2"
+    (tmp_path / "words.txt").write_text(check.detail)
+    assert (tmp_path / "words.txt").read_text() == "1 to 50.8 mm at (0, 25.4)"
