@@ -41,8 +41,8 @@ RECIPES = {
 
 def in_inches(text: str) -> str:
     """The same cam in a recipe of inches: every length carries its unit."""
-    keys = "base_radius|radius|rise|return|thickness|bore|diameter|height|circle|hole|chamfer|wall|clearance|depth|outer"
-    more = "distance|tolerance|cutter|feed|plunge|depth_of_cut|safe_height"
+    keys = "base_radius|radius|rise|return|thickness|bore|diameter|height|circle|hole|chamfer|wall|clearance|depth"
+    more = "outer|distance|tolerance|cutter|feed|plunge|depth_of_cut|safe_height"
     text = re.sub(rf"\b({keys}|{more}): ([\d.]+)", r"\1: \2 mm", text)
     text = text.replace("shaft: [3, 2]", "shaft: [3 mm, 2 mm]").replace(
         "p: 25 + 1.5*cos(3*t)", "p: (25 + 1.5*cos(3*t))/25.4"
