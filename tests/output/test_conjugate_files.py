@@ -376,6 +376,7 @@ def test_forms_that_hold_no_pair_refuse_by_name():
     design = designed(recipe)
     needs = {"grinding": ("manufacture: {wheel: 300}\n", ""), "lift": ("", ", roller: 25")}
     needs["valve"] = ("valve: {ratio: 1.6, lash: 0.3}\n", "")  # needs: valve
+    needs["controller"] = ("", ", for: plain")
     for kind, form in sorted(
         (kind, name) for kind, record in FORMATS.items() for name, form in record.forms.items() if form.discs == 1
     ):
