@@ -39,7 +39,7 @@ _WORDS = (
     | {"%": "percent", "percent": "percent", "pct": "percent"}
 )  # units of headings, in small letters but for those that mean something else then
 _ANGLE_UNITS = {"degrees": _DEGREE, "radians": 1.0, "turns": 2 * math.pi, "percent": math.pi / 50}
-_MEANT: dict[Quantity, str] = {"length": "a length", "angle": "an angle", "force": "a force", "moment": "a moment"}
+_QUANTITIES: dict[Quantity, str] = {"length": "a length", "angle": "an angle", "force": "a force", "moment": "a moment"}
 _JOINED = {"nm", "lbfin", "lbfft"}  # units of two words
 _ANGLE_NAMES = {"angle", "phi", "theta", "cam", "crank", "shaft", "rotation", "deg", "°", "rad", "degrees", "radians"}
 _VALUE_NAMES = {"lift", "s", "displacement", "stroke", "position", "rise", "travel", "swing", "load", "force", "torque"}
@@ -115,8 +115,10 @@ def _columns(rows: Rows, sheet: Sheet, field: str) -> tuple[int, int]:
         listed, example = f"{width} without a heading", "[1, 2]"
     comma = rows.mark == "," and not names and "." not in rows.lines[0]
     mark = ": with decimal commas, separate the columns by semicolons" if comma else ""
-    told = f"line {rows.numbers[0]}: the table's columns are {listed}; give those of the angle and the value, such as"
-    raise IntentError(f"{told} columns: {example}{mark}", field)
+    listing = (
+        f"line {rows.numbers[0]}: the table's columns are {listed}; give those of the angle and the value, such as"
+    )
+    raise IntentError(f"{listing} columns: {example}{mark}", field)
 
 
 def _place(column: Column, names: tuple[str, ...], width: int, field: str) -> int:
@@ -128,12 +130,12 @@ def _place(column: Column, names: tuple[str, ...], width: int, field: str) -> in
         raise IntentError(f"the table has no heading with {column!r}; give columns by number, 1 to {width}", field)
     plain = [name.casefold() for name in names]
     wanted = column.strip().casefold()
-    found = [k for k, name in enumerate(plain) if name == wanted]
-    found = found or [k for k, name in enumerate(names) if wanted in {" ".join(_words(name)), _words(name)[0]}]
-    if len(found) != 1:
-        many = "stands over several columns" if found else "is no heading of the table"
+    places = [k for k, name in enumerate(plain) if name == wanted]
+    places = places or [k for k, name in enumerate(names) if wanted in {" ".join(_words(name)), _words(name)[0]}]
+    if len(places) != 1:
+        many = "stands over several columns" if places else "is no heading of the table"
         raise IntentError(f"{column!r} {many}: they are {', '.join(names)}", field)
-    return found[0]
+    return places[0]
 
 
 def _words(name: str) -> list[str]:
@@ -163,20 +165,20 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
     IntentError where heading and caller differ, or the heading's unit is another quantity's.
     """
     first, second = (rows.heading[k] for k in places) if rows.heading else ("", "")
-    said = _unit_of(first)
-    kind = said if said in _ANGLE_UNITS else None
+    heading = _unit_of(first)
+    kind = heading if heading in _ANGLE_UNITS else None
     crank = "crank" in _words(first)
     if sheet.angle is not None:
-        given = "degrees" if sheet.angle in {"cam", "crank"} else sheet.angle
-        if kind not in {None, given}:
-            raise IntentError(f"the column {first!r} is in {kind}, not in {given}", f"{field}.angle")
+        own = "degrees" if sheet.angle in {"cam", "crank"} else sheet.angle
+        if kind not in {None, own}:
+            raise IntentError(f"the column {first!r} is in {kind}, not in {own}", f"{field}.angle")
         if crank and sheet.angle == "cam":
             raise IntentError(f"the column {first!r} is of the crank, not of the cam", f"{field}.angle")
-        kind, crank = given, crank or sheet.angle == "crank"
+        kind, crank = own, crank or sheet.angle == "crank"
     unit, known = _unit_of(second), UNITS[sheet.quantity]
     if unit is not None and unit not in known:
         if unit in _ANGLE_UNITS or any(unit in units for units in UNITS.values()):
-            raise IntentError(f"the column {second!r} is in {unit}; {_MEANT[sheet.quantity]} is meant here", field)
+            raise IntentError(f"the column {second!r} is in {unit}; {_QUANTITIES[sheet.quantity]} is meant here", field)
         unit = None
     if unit is not None and sheet.unit not in {None, unit}:
         raise IntentError(f"the column {second!r} is in {unit}, not in {sheet.unit}", f"{field}.units")

@@ -75,22 +75,22 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
         return []
     start = int(np.argmin(same)) + 1 if rows.period else 0
     edges = np.diff(np.concatenate([[0], same[(start + np.arange(n)) % n].astype(int), [0]]))
-    found = []
+    level_runs = []
     for a, b in zip(start + np.flatnonzero(edges == 1), start + np.flatnonzero(edges == -1), strict=True):
         begin, end = (float(x[i % n]) + rows.period * (i // n) for i in (int(a), int(b)))
         level = float(s[a % n])
         if b - a + 1 >= _LEAST_ROWS and end - begin >= _LEAST_ANGLE - SAME_ANGLE:
-            found.append(Run(begin, end, level, (end - begin) / int(b - a)))
-    found = sorted(sorted(found, key=lambda run: run.begin - run.end)[:_MOST_RUNS])
-    if least_level is not None and found:
-        lowest = min(run.level for run in found)
-        found = [run._replace(level=least_level) if run.level == lowest == s.min() else run for run in found]
+            level_runs.append(Run(begin, end, level, (end - begin) / int(b - a)))
+    level_runs = sorted(sorted(level_runs, key=lambda run: run.begin - run.end)[:_MOST_RUNS])
+    if least_level is not None and level_runs:
+        lowest = min(run.level for run in level_runs)
+        level_runs = [run._replace(level=least_level) if run.level == lowest == s.min() else run for run in level_runs]
     if rows.space.rest:
-        if not found or found[0].begin > rows.space.begin:
-            found.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))
-        if found[-1].end < rows.space.end:
-            found.append(Run(rows.space.end, rows.space.end, float(s[-1]), 0.0))
-    return found
+        if not level_runs or level_runs[0].begin > rows.space.begin:
+            level_runs.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))
+        if level_runs[-1].end < rows.space.end:
+            level_runs.append(Run(rows.space.end, rows.space.end, float(s[-1]), 0.0))
+    return level_runs
 
 
 def stretches(
@@ -125,15 +125,15 @@ def _leave_out(kept: list[Run], which: int, period: float) -> None:
         kept.pop(which)
 
 
-def _moved(kept: Sequence[Run], found: Sequence[Stretch], period: float) -> list[Run]:
+def _moved(kept: Sequence[Run], between: Sequence[Stretch], period: float) -> list[Run]:
     """Runs that begin where the stretch before them ends, and end where the next one begins."""
     moved = []
     for i, run in enumerate(kept):
         begin, end = run.begin, run.end
         if period or i > 0:
-            begin = found[i - 1].end - (period if i == 0 else 0.0)
-        if i < len(found):
-            end = found[i].begin
+            begin = between[i - 1].end - (period if i == 0 else 0.0)
+        if i < len(between):
+            end = between[i].begin
         moved.append(run._replace(begin=begin, end=end))
     return moved
 
@@ -153,13 +153,13 @@ def _stretch(
         begin, end = before.end - moved[0], after.begin + moved[1]
         space = Space(begin, end, (before.level, after.level))
         try:
-            found = least(space, rows.between(bounds, space), touch, limit)
+            moving = least(space, rows.between(bounds, space), touch, limit)
         except UnsolvedError:
-            found = None
-        if found is not None:
-            touch = found.touch
-            peaks = found.curve.peak(begin, middle), found.curve.peak(middle, end)
-            rough = found.curve.square(begin, middle), found.curve.square(middle, end)
+            moving = None
+        if moving is not None:
+            touch = moving.touch
+            peaks = moving.curve.peak(begin, middle), moving.curve.peak(middle, end)
+            rough = moving.curve.square(begin, middle), moving.curve.square(middle, end)
             calm = plain.curve.square(begin, middle), plain.curve.square(middle, end)
             wild = [
                 side
@@ -167,7 +167,7 @@ def _stretch(
                 if limits[side] > 0.0 and (peaks[side] > _PEAK * allowed[side] or rough[side] > _SQUARE * calm[side])
             ]
             if not wild:
-                return Stretch(begin, end, found), 0
+                return Stretch(begin, end, moving), 0
         else:
             wild = [side for side in (0, 1) if limits[side] > 0.0]
         for side in wild:

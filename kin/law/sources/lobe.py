@@ -136,16 +136,16 @@ def lobe_of(
         knots = [0.0, *(middle + part.begin for part in stretches), middle + after, total]
         return joined(knots, [Constant(0.0), *(part.moved(middle) for part in stretches), Constant(0.0)], around)
     # what begins before the turn, or after it, is moved by a turn; what its end cuts stands at both ends
-    found: list[tuple[float, float, Stretch]] = []
+    pieces: list[tuple[float, float, Stretch]] = []
     for turns in (-1.0, 0.0, 1.0):
         shift = middle + turns * total
         rest = _Stretch(after, total - before, Constant(0.0))
         for part in (*stretches, rest):
             low, high = max(part.begin + shift, 0.0), min(part.end + shift, total)
             if high - low > _NOTHING:
-                found.append((low, high, part.moved(shift)))
-    found.sort(key=itemgetter(0))
-    return joined([*(low for low, _, _ in found), total], [function for _, _, function in found])
+                pieces.append((low, high, part.moved(shift)))
+    pieces.sort(key=itemgetter(0))
+    return joined([*(low for low, _, _ in pieces), total], [function for _, _, function in pieces])
 
 
 class _Stretch(NamedTuple):

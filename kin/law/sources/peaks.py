@@ -52,8 +52,8 @@ def _candidates(function: Stretch, begin: float, end: float, k: int) -> tuple[Ar
         slope, bend = function(Jet.variable(x, k + 2)).derivatives()[k + 1 :]
         step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend != 0)
         x = np.minimum(np.maximum(x - step, low), high)
-    found = function(Jet.variable(x, k)).derivatives()[k]
-    return np.concatenate((grid, x)), np.concatenate((value, found))
+    followed = function(Jet.variable(x, k)).derivatives()[k]
+    return np.concatenate((grid, x)), np.concatenate((value, followed))
 
 
 def peaks(motion: Piecewise) -> Peaks:

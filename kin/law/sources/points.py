@@ -64,8 +64,8 @@ def from_points(
     demand_whole(rows, total, around, field)
     if len(angles) < (2 if dwells else _LEAST):
         raise IntentError(f"a motion needs {_LEAST} points, or two and a dwell", field)
-    found = sorted(_dwelling(rows, dwell, total, around, field) for dwell in dwells)
-    return laid(rows, found, total, around, _exact)
+    rests = sorted(_dwelling(rows, dwell, total, around, field) for dwell in dwells)
+    return laid(rows, rests, total, around, _exact)
 
 
 def _exact(rows: Samples, ends: Ends | None, between: tuple[float, float], /) -> tuple[Array, Sequence[Stretch]]:

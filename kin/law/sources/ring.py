@@ -89,16 +89,16 @@ def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | 
 
 def merged(dwells: Sequence[Dwelling], count: int) -> list[Dwelling]:
     """Dwells that touch become one, across the end of the turn too."""
-    found: list[Dwelling] = []
+    joined_dwells: list[Dwelling] = []
     for dwell in dwells:
-        if found and found[-1].last == dwell.first:
-            found[-1] = Dwelling(found[-1].first, dwell.last, dwell.level)
+        if joined_dwells and joined_dwells[-1].last == dwell.first:
+            joined_dwells[-1] = Dwelling(joined_dwells[-1].first, dwell.last, dwell.level)
         else:
-            found.append(dwell)
-    if len(found) > 1 and found[-1].last == found[0].first + count:
-        first = found.pop(0)
-        found[-1] = Dwelling(found[-1].first, first.last + count, first.level)
-    return found
+            joined_dwells.append(dwell)
+    if len(joined_dwells) > 1 and joined_dwells[-1].last == joined_dwells[0].first + count:
+        first = joined_dwells.pop(0)
+        joined_dwells[-1] = Dwelling(joined_dwells[-1].first, first.last + count, first.level)
+    return joined_dwells
 
 
 def _round(rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: Fit) -> tuple[list[float], list[Stretch]]:

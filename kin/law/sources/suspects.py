@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from kin.law.sources.least_jerk import Least
     from kin.law.sources.tabled import Tabled
 
-_FALLS = 2.0  # times less the mean square is without a row that is told of
+_FALLS = 2.0  # times less the mean square is without a row that is remarked on
 _SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
-_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # that a stroke spans where one can be told from it, and how many times less then
+_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # that a stroke spans where a bad one shows, and how many times less then
 _OFF = 3.0  # readings at least, by which a certain row is off what the others suggest
 _ABOUT = 2  # rows to either side: about a row
 _CALMER = 10.0  # times less the mean square about a certain row is without it
@@ -113,7 +113,7 @@ def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) 
     return before >= _CALMER * after and after <= _SHARP * without.square
 
 
-def _about(rows: Tabled, found: Least, place: int) -> float:
+def _about(rows: Tabled, nearest: Least, place: int) -> float:
     """Integral of the jerk's square about a row."""
     n = len(rows.x)
     ends = place - _ABOUT, place + _ABOUT
@@ -121,7 +121,7 @@ def _about(rows: Tabled, found: Least, place: int) -> float:
         begin, end = (float(rows.x[i % n]) + rows.period * (i // n) for i in ends)
     else:
         begin, end = (float(rows.x[min(max(i, 0), n - 1)]) for i in ends)
-    return found.curve.square(begin, end)
+    return nearest.curve.square(begin, end)
 
 
 def _without(rows: Tabled, plain: Least, places: Sequence[int], falls: float) -> Least | None:

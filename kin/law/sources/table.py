@@ -33,7 +33,7 @@ _LEAST_LOADS = 2
 _GAP = 1.5  # of the widest step of a load
 _ZERO = 2.0  # readings, within which the least value of a motion is meant to be 0
 _SAME = 1e-6  # of a reading
-_FAR = 0.01  # of the stroke: a distance of rows above that is told
+_FAR = 0.01  # of the stroke: a distance of rows above that is remarked on
 _PINS = 3  # times that a motion above its least level is brought down to it, where it was lowest
 _TOUCHES = 1e-9  # of the stroke: by so much it may stay above
 _CALM = 120  # knots of a smooth curve, from which the distances of rows that scatter are taken
@@ -41,7 +41,7 @@ _MOST_ADVISED = 0.25  # of the stroke: a reading above that leaves little of a m
 _ABOUT = 0.01  # of a reading: by so much the motion without dwells, which is but compared with, may be too low
 _QUARTER = 0.25  # of the angle: rows that cover less were hardly meant to
 _NEARLY = 1e-3  # of a last angle
-_MEANT = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles, and of what they are
+_UNITS_BY_END = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles, and of what they are
 
 
 def from_table(
@@ -91,11 +91,11 @@ def _motion(
     remarks = []
     standing = suspect(layout, plain, noisy=raised is not None)
     if standing is not None:
-        told = _standing(layout, standing)
+        sentence = _standing(layout, standing)
         if standing.certain and suspects == "refuse":
             line = int(layout.lines[standing.rows[0]])
-            raise TableError(f"{told}; mend it, or give suspect: keep", field, line)
-        remarks.append(TableRemark("table-row", f"line {layout.lines[standing.rows[0]]}: {told}"))
+            raise TableError(f"{sentence}; mend it, or give suspect: keep", field, line)
+        remarks.append(TableRemark("table-row", f"line {layout.lines[standing.rows[0]]}: {sentence}"))
     if raised is not None and (standing is None or not standing.certain):
         calm = layout.advised(raised * reading)
         text = (
@@ -202,8 +202,8 @@ def _functions(curve: Curve, level: float) -> list[Stretch]:
 def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
     """Refuse a reading within which nothing of a motion is left."""
     if layout.stroke > 1e-9 * float(np.abs(layout.s).max(initial=0.0)):
-        told = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
-        problem = f"{told}: {layout.tell(reading)} to either side"
+        small = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
+        problem = f"{small}: {layout.tell(reading)} to either side"
         raise IntentError(f"{problem}; give reading: {layout.advised(0.05 * layout.stroke)} or less", field)
 
 
@@ -224,12 +224,12 @@ def _standing(layout: Tabled, standing: Suspect) -> str:
     """Say which rows stand out, and what is expected there."""
     (first, *more), (expected, *others) = standing.rows, standing.expected
     digits = 7
-    told = f"the row stands out: it is {layout.tell(float(layout.s[first]), digits)}, about "
-    told += layout.tell(expected, 4 if abs(expected) < layout.stroke else digits)
+    sentence = f"the row stands out: it is {layout.tell(float(layout.s[first]), digits)}, about "
+    sentence += layout.tell(expected, 4 if abs(expected) < layout.stroke else digits)
     for place, value in zip(more, others, strict=True):
-        told += f", and line {layout.lines[place]} is {layout.tell(float(layout.s[place]), digits)}, about "
-        told += layout.tell(value, 4)
-    return f"{told} fits the others; without, the mean square of the jerk is {standing.falls:.3g} times less"
+        sentence += f", and line {layout.lines[place]} is {layout.tell(float(layout.s[place]), digits)}, about "
+        sentence += layout.tell(value, 4)
+    return f"{sentence} fits the others; without, the mean square of the jerk is {standing.falls:.3g} times less"
 
 
 def _angles(rows: Samples, total: float) -> list[TableRemark]:
@@ -239,11 +239,9 @@ def _angles(rows: Samples, total: float) -> list[TableRemark]:
         return []
     last = float(np.degrees(np.abs(rows.theta).max())) * rows.turned
     covered = f"the angles cover {math.degrees(over):.6g} degrees"
-    meant = next((word for end, word in _MEANT.items() if abs(last - end) <= _NEARLY * end), None)
-    if meant is not None:
-        return [
-            TableRemark("table-angles", f"{covered} and end at {last:.6g}; give angle: {meant} if they are {meant}")
-        ]
+    unit = next((word for end, word in _UNITS_BY_END.items() if abs(last - end) <= _NEARLY * end), None)
+    if unit is not None:
+        return [TableRemark("table-angles", f"{covered} and end at {last:.6g}; give angle: {unit} if they are {unit}")]
     if over >= _QUARTER * total:
         return []
     rest = f"the rest of {math.degrees(total):.6g} is a dwell"

@@ -9,7 +9,7 @@ import numpy as np
 
 from kin.law.programme import IntentError
 from kin.law.sources.least_jerk import Bounds, Space, joined_bounds
-from kin.law.sources.ring import SAME_ANGLE, Samples
+from kin.law.sources.ring import SAME_ANGLE, Samples, demand_whole
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def tabled(rows: Samples, reading: float, total: float, around: int | None, *, r
         return _turn(rows, within, total, rest, field)
     if rest is not None:
         raise IntentError("the rest of a turn is that of a motion that repeats with it", f"{field}.rest")
-    _demand_whole(rows, total, field)
+    demand_whole(rows, total, None, field)
     s = rows.s.copy()
     if abs(s[0]) <= reading:
         s[0] = 0.0  # where the motion begins
@@ -150,7 +150,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
     if over > total - SAME_ANGLE:
         _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):
-            problem = f"the motion does not close: {_told(apart, rows)} off the first row, a turn later"
+            problem = f"the motion does not close: {_written(apart, rows)} off the first row, a turn later"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
         s, readings = rows.s[:-1].copy(), within[:-1].copy()
@@ -163,14 +163,14 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
         _demand_no_rest(rest, field)
         return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
     if rest is None and apart > allowed:
-        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_told(apart, rows)} off its first row"
+        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_written(apart, rows)} off its first row"
         remedy = "add the rows that are missing, or give rest: mirror, cycle or dwell"
         raise TableError(f"{ends}: the rest of the turn can be no dwell; {remedy}", field, line)
-    x, s, of = _rest(rows, total, rest or "dwell", field)
+    x, s, like = _rest(rows, total, rest or "dwell", field)
     return Tabled(
         np.concatenate([rows.theta, x]),
         np.concatenate([rows.s, s]),
-        np.concatenate([within, within[of]]),
+        np.concatenate([within, within[like]]),
         np.concatenate([rows.lines, np.zeros(len(x), dtype=np.intp)]),
         space,
         rows.unit,
@@ -197,8 +197,8 @@ def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, A
             half = math.degrees(0.5 * total)
             problem = f"rows that are mirrored cover {half:.6g} degrees, not {math.degrees(over):.6g}"
             raise IntentError(f"{problem}; add those that are missing, or give rest: dwell", f"{field}.rest")
-        of = np.arange(n - 2, 0, -1)
-        return 2.0 * last - rows.theta[of], rows.s[of], of
+        back = np.arange(n - 2, 0, -1)
+        return 2.0 * last - rows.theta[back], rows.s[back], back
     return _cycle(rows, total, field)
 
 
@@ -209,17 +209,17 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
     whole = [abs(total / length - round(total / length)) <= _WHOLE for length in lengths]
     closed = whole[0] and abs(float(rows.s[-1] - rows.s[0])) <= _SAME * float(np.ptp(rows.s))
     if not (closed or whole[1]):
-        told = " nor ".join(f"{math.degrees(length):.6g}" for length in lengths)
-        problem = f"a cycle of the rows is neither {told} degrees, of which a whole number fill the turn"
+        cycles = " nor ".join(f"{math.degrees(length):.6g}" for length in lengths)
+        problem = f"a cycle of the rows is neither {cycles} degrees, of which a whole number fill the turn"
         raise IntentError(f"{problem}; add rows, or give rest: dwell", f"{field}.rest")
     count = round(total / lengths[0 if closed else 1])
-    of = np.tile(np.arange(len(rows.s) - closed), count)
-    x = rows.theta[of] + np.repeat(np.arange(count), len(of) // count) * (total / count)
+    like = np.tile(np.arange(len(rows.s) - closed), count)
+    x = rows.theta[like] + np.repeat(np.arange(count), len(like) // count) * (total / count)
     more = slice(len(rows.s), None)
-    return x[more], rows.s[of[more]], of[more]
+    return x[more], rows.s[like[more]], like[more]
 
 
-def _told(value: float, rows: Samples) -> str:
+def _written(value: float, rows: Samples) -> str:
     return f"{value / rows.unit:.6g}{_UNITS.get(rows.unit, '')}"
 
 
@@ -253,13 +253,3 @@ def demand_rows(
         covered = f"the table covers more than {math.degrees(total):.6g} degrees{remedy}"
         raise TableError(covered, field, int(rows.lines[i]))
     return rows
-
-
-def _demand_whole(rows: Samples, total: float, field: str) -> None:
-    """Refuse rows that do not reach from 0 to `total`."""
-    if abs(rows.theta[0]) > SAME_ANGLE or abs(rows.theta[-1] - total) > SAME_ANGLE:
-        first, last = np.degrees(rows.theta[[0, -1]])
-        raise IntentError(
-            f"the angles must reach from 0 to {math.degrees(total):.6g} degrees, these from {first:.6g} to {last:.6g}",
-            field,
-        )
