@@ -56,6 +56,7 @@ def test_a_law_is_followed_within_its_digits(table):
         assert table.error(motion) <= 0.05
         if table.smooth:
             assert peak(motion) == pytest.approx(peak(table.motion), rel=0.1)
+            assert table.greatest(motion)[1] <= (0.08 if table.places == 3 else 0.06)
 
 
 @pytest.mark.parametrize("table", thin(list(tables(UNEVEN, seed=32, uneven=True)), set(range(0, UNEVEN, 30))), ids=str)
@@ -119,7 +120,10 @@ def figures():
             for k in range(2 * len(LAWS)):
                 table = drawn(rng, LAWS[k % len(LAWS)], "mm", step, places)
                 motion = from_table(table.rows, table.reading, suspects="keep")
-                errors[table.smooth, step, places].append((table.error(motion), peak(motion) / peak(table.motion)))
+                figure = (table.error(motion), peak(motion) / peak(table.motion), *table.greatest(motion))
+                errors[table.smooth, step, places].append(figure)
+                if table.smooth and table.rows_a_stroke >= 12:
+                    errors["no kinks" if not table.jumps(3).size else "kinks", step, places].append(figure)
     return errors
 
 
@@ -135,6 +139,15 @@ def page(errors):
                 rows = np.array(errors[smooth, step, places])
                 cells.append(f"{100 * np.median(rows[:, 0]):.2g}, {100 * rows[:, 0].max():.2g}; {rows[:, 1].max():.3g}")
             lines.append(f"| {step}° | " + " | ".join(cells) + " |")
+    lines += ["", "| greatest error anywhere: rows each | " + " | ".join(f"{k} decimals" for k in (3, 4, 5)) + " |"]
+    lines += ["| --- |" + " --- |" * 3]
+    for step in STEPS[:4]:
+        cells = []
+        for places in (3, 4, 5):
+            plain, kinked = (np.array(errors[kind, step, places]).reshape(-1, 4) for kind in ("no kinks", "kinks"))
+            alone = f"{100 * plain[:, 2].max():.2g}" if len(plain) else "-"
+            cells.append(f"{alone}; {100 * kinked[:, 3].max():.2g}, {100 * kinked[:, 2].max():.2g}")
+        lines.append(f"| {step}° | " + " | ".join(cells) + " |")
     return "\n".join([MARK, *lines[1:], "<!-- end -->"])
 
 

@@ -16,6 +16,8 @@ from kin.law.sources.ring import Samples
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array
 
@@ -25,6 +27,7 @@ STEPS = (1, 2, 5, 10, 15, 20)
 PLACES = (0, 1, 2, 3, 4, 5)
 UNITS = {"mm": 1.0, "inch": 25.4, "thou": 0.0254, "degrees": math.radians(1.0)}
 STROKES = {"mm": (4.0, 40.0), "inch": (0.15, 1.5), "thou": (150.0, 1500.0), "degrees": (4.0, 30.0)}
+JUMP = 1e-3  # of the greatest value of a derivative: less is no jump
 LOOKS = 7200  # places of a turn at which accelerations are compared
 SPOILT = {1: 8.0, 5: 0.005, 10: 0.02, 20: 0.1}  # readings at 1 degree to 3 decimals, then shares of the stroke
 
@@ -92,22 +95,40 @@ class Table:
     @cached_property
     def smooth(self) -> bool:
         """Whether the acceleration of the law jumps nowhere."""
-        return not self._jumps.size
+        return not self.jumps(2).size
 
-    @cached_property
-    def _jumps(self) -> Array:
-        return np.array([joint.at for joint in self.motion.joints if joint.jumps[0][0] == 2])
+    def jumps(self, order: int) -> Array:
+        """Angles at which a derivative of the law jumps, the second or the third, as the first that does there."""
+        knots = self.motion.motion.knots[:-1]
+        after = self.motion.derivatives(knots, order)[order]
+        before = self.motion.derivatives(np.where(knots > 0.0, knots, TURN), order, -1)[order]
+        peak = np.abs(self.motion.derivatives((np.arange(LOOKS) + 0.5) * TURN / LOOKS, order)[order]).max()
+        jumping: Array = knots[np.abs(after - before) > JUMP * peak]
+        return jumping
 
     def error(self, made: Motion) -> float:
         """Rms error of the acceleration as a share of its peak, without what is within two rows of a jump."""
+        off = self._off(made)
+        off = off[self._far(2)]
+        return float(math.sqrt((off**2).mean())) if off.size else 0.0
+
+    def greatest(self, made: Motion) -> tuple[float, float]:
+        """Greatest error of the acceleration as a share of its peak, and without two rows beside jumps of the jerk."""
+        off = self._off(made)
+        return float(off.max()), float(off[self._far(2) & self._far(3)].max(initial=0.0))
+
+    def _off(self, made: Motion) -> Array:
         theta = (np.arange(LOOKS) + 0.5) * TURN / LOOKS
         true, found = (motion.derivatives(theta, 2)[2] for motion in (self.motion, made))
-        off, peak = np.abs(found - true), np.abs(true).max()
-        if self.smooth:
-            return float(math.sqrt((off**2).mean()) / peak)
-        apart = np.abs(np.mod(theta[:, None] - self._jumps + math.pi, TURN) - math.pi).min(axis=1)
-        far = apart > 2.0 * math.radians(self.step)
-        return float(math.sqrt((off[far] ** 2).mean()) / peak) if far.any() else 0.0
+        off: Array = np.abs(found - true) / np.abs(true).max()
+        return off
+
+    def _far(self, order: int) -> NDArray[np.bool_]:
+        """Where no jump of a derivative is within two rows."""
+        theta = (np.arange(LOOKS) + 0.5) * TURN / LOOKS
+        away = np.abs(np.mod(theta[:, None] - self.jumps(order) + math.pi, TURN) - math.pi)
+        far: NDArray[np.bool_] = away.min(axis=1, initial=math.inf) > 2.0 * math.radians(self.step)
+        return far
 
 
 def tables(count: int, seed: int = 31, *, noise: float = 0.0, uneven: bool = False) -> Iterator[Table]:
