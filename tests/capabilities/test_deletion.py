@@ -66,6 +66,15 @@ def strings(path: Path) -> set[str]:
     return {node.value for node in constants if isinstance(node.value, str)}
 
 
+@pytest.mark.parametrize("name", CAPABILITIES)
+def test_no_test_that_is_left_imports_it(name: str) -> None:
+    imported = re.compile(rf"^\s*(?:from|import) camgeo\.capabilities\.{name}\b", re.MULTILINE)
+    paths = [path for path in (ROOT / "tests").rglob("*.py") if path.parents[0].name != name]
+    texts = {path.name: path.read_text(encoding="utf-8") for path in paths}
+    naming = {file: text for file, text in texts.items() if imported.search(text)}
+    assert [file for file, text in naming.items() if imported.search(without_marked(text, name))] == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in CAPABILITIES if unshipped(name)])
 def test_no_test_that_is_left_reads_a_recipe_that_is_gone(name: str, tmp_path: Path) -> None:

@@ -108,6 +108,7 @@ cam:
     law: [{rise: 8, over: 35, law: modified-sine}, {dwell: 15}, {return: 8, over: 40, law: cycloidal}]
 export: {files: [csv]}
 """,
+    # needs: milling
     "a milled groove": """\
 cam:
   kind: disc
@@ -146,6 +147,7 @@ part: {thickness: 5, outer: 130, bolts: {count: 3, circle: 118, hole: 5}}
 export: {tolerance: 0.01, files: [dxf, stl]}
 verify: {angles: 60}
 """,
+    # needs: milling
     "milled": """\
 cam: {kind: support, p: 30 + 2*cos(2*t)}
 part: {thickness: 5, bore: 10}
@@ -153,17 +155,20 @@ export: {tolerance: 0.01, files: [gcode]}
 verify: {angles: 60}
 manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5, safe_height: 5, holes: true}
 """,
+    # needs: mechanism
     "bodies": """\
 cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 60}
 """,
+    # needs: dynamics
     "with a spring": """\
 cam: {kind: support, p: 30 + 2*cos(2*t)}
 export: {files: [csv]}
 dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}
 """,
+    # needs: dynamics
     "with play": """\
 cam: {kind: support, p: 30 + 2*cos(3*t)}
 export: {files: [csv]}
@@ -182,6 +187,7 @@ cam:
   motion: [{rise: 9, over: 120, law: cycloidal}, {dwell: 60}]
 export: {tolerance: 0.01, files: [csv]}
 """,
+    # needs: dynamics
     "a stem": """\
 cam:
   kind: disc
@@ -240,7 +246,7 @@ def test_what_is_declared_is_made_and_what_is_made_is_declared() -> None:
 def test_a_file_that_cannot_be_read_fails_by_a_declared_name(tmp_path: Path) -> None:
     (tmp_path / "cam.stl").write_bytes(b"nothing")
     (tmp_path / "cam.dxf").write_text("nothing")
-    recipe = load_text(MORE["bodies"], "cam.yaml")
+    recipe = load_text(MORE["a part with everything"], "cam.yaml")
     report = pipeline.judged(recipe, [tmp_path / "cam.stl", tmp_path / "cam.dxf"])
     assert READABLE.name in {check["name"] for check in report["checks"] if not check["ok"]}
     assert {check["name"] for check in report["checks"]} <= set(CHECKS)

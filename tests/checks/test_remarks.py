@@ -75,7 +75,9 @@ def test_a_sound_recipe_has_none(text: str) -> None:
         (FLAT + "verify: {motion_error: 0.61}\n", ["loose-motion-error"]),
         (ROLLER + "verify: {motion_error: 1.99}\nlimits: {pressure-angle: {at_most: 80}}\n", []),
         (ROLLER + "verify: {motion_error: 2.01}\nlimits: {pressure-angle: {at_most: 80}}\n", ["loose-motion-error"]),
+        # needs: dynamics
         (PRELOADED % 2480, []),
+        # needs: dynamics
         (PRELOADED % 2490, ["lost-contact"]),
         (WANTED % 1, ["wanted-law"]),
         (WANTED % 1 + "limits: {law-error: {at_most: 3}}\n", []),

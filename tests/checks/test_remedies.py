@@ -398,6 +398,7 @@ BORED = "\npart: {{bore: {0!r}, wall: 5}}"
 LIMITED = "\nverify: {motion_error: 0.0005}"
 
 
+# needs: dynamics
 def sprung(preload: float, rate: float) -> str:
     train = f"rpm: 300, mass: 1, stiffness: 1e5, damping: 100, preload: {preload}, rate: {rate}"
     return disc(40.0, "kind: roller, radius: 10", f"\ndynamics: {{{train}}}\nverify: {{angles: 24}}")
@@ -424,11 +425,13 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         r"a chamfer below (\S+) mm",
         lambda below: support("p: 25 + 2*cos(3*t)", CHAMFERED.format(0.999 * below)),
     ),
+    # needs: dynamics
     (
         sprung(10.0, 0.0),
         r"a dynamics\.preload of (\S+)",
         lambda preload: sprung(preload, 0.0),
     ),
+    # needs: dynamics
     (
         sprung(10.0, 5000.0),
         r"a dynamics\.preload of (\S+)",

@@ -1,3 +1,4 @@
+# needs: study
 """Spans of a spline against the least count of theory, and the theory against closed forms and small spans."""
 
 from __future__ import annotations

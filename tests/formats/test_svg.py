@@ -382,7 +382,7 @@ def test_export_and_verify_by_the_command(tmp_path, capsys):
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(
         f"{CAM}part: {{bore: 12}}\nexport: {{tolerance: 0.01, files: [svg, {{svg: {{as: spline}}}}, html]}}\n"
-        "verify: {angles: 36}\ndynamics: {rpm: 300, mass: 0.5, stiffness: 2000, preload: 200}\n"
+        "verify: {angles: 36}\n"
     )
     code = main(["export", str(recipe), "--out", str(tmp_path / "out")])
     told = capsys.readouterr()

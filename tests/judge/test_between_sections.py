@@ -41,7 +41,7 @@ PARTS = {
         "",
     ),
     "groove": ("thickness: 14, bore: 12, outer: 160", "  track: {groove: {clearance: 0.03, depth: 8}}\n"),
-    "camshaft": ("thickness: 10", ""),
+    "camshaft": ("thickness: 10", ""),  # needs: camshaft
 }
 WALLS = {
     "plain": (0.0, 10.0),

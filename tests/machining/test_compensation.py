@@ -220,6 +220,7 @@ def test_what_a_linkage_is_not_judged_by():
     )
 
 
+# needs: mechanism
 def test_a_set_of_bodies_has_a_clearance_of_its_own():
     with pytest.raises(RecipeErrors, match="compensation of a whole mechanism; give"):
         recipe_of("{stl: {parts: all, clearance: 0.2}}")

@@ -553,6 +553,7 @@ def test_kin_s_own_error_keeps_its_angle(tmp_path):
     assert caught.value.at_deg == 180
 
 
+# needs: sweep
 @pytest.mark.slow
 def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folder(tmp_path, monkeypatch, capsys):
     written(tmp_path, HALF, sampled(HALF))

@@ -366,6 +366,7 @@ def test_a_step_file_holds_two_solids_at_their_gap(tmp_path):
 # --- what is taught ---------------------------------------------------------------------------------------------------
 
 
+# needs: mechanism
 def test_the_bodies_round_a_pair_are_refused():
     with pytest.raises(camgeo.RecipeErrors, match=r"export.files\[2\]: the bodies round conjugate discs are not made"):
         read(RECIPE.replace("glb", "{stl: {parts: all}}").encode(), Path("pair.yaml"))

@@ -76,6 +76,7 @@ def test_changed_or_taken_away_by_hand(recipe: Path, capsys: pytest.CaptureFixtu
     assert said_of(capsys, "check", "cam.yaml", "--out", "elsewhere") == ""
 
 
+# needs: study
 @pytest.mark.slow
 def test_studies_and_pages_too(recipe: Path) -> None:
     pytest.importorskip("matplotlib")

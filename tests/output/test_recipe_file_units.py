@@ -51,7 +51,14 @@ manufacture: {{cutter: 6 mm, feed: 300 mm, plunge: 100 mm, spindle: 8000, depth_
 verify: {{angles: 360}}
 export: {{tolerance: 0.002 mm, files: [{files}]}}
 """
-PLAIN = ("dxf", "svg", "stl", "3mf", "gcode", "csv")
+PLAIN = (
+    "dxf",
+    "svg",
+    "stl",
+    "3mf",
+    "gcode",  # needs: milling
+    "csv",
+)
 SUFFIX = {"gcode": "ngc"}
 DRAWN = [pytest.param("step", marks=kernel), "dxf", "svg"]
 
@@ -120,7 +127,14 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
     assert inches.contour.area == pytest.approx(millimetres.contour.area, rel=1e-13)
 
 
-@pytest.mark.parametrize("kind", ["stl", "3mf", "gcode"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "stl",
+        "3mf",
+        "gcode",  # needs: milling
+    ],
+)
 def test_what_is_rounded_is_the_same_within_the_tolerance(kind: str, made: Made) -> None:
     sizes = []
     for path, mm in zip(paths(made, kind), (1.0, INCH), strict=True):
@@ -134,7 +148,17 @@ def test_what_is_rounded_is_the_same_within_the_tolerance(kind: str, made: Made)
 
 
 @pytest.mark.thin(4)
-@pytest.mark.parametrize("kind", ["dxf", "svg", "stl", "3mf", "gcode", pytest.param("step", marks=kernel)])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "dxf",
+        "svg",
+        "stl",
+        "3mf",
+        "gcode",  # needs: milling
+        pytest.param("step", marks=kernel),
+    ],
+)
 def test_the_proof_holds_and_covers_the_conversion(kind: str, request: pytest.FixtureRequest) -> None:
     found = found_for(kind, request)
     told = {file["path"]: file for file in found[2]["files"]}
@@ -193,6 +217,7 @@ def test_another_reader_of_steps(stepped: Made) -> None:
     assert volumes[0] == pytest.approx(volumes[1], rel=1e-9)
 
 
+# needs: milling
 def test_the_words_of_a_program(made: Made) -> None:
     millimetres, inches = (path.read_text() for path in paths(made, "gcode"))
     assert "G21" in millimetres
@@ -231,6 +256,7 @@ def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
     [
         ("dxf", (r"(\$INSUNITS\n *70\n *)1\n", r"\g<1>4\n"), "units"),
         ("svg", (r'(width="[0-9.]+)in(" height="[0-9.]+)in', r"\1mm\2mm"), "units"),
+        # needs: milling
         ("gcode", ("G20", "G21"), "closed"),
         pytest.param("step", (r"WITH_UNIT\(2\.5399999999999999E\+01", "WITH_UNIT(2.55E+01"), "contour", marks=kernel),
     ],
@@ -308,6 +334,7 @@ def test_the_unit_where_none_is_given(kind: str, mm: str, inch: str) -> None:
         assert asked.filename("cam", recipe.export.files) == f"cam.{kind}"
 
 
+# needs: mechanism
 @pytest.mark.slow
 def test_bodies_of_a_mechanism_in_inch(tmp_path: Path) -> None:
     text = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 6, bore: {square: 8}}\n"
@@ -330,6 +357,7 @@ def test_bodies_of_a_mechanism_in_inch(tmp_path: Path) -> None:
             "11:53: export.files[0].stl.units: not one of the choices, given 'in'; did you mean inch?",
         ),
         ("{glb: {units: inch}}", "11:46: export.files[0].glb.units: unknown key; it belongs at the top level"),
+        # needs: mechanism
         ("{stl: {parts: all, units: mm}}, {stl: {parts: all, units: inch}}", "a second file of one name"),
         ("{dxf: {units: inch}}, {dxf: {units: inch}}", "export.files[1]: the same file twice"),
     ],

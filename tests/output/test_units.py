@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from camgeo.capabilities.study.document import document
-from camgeo.capabilities.study.margins import margins
-from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+from camgeo.capabilities.study.document import document  # needs: study
+from camgeo.capabilities.study.margins import margins  # needs: study
+from camgeo.capabilities.study.tolerance_ladder import Ended, Rung  # needs: study
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
@@ -89,6 +89,7 @@ def test_reports(text: str, lengths: int) -> None:
     assert alike(millimetres, inches) > lengths
 
 
+# needs: study
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(("text", "lengths"), [(LINKED, 8), (SLIDING, 6), (ROLLER, 8)])
 def test_studies(text: str, lengths: int) -> None:

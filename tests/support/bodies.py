@@ -1,3 +1,4 @@
+# needs: mechanism
 """Printable bodies for tests: built from a recipe's text, and looked at with shapely."""
 
 from __future__ import annotations

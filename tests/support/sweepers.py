@@ -1,3 +1,4 @@
+# needs: sweep
 """Stand-ins for what a sweep computes, in a module that worker processes can import."""
 
 from __future__ import annotations

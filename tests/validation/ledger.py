@@ -38,7 +38,7 @@ TOPICS = (
     "test_disc_formulas",
     "test_wunderlich",
     "test_linkages",
-    "test_frame_forces",
+    "test_frame_forces",  # needs: dynamics
 )
 MISPRINT_HEAD = "| where | printed | right | measured | printed is off by |\n| --- | --- | --- | --- | --- |"
 

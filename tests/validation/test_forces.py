@@ -1,3 +1,4 @@
+# needs: dynamics
 """Forces of rigid followers over the turn: worked cases, work against levers, files and refusals.
 
 The cases are d17 of the sheet on disc cams and f01, f02, f03, f10, f11, f25 of the sheet on forces.

@@ -1,3 +1,4 @@
+# needs: dynamics
 """Forces of a cam in a square frame under a linkage: worked cases, equilibrium in the plane, virtual work, refusals.
 
 The cases are f06 to f09 of the sheet on forces, cam 2a of Aygahoglu and Saka 2023. What they are held against shares

@@ -1,3 +1,4 @@
+# needs: dynamics
 """The guide of a stem: f25 through recipe, report and file, equilibrium in the plane, and what jams.
 
 f25 (sheet on forces): overhang 30, length 40, friction .12, 100 N along the travel, rising and falling. A stem that is

@@ -1,3 +1,4 @@
+# needs: dynamics
 """Conjugate discs preloaded by interference, all of it on disc 2: case f01, and sets of files with a fault."""
 
 import csv

@@ -1,3 +1,4 @@
+# needs: dynamics
 """Two contacts under preload on a stem whose guide rubs, against equilibrium of the stem as a body.
 
 It has formulas of its own: the follower's motion in closed form, contacts and normals from where the cam's points go,

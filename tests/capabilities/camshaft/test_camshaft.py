@@ -704,7 +704,13 @@ def test_an_inch_shaft_tells_inches_and_its_lobes_are_in_their_own_unit(tmp_path
         camgeo.check(shaft(tmp_path, lobe.format(1.6), extra="units: inch\n", body=body))
 
 
-@pytest.mark.parametrize("kind", ["dxf", "gcode"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "dxf",
+        "gcode",  # needs: milling
+    ],
+)
 def test_a_drawing_is_that_of_a_lobe(tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
     path = shaft(tmp_path, TWO, files=f"[{kind}]")
     assert main(["check", str(path)]) == 2

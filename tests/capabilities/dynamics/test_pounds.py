@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from camgeo.capabilities.dynamics.keys import Dynamics
-from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.capabilities.sweep.keys import Sweep  # needs: sweep
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
@@ -110,6 +110,7 @@ def test_contacts_under_preload_and_limits() -> None:
     assert [one.at_most for one in limited.limits] == [pytest.approx(4.4482216152605), 2.0]
 
 
+# needs: sweep
 def test_a_sweep_accepts_designs_by_pounds() -> None:
     more = (
         "sweep: {vary: {cam.base_radius: [40, 45]}, limits: {contact-force-greatest: {at_most: 100 lbf}}, rank: size}\n"

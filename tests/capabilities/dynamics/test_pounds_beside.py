@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from camgeo.capabilities.dynamics import panel
-from camgeo.capabilities.sweep.ask import Ask
+from camgeo.capabilities.sweep.ask import Ask  # needs: sweep
 from camgeo.measures.units import in_pounds, pounds
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
@@ -132,6 +132,7 @@ def test_units_that_have_none() -> None:
     assert in_pounds("inch", 2.0, "mm") == (2.0, "mm")
 
 
+# needs: sweep
 def test_sweeps_name_the_unit_of_forces() -> None:
     text = metric(INCHES) + "sweep: {vary: {cam.base_radius: [38, 40]}, rank: contact-force-greatest}\n"
     ask = Ask.of(read(text.encode(), "sweep.yaml"))
