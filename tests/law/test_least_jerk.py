@@ -90,6 +90,27 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
         conditions(found, space, limits)
 
 
+@pytest.mark.parametrize("rest", [None, (0.3, -0.2)])
+@pytest.mark.parametrize("count", [69, 70, 71, 72, 73, 95, 96, 97, 120, 241, 700])
+def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monkeypatch):
+    rng = np.random.default_rng(count)
+    x = (np.arange(count) + rng.uniform(0.1, 0.9, count)) * TURN / count
+    s = np.cos(x) + 0.01 * rng.uniform(-1.0, 1.0, count)
+    space = Space(0.0, TURN, rest)
+    pull, square = pulls(space, x, s)
+    curve = curve_through(space, x, s)
+    least_jerk._blocks.cache_clear()
+    monkeypatch.setattr(least_jerk, "_BLOCK", 10**6)
+    whole, again = pulls(space, x, s), curve_through(space, x, s)
+    least_jerk._blocks.cache_clear()
+    assert pull == pytest.approx(whole[0], rel=1e-9, abs=1e-9 * np.abs(whole[0]).max())
+    assert square == pytest.approx(whole[1], rel=1e-10)
+    theta = np.linspace(0.0, TURN, 999)
+    for order in range(4):
+        other = again(theta, order)
+        assert curve(theta, order) == pytest.approx(other, abs=1e-9 * np.abs(other).max())
+
+
 def test_no_other_function_within_the_bounds_has_less():
     """Splines through other values within the bounds, and with other knots."""
     rng = np.random.default_rng(3)
