@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from support.cases import FULL, thinned_out
 
 if TYPE_CHECKING:
@@ -42,9 +42,10 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 QUICK = "not slow"
 DIGITS = 50  # of mpmath
-settings.register_profile("quick", derandomize=True, deadline=None, max_examples=FULL // 8)
-settings.register_profile("repeat", derandomize=True, deadline=None, max_examples=FULL)
-settings.register_profile("explore", deadline=None, max_examples=FULL)
+UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine is no fault
+settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 8)
+settings.register_profile("repeat", UNTIMED, derandomize=True, max_examples=FULL)
+settings.register_profile("explore", UNTIMED, max_examples=FULL)
 
 
 @pytest.hookimpl(tryfirst=True)
