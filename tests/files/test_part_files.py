@@ -72,12 +72,7 @@ def test_drawing_has_each_feature_on_its_layer_as_cad_likes_it(tmp_path):
 @pytest.mark.parametrize("bore", ["{hexagon: 12, at: 30}", "12, flat: {across: 10.5, at: 45}"])
 def test_shaped_bores_in_any_version(tmp_path, version, bore):
     recipe = recipe_of(f"{{bore: {bore}, mark: {{as: cut, width: 1}}}}")
-    recipe = recipe.__class__(
-        **{
-            **vars(recipe),
-            "export": recipe.export.__class__(0.01, (recipe.export.files[0].__class__("dxf", "arcs", version),)),
-        }
-    )
+    recipe = recipe.replace("export.files", [{"dxf": {"as": "arcs", "version": version}}])
     _, files = files_of(recipe, tmp_path)
     path, checks = files["dxf"]
     assert set(layers(path)) == {"CUT", "BORE", "MARK", "REFERENCE"}
