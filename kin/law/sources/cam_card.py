@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-MOST_CROSSINGS = 3
 _POWERS = (4, 6, 8, 10, 14, 20, 26, 34, 44, 60, 80, 100)  # of the members that are mixed: four of them, after 2
 _ALL = (2, *_POWERS)
 _EXPONENTS = np.array(_ALL, dtype=float)
