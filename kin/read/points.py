@@ -80,15 +80,18 @@ class PointTable:
 
 
 def heading_of(path: Path) -> tuple[str, ...]:
-    """Names of the columns that the start of a file gives, as written; empty where it has none, or no rows.
+    """Names of the columns that the start of a file gives, as written, also where no row follows; empty without any.
 
     Raises OSError as the file system does.
     """
     with path.open("rb") as stream:
-        try:
-            return read_rows(_decoded(stream.read(65536)), COMMENT).heading
-        except RowError:
-            return ()
+        text = _decoded(stream.read(65536))
+    try:
+        return read_rows(text, COMMENT).heading
+    except RowError:
+        lines = (line.strip() for line in text.lstrip("\ufeff").splitlines())
+        first = next((line for line in lines if line and not line.startswith(COMMENT)), "")
+        return tuple(name.strip() for name in re.split(r"[;,\t]", first))
 
 
 def read_points(path: Path) -> PointTable:

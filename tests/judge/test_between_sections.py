@@ -12,6 +12,7 @@ from support.meshfiles import binary, bumped, ring, triangles_in
 
 import camgeo
 from kin.judge.layers import Lean, between_sections
+from kin.numeric.lengths import shown
 from kin.read.mesh.mesh import welded
 from kin.read.mesh.prism import walls
 from kin.read.mesh.stl import read_stl
@@ -359,7 +360,7 @@ def test_what_may_lean_and_what_may_not(lean: Lean, named: str | None) -> None:
     """Evenly from end to end or as steeply, or within heights and reach; each within the tolerance."""
     told = between_sections(_Solid, [0.0, 4.0, 9.0], [lean], 0.01)
     assert [kind for kind, _ in told] == ([] if named is None else [named])
-    assert named is None or "between z = 4 and 9 mm" in told[0][1]
+    assert named is None or "between z = 4 and 9 mm" in shown(told[0][1])
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,7 @@ FULL = (
 def asked(recipe, *files):
     """The recipe with these files asked for."""
     one = recipe.export.files[0]
-    requests = tuple(replace(one, **{"kind": "3mf", "as_": None, "version": None, **file}) for file in files)
+    requests = tuple(replace(one, **{"kind": "3mf", "as_": None, "options": (), **file}) for file in files)
     return replace(recipe, export=replace(recipe.export, files=requests))
 
 

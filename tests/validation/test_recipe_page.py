@@ -42,6 +42,7 @@ def test_every_motion_has_the_keys_that_the_page_shows_once():
             "segments",
             "units",
             "contour",
+            "curve",
         }, name
 
 
