@@ -13,10 +13,15 @@ if TYPE_CHECKING:
 
 
 def demand_new(*names: str | None) -> None:
-    """Raise CallError for names that are taken, before work is done for them; None names nothing."""
-    taken = [name for name in names if name is not None and Path(name).exists()]
+    """Raise CallError for names that are taken or stand twice, before work is done for them; None names nothing."""
+    wanted = [name for name in names if name is not None]
+    taken = [name for name in wanted if Path(name).exists()]
     if taken:
         raise CallError(*(f"{escaped(name)} exists already and is left as it is" for name in taken))
+    paths = [Path(name).resolve() for name in wanted]
+    for name, path in zip(wanted, paths, strict=True):
+        if paths.count(path) > 1:
+            raise CallError(f"{escaped(name)} would be written twice: give each file a name of its own")
 
 
 def write_new(texts: Mapping[str, str]) -> None:

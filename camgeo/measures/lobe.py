@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 CRANK = 2.0  # turns of the crank for one of the cam
 NODES, WEIGHTS = gauss(12)
 SHARE = 1e-12  # of the greatest lift, to which it is followed
+ROUNDING = 1e-12  # rad, of a place at the turn's end
+_TWO = 2  # places, both ends of a turn or of a rest
 PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
 
 
@@ -63,12 +65,33 @@ def event_of(exact: ExactCam, lift: float) -> Event:
     """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
     made = monotone(exact)
     datum, _ = made.least()
-    crossings = made.crossings(datum + lift)
+    crossings = _crossings(made, datum + lift)
     if len(crossings) != 2:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
     first, last = crossings.tolist()
     above = float(exact.motion.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
-    return Event(lift, first, last) if above else Event(lift, last, first + TURN)
+    event = Event(lift, first, last) if above else Event(lift, last, first + TURN)
+    return _off_rest(event, exact) if lift == 0.0 else event
+
+
+def _off_rest(event: Event, exact: ExactCam) -> Event:
+    """An event that begins and ends where the lowest rest does, at breaks: near them the lift is less than rounding."""
+    breaks = np.concatenate([exact.breaks + turns * TURN for turns in (0.0, 1.0, 2.0)])
+    rest = breaks[(breaks >= event.closing - ROUNDING) & (breaks <= event.opening + TURN + ROUNDING)]
+    if len(rest) < _TWO or np.ptp(rest) <= ROUNDING:
+        return event
+    return Event(event.lift, float(rest.max()) - TURN, float(rest.min()))
+
+
+def _crossings(made: Pieces, level: float) -> Array:
+    """Where a level is crossed, rising: the end of the turn is its beginning, and on a rest through it none is."""
+    places = made.crossings(level)
+    if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
+        return places
+    middles = np.array([0.5 * places[1], 0.5 * (places[-2] + TURN)])
+    values = made.at(np.searchsorted(made.x, middles, side="right") - 1, middles)
+    rests, rested = (np.abs(values - level) <= made.noise).tolist()
+    return places[int(rests) : len(places) - int(rested or not rests)]
 
 
 @lru_cache(maxsize=16)

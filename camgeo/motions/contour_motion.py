@@ -57,11 +57,17 @@ def read_contours(
     except FileNotFoundError:
         reader.fault_at(path, "the file does not exist", repr(file), "give its path as seen from the recipe's folder")
         return None
-    except (OSError, ReadError, ValueError) as error:
-        remedy = "give a DXF or an SVG with the cam's closed contour, or a CSV of its points x, y"
-        reader.fault_at(path, f"{file}: {error}", None, remedy)
-        return None
-    return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours), pitch)
+    except ReadError as error:
+        problem = error.message
+    except OSError as error:
+        problem = error.strerror or str(error)
+    except ValueError as error:
+        problem = str(error)
+    else:
+        return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours), pitch)
+    remedy = "give a DXF or an SVG with the cam's closed contour, or a CSV of its points x, y"
+    reader.fault_at(path, f"{file}: {problem}", None, remedy)
+    return None
 
 
 @lru_cache(maxsize=8)

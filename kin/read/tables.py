@@ -148,7 +148,7 @@ def _words(name: str) -> list[str]:
     )
 
 
-def _unit_of(name: str) -> str | None:
+def unit_of(name: str) -> str | None:
     """The unit that a heading ends with, as `lift_in`, `lift [in]` and `load / N m` do."""
     words = [word for word in re.split(r"[\s_()\[\],/*·-]+", name) if word]
     for count in (2, 1):
@@ -165,7 +165,7 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
     IntentError where heading and caller differ, or the heading's unit is another quantity's.
     """
     first, second = (rows.heading[k] for k in places) if rows.heading else ("", "")
-    heading = _unit_of(first)
+    heading = unit_of(first)
     kind = heading if heading in _ANGLE_UNITS else None
     crank = "crank" in _words(first)
     if sheet.angle is not None:
@@ -175,7 +175,7 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
         if crank and sheet.angle == "cam":
             raise IntentError(f"the column {first!r} is of the crank, not of the cam", f"{field}.angle")
         kind, crank = own, crank or sheet.angle == "crank"
-    unit, known = _unit_of(second), UNITS[sheet.quantity]
+    unit, known = unit_of(second), UNITS[sheet.quantity]
     if unit is not None and unit not in known:
         if unit in _ANGLE_UNITS or any(unit in units for units in UNITS.values()):
             raise IntentError(f"the column {second!r} is in {unit}; {_QUANTITIES[sheet.quantity]} is meant here", field)

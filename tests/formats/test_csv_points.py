@@ -105,6 +105,12 @@ def test_a_step_that_does_not_hold_the_tolerance_is_refused_with_one_that_does(t
     assert camgeo.export(written(tmp_path, "stem", ", step: 10", found[2]), tmp_path / "out").ok
 
 
+def test_a_step_that_makes_more_points_than_are_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(RecipeErrors, match=r"csv.step: more than 100000 points; give 0.0036 or more"):
+        camgeo.load(written(tmp_path, "stem", ", step: 0.001"))
+    assert camgeo.load(written(tmp_path, "stem", ", step: 0.0036"))
+
+
 def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
     sharp = "cam: {kind: disc, base_radius: 12, undercut: trim, follower: {kind: flat}, motion: [{rise: 20, over: 60, "
     sharp += "law: cycloidal}, {return: 20, over: 60, law: cycloidal}, {dwell: 240}]}\n"

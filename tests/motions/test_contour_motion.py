@@ -151,7 +151,8 @@ def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
         ("{contour: out/cam/cam.dxf, reading: 0.01, columns: [1, 2]}", "columns: cannot stand without a table"),
         ("{contour: mixed.csv, reading: 0.01}", "cross near "),
         ("{contour: lifts.csv, reading: 0.01}", "angles and lifts make no contour; give them as table, or points x, y"),
-        ("{contour: few.csv, reading: 0.01}", "few.csv: points: 20, and at least 36 are needed"),
+        ("{contour: out, reading: 0.01}", "contour: out: "),
+        ("{contour: few.csv, reading: 0.01}", "contour: few.csv: points: 20, and at least 36 are needed"),
         ("{formula: 1 - cos(t), curve: pitch}", "curve: cannot stand without a contour; leave it out"),
     ],
 )

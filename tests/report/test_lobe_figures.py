@@ -55,6 +55,22 @@ def test_nose_stands_where_it_is_asked_for(nose: float) -> None:
     assert moved == pytest.approx(motion.derivatives(t, 2), abs=1e-10)
 
 
+@pytest.mark.parametrize(
+    ("begin", "return_law", "end", "opens"),
+    [
+        ("", "cycloidal", ", {dwell: 60}", 0),
+        ("{dwell: 60}, ", "harmonic", "", 60),
+        ("{dwell: 20}, ", "parabolic", ", {dwell: 40}", 20),
+    ],
+)
+def test_a_lobe_is_off_its_lowest_place_wherever_its_turn_begins(begin, return_law, end, opens) -> None:
+    motion = f"{begin}{{rise: 9, over: 150, law: polynomial-4567}}, {{return: 9, over: 150, law: {return_law}}}{end}"
+    text = f"cam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 9}}, motion: [{motion}]}}\n"
+    made = measured(text, "duration: {at_lift: 0, at_least: 601}")["duration"]
+    assert made.value == pytest.approx(600.0, abs=1e-9)
+    assert made.at_deg == pytest.approx(opens, abs=1e-9)
+
+
 def test_duration_centre_velocity_and_area() -> None:
     figures = "duration: {at_lift: %s, at_least: 0}, lobe-centre: {at_most: 360}, "
     figures += "ramp-velocity: {at_most: 1}, lift-area: {at_lift: 0.25, at_most: 1000}"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +22,8 @@ if TYPE_CHECKING:
 MOST_ROWS = 1000
 LEAST_ROWS = 2
 MOST_RATIO = 100.0
+_REMEDY = "give rows of a tappet lift and a ratio, such as 0;1.55"
+_COLUMNS = ("lift", "ratio")
 _NUMBER = Field("ratio", Kind.NUMBER, "", above=0, at_most=MOST_RATIO)
 _ROWS = Table((Field("table", Kind.OWN, "file with a row for each tappet lift and the ratio there", True, form=TABLE),))
 
@@ -63,32 +63,38 @@ def _read_ratio(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
     try:
         rows = _rows(origin, reader)
     except Complaint as complaint:
-        remedy = complaint.remedy or "give rows of a tappet lift and a ratio, such as 0;1.55"
+        remedy = complaint.remedy or _REMEDY
         reader.fault_at(place, complaint.problem, repr(origin.name), remedy)
         return None
-    return tuple((lift * reader.mm, ratio) for lift, ratio in rows)
+    return tuple(rows)
 
 
 def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
-    """Rows of lifts, in the recipe's unit, and ratios; raises Complaint for what are none."""
+    """Rows of lifts, mm, and ratios; raises Complaint for what are none."""
+    from kin.read.rows import RowError, read_rows
+    from kin.read.tables import UNITS, unit_of
+
     text = origin.text
     if text is None:
         data = bytes_of(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table")
         text = data.decode("utf-8-sig", "replace")
-    rows: list[tuple[float, float]] = []
-    for number, line in enumerate(text.splitlines(), 1):
-        cells = [cell for cell in re.split(r"[;\t]\s*|,\s*(?=\S)|\s+", line.strip()) if cell]
-        if not cells or line.lstrip().startswith("#"):
-            continue
-        try:
-            lift, ratio = map(float, cells)
-        except ValueError:
-            if not rows and not re.match(r"[+-]?[\d.]", cells[0]):
-                continue  # a heading
-            raise Complaint(f"line {number} is no row of two numbers") from None
-        if not (math.isfinite(lift) and 0.0 < ratio <= MOST_RATIO):
-            raise Complaint(f"line {number}: a ratio lies between 0 and {MOST_RATIO:g}")
-        rows.append((lift, ratio))
+    try:
+        table = read_rows(text)
+        values = table.values([0, 1])
+    except RowError as error:
+        raise Complaint(error.message if error.line is None else f"line {error.line}: {error.message}") from None
+    if table.columns > len(_COLUMNS):
+        raise Complaint(f"line {table.numbers[0]}: {table.columns} columns, and 2 are expected")
+    unit = unit_of(table.heading[0]) if len(table.heading) == table.columns else None
+    if unit is not None and unit not in UNITS["length"]:
+        raise Complaint(f"the column {table.heading[0]!r} is in {unit}; a length is meant here", _REMEDY)
+    mm = reader.mm if unit is None else UNITS["length"][unit]
+    rows = [(lift * mm, ratio) for lift, ratio in values.tolist()]
+    for line, (lift, ratio) in zip(table.numbers, rows, strict=True):
+        if not abs(lift) <= MOST:
+            raise Complaint(f"line {line}: a tappet lifts up to {MOST:g} mm", _REMEDY)
+        if not 0.0 < ratio <= MOST_RATIO:
+            raise Complaint(f"line {line}: a ratio lies between 0 and {MOST_RATIO:g}")
     if not LEAST_ROWS <= len(rows) <= MOST_ROWS:
         raise Complaint(f"{len(rows)} rows", f"give {LEAST_ROWS} to {MOST_ROWS} rows")
     if rows[0][0] != 0.0 or not all(a < b for (a, _), (b, _) in pairwise(rows)):

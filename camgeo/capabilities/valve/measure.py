@@ -36,6 +36,10 @@ class Extreme(NamedTuple):
 
 def valve_event(valve: Valve, design: Design, lift: float) -> Event:
     """When the valve is above a lift, mm: shaft angles, rad. Raises EventError unless it crosses it once either way."""
+    most = greatest_lift(valve, design)
+    if lift > most or most == 0.0:
+        lifted = f"lifts {most:.6g} mm" if most else f"never opens with a lash of {valve.lash:.6g} mm"
+        raise EventError(f"the valve {lifted}, and is not above {lift:.6g} mm")
     return event_of(design.exact, valve.follower_lift(lift))
 
 

@@ -88,8 +88,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("controller"):
         rows = _Rows(job, request)
         most = own * (gauge.direct_limit(tolerance) if limits.motion is None else limits.motion)
-        count = _count(job, request, rows, most)
-        joined, error = rows.joined(count), rows.error(count)
+        joined, error = _joined(job, request, rows, most)
         columns, table = rows.table(joined)
         controller = CONTROLLERS[str(request.own["for"])]
         unit = rows.unit
@@ -140,9 +139,13 @@ class _Rows:
         written = np.array([[float(f"{value:.{DIGITS}g}") for value in row] for row in shown.tolist()])
         return JoinedRows(angle, written * self.scale / powers, self.controller.join)
 
+    def off(self, joined: JoinedRows) -> float:
+        """Greatest distance of joined rows from the motion, mm or rad."""
+        return joined.off(self.position, self.breaks)[0]
+
     def error(self, count: int) -> float:
-        """Greatest distance of the joined rows from the motion, mm or rad."""
-        return self.joined(count).off(self.position, self.breaks)[0]
+        """Greatest distance of so many joined rows from the motion, mm or rad."""
+        return self.off(self.joined(count))
 
     def table(self, joined: JoinedRows) -> tuple[tuple[str, ...], Array]:
         """Column names and rows in the unit of the file, by degree of the master."""
@@ -153,15 +156,16 @@ class _Rows:
         return names, np.column_stack([degrees, *(joined.slave * powers / self.scale)])
 
 
-def _count(job: Job, request: FileRequest, rows: _Rows, most: float) -> int:
-    """Rows of a turn by the request's step, or the fewest that hold the tolerance, mm or rad."""
+def _joined(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[JoinedRows, float]:
+    """Rows by the request's step, or the fewest that hold the tolerance, mm or rad, and their greatest error."""
     recipe, field = job.recipe, job.field(request)
     step = request.own.get("step")
     if step is not None:
         count = round(TURN / float(step))
-        error = rows.error(count)
+        joined = rows.joined(count)
+        error = rows.off(joined)
         if error <= most:
-            return count
+            return joined, error
         what = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
         fewest = fewest_rows(rows.error, most)
         remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
@@ -174,7 +178,8 @@ def _count(job: Job, request: FileRequest, rows: _Rows, most: float) -> int:
         what = f"joined as the controller joins them rows {FINEST:g} degrees apart leave {left}"
         remedy = f"give at least {upward(error / rows.scale)} {rows.unit}"
         raise recipe.error(job.tolerance_field(request), what, None, remedy)
-    return fewest
+    joined = rows.joined(fewest)
+    return joined, rows.off(joined)
 
 
 FORM = Form(name="controller", surfaces=2, takes=("step", "tolerance", "for"), check=check, make=make)

@@ -18,6 +18,7 @@ from camgeo.recipe.machining import FINEST
 from camgeo.registry.formats import Form
 from kin.contour.closed_spline import closed_spline
 from kin.numeric.angles import TURN
+from kin.read.point_list import MOST_POINTS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,8 +35,11 @@ CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], d
 
 
 def check(file: Values, _: Values, reader: Reader) -> None:
-    """Note a step that does not divide the turn."""
+    """Note a step that does not divide the turn, or makes more points than are read."""
     check_step(file, reader)
+    if "step" in file and round(TURN / file["step"]) > MOST_POINTS:
+        remedy = f"give {360.0 / MOST_POINTS:g} or more"
+        reader.fault_at(f"{file['path']}.csv.step", f"more than {MOST_POINTS} points", None, remedy)
 
 
 class _Points(NamedTuple):

@@ -413,3 +413,23 @@ def test_a_recipe_has_the_name_of_one(name: str, capsys) -> None:
         main(["follow", "cam.dxf", "--flat", "--recipe", name])
     assert left.value.code == WRONG
     assert "a file whose name ends in .yaml is expected" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("files", "twice"),
+    [
+        (["--recipe", "new.yaml", "--table", "new.csv"], "new.csv"),
+        (["--recipe", "new.yaml", "--table", "./new.yaml"], "new.yaml"),
+        (["--table", "new.html", "--page", "new.html"], "new.html"),
+    ],
+)
+def test_a_file_is_not_written_twice(
+    drawings: dict[str, Path], tmp_path: Path, capsys, files: list[str], twice: str
+) -> None:
+    """The table of lifts beside a recipe has the recipe's name: a table of that name would be lost."""
+    drawing = str(next(iter(drawings.values())))
+    files = [name if name.startswith("--") else f"{tmp_path}/{name}" for name in files]
+    assert main(["follow", drawing, "--roller", "9", *files]) == WRONG
+    assert f"{twice} would be written twice: give each file a name of its own" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+    assert main(["follow", drawing, "--roller", "9", *files[:3], f"{tmp_path}/other.csv"]) == OK

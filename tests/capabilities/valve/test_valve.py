@@ -103,6 +103,52 @@ def test_files_report_and_page(tmp_path: Path) -> None:
     assert all(words in page for words in ("Valve lift", "Valve acceleration", "Valve events", "ratio by a table"))
 
 
+@pytest.mark.parametrize("lash", ["", ", lash: 0"])
+@pytest.mark.parametrize("nose", ["180", "0"])
+def test_without_lash_the_valve_is_open_while_the_tappet_is_off_its_lowest_place(lash: str, nose: str) -> None:
+    bounds = "valve-duration: {at_lift: 0, at_least: 1}, valve-seating: {at_most: 1}, valve-velocity: {at_most: 1}"
+    lobe = LOBE.replace("nose: 180", f"nose: {nose}")
+    duration, seating, velocity = measured(f"{lobe}valve: {{ratio: 1.6{lash}}}\n", bounds)
+    assert duration == pytest.approx(4 * 68, abs=1e-9)
+    assert seating == pytest.approx(0.0, abs=1e-12)
+    assert velocity == pytest.approx(np.abs(1.6 * lift(np.linspace(0.0, 68.0, 400_001))[1]).max(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("rows", "units"),
+    [
+        ("lift_in,ratio\n0,1.5\n0.15748031496,1.6\n0.35433070866,1.58\n", "mm"),
+        ("Lift [mm];ratio\n0;1,5\n4;1,6\n9;1,58\n", "inch"),
+        ("0 1.5\n4 1.6\n9 1.58\n", "mm"),
+    ],
+)
+def test_a_rockers_table_is_in_the_unit_of_its_heading(tmp_path: Path, rows: str, units: str) -> None:
+    (tmp_path / "rocker.csv").write_text(rows, encoding="utf-8")
+    lobe = LOBE.replace("base_radius: 18", "base_radius: 18 mm").replace("lift: 8", "lift: 8 mm")
+    text = f"units: {units}\n{lobe.replace('14}', '14 mm}')}valve: {{ratio: {{table: rocker.csv}}, lash: 0.3 mm}}\n"
+    (tmp_path / "lobe.yaml").write_text(text, encoding="utf-8")
+    valve = camgeo.load(tmp_path / "lobe.yaml").of(Valve)
+    assert valve is not None
+    assert np.array(valve.ratios) == pytest.approx(np.array([[0, 1.5], [4, 1.6], [9, 1.58]]), abs=1e-9)
+
+
+def test_a_rockers_table_of_angles_is_refused(tmp_path: Path) -> None:
+    text = LOBE + "valve: {ratio: {table: rocker.csv}}\n"
+    (tmp_path / "lobe.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "rocker.csv").write_text("lift_deg,ratio\n0,1.5\n9,1.58\n", encoding="utf-8")
+    with pytest.raises(RecipeErrors, match="the column 'lift_deg' is in degrees; a length is meant here"):
+        camgeo.load(tmp_path / "lobe.yaml")
+
+
+def test_a_limit_says_that_the_valve_does_not_lift_so_far() -> None:
+    bounds = "limits: {valve-duration: {at_lift: 13, at_least: 1}}\n"
+    for lash, words in (("0.30", "the valve lifts 12.5 mm"), ("20", "the valve never opens with a lash of 20 mm")):
+        report = camgeo.check(camgeo.load(LOBE + VALVE.replace("0.30", lash) + bounds))
+        (limit,) = (check for check in report.checks if check.name == "limit:valve-duration")
+        assert not limit.ok
+        assert f"{words}, and is not above 13 mm" in limit.detail
+
+
 def test_inches_are_the_same_valve() -> None:
     inch = LOBE.replace("18", "18/25.4").replace("lift: 8", "lift: 8/25.4").replace("14}", "14/25.4}")
     text = f"units: inch\n{inch}valve: {{ratio: 1.6, lash: 0.30/25.4}}\n"
@@ -116,6 +162,11 @@ def test_inches_are_the_same_valve() -> None:
         ("{lash: 0.3}", "valve.ratio: missing", "{ratio: 1.6, lash: 0.3}"),
         ("{ratio: 0}", "valve.ratio: not above 0", "{ratio: 1.6}"),
         ("{ratio: 1.6, lash: -1}", "valve.lash: below 0", "{ratio: 1.6}"),
+        (
+            "{ratio: {table: [[0, 1.5], [1e300, 1.6]]}}",
+            "line 2: a tappet lifts up to 2e+06 mm",
+            "{ratio: {table: [[0, 1.5], [9, 1.6]]}}",
+        ),
         (
             "{ratio: {table: [[1, 1.5], [9, 1.6]]}}",
             "the tappet lifts do not rise from 0",
