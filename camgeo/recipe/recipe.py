@@ -218,9 +218,15 @@ class Recipe(Order):
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
 
     def unstated(self, path: Path) -> float | None:
-        """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
+        """Give the unit, mm, of a list of points, or of a file of this name in the recipe that states none."""
+        from kin.read.formats import format_of
+        from kin.read.point_list import is_point_list
+
         request = self.request_of(path.name)
-        return None if request is None or request.format.units else self.told_for(request).mm
+        told = self if request is None else self.told_for(request)
+        if format_of(path).contents == "table" and is_point_list(path):
+            return told.mm
+        return None if request is None or request.format.units else told.mm
 
 
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:

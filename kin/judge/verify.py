@@ -27,6 +27,7 @@ from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of
 from kin.read.nesting import Chain, scaled
+from kin.read.point_list import is_point_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -58,7 +59,7 @@ class UnitsError(CamgeoError, ValueError):
 
 
 def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
-    """Judge a drawing, solid, program, grinder's or drive's table, by its suffix, at `angles` equal steps of the shaft.
+    """Judge a drawing, solid, program, a machine's table or a list of points, at `angles` equal steps of the shaft.
 
     What a file states as its unit counts; `units`, mm, is that of one that states none. A file from which no contour
     can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
@@ -71,6 +72,8 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
         if is_drive(path):
             checks = drive_checks(path, part.surfaces[0].gauge, limits)
             return Verdict(kind.name, tuple(about(check, path.name) for check in checks))
+        if is_point_list(path):
+            return verify_points(path, part, angles, limits, 1.0 if units is None else units)
     read = READERS[kind.contents]
     return _verdict(path, lambda: [(part, read(path, part, limits, units))], angles, limits)
 
@@ -81,6 +84,8 @@ def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm:
     def read() -> list[tuple[PartIntent, _Read]]:
         from kin.read.point_list import spline_of_points
 
+        if len(part.surfaces) > 1:
+            raise ReadError("unsupported", f"a list of points has one contour, the part {len(part.surfaces)}", path)
         contour, count = spline_of_points(path, mm)
         chains = scaled((Chain(contour, pieces=count),), 1.0, mirrored=part.mirrored)
         return [(part, _Read([], tuple(chains), chains, mm))]

@@ -171,7 +171,7 @@ FORMATS: dict[str, Format] = {
             bodies=_bodies_of_step,
         ),
         Format(name="gcode", contents="program", most=32_000_000, suffixes=(".gcode", ".ngc", ".nc", ".tap")),
-        Format(name="csv", contents="table", most=16_000_000, suffixes=(".csv",)),
+        Format(name="csv", contents="table", most=16_000_000, suffixes=(".csv", ".txt", ".xyz")),
     )
 }
 """Entry of each format by its word, in the order in which formats are listed."""

@@ -19,7 +19,36 @@ if TYPE_CHECKING:
 
 MOST = 16_000_000  # bytes
 LEAST_POINTS, MOST_POINTS = 4, 100_000
+LARGEST = 1e6  # of a coordinate, in the file's unit
+_WIDTHS = (2, 3)  # numbers of a line
+_LINE = 4096  # bytes, more than a line has
 SAME = 1e-9  # mm, and of the size: the last point is the first
+
+
+def is_point_list(path: Path) -> bool:
+    """Whether a file is such a list: its first line is of two or three numbers and stands again as its last one.
+
+    Raises OSError as the file system does.
+    """
+    with path.open("rb") as file:
+        begin = file.readline(_LINE)
+        rest = file.tell()
+        file.seek(max(rest, file.seek(0, 2) - _LINE))
+        end = file.read().strip().rpartition(b"\n")[2]
+    first = _cells(begin)
+    return first == _cells(end) and len(first) in _WIDTHS and all(map(_is_number, first))
+
+
+def _cells(line: bytes) -> list[str]:
+    return line.decode("utf-8-sig", "replace").replace(",", " ").replace(";", " ").split()
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
@@ -52,10 +81,12 @@ def _points(path: Path) -> Array:
         rows = np.array([[float(cell) for cell in line] for line in lines])
     except ValueError as error:
         raise ReadError("syntax", "a line is not of two or three numbers, as many on each", path) from error
-    if rows.ndim != 2 or rows.shape[1] not in {2, 3} or not np.isfinite(rows).all():
+    if rows.ndim != 2 or rows.shape[1] not in _WIDTHS or not np.isfinite(rows).all():
         raise ReadError("syntax", "a line is not of two or three numbers, as many on each", path)
     if not LEAST_POINTS < len(rows) <= MOST_POINTS + 1:
         raise ReadError("range", f"{len(rows)} points; {LEAST_POINTS + 1} to {MOST_POINTS + 1} are read", path)
+    if np.abs(rows).max() > LARGEST:
+        raise ReadError("range", f"a coordinate is {np.abs(rows).max():.6g}, which no part has", path)
     if rows.shape[1] == 3 and np.ptp(rows[:, 2]) != 0.0:
         raise ReadError("unsupported", "the points do not lie in a plane z = constant", path)
     return rows[:, :2]

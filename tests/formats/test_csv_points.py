@@ -122,9 +122,40 @@ def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
     camgeo.export(path, tmp_path / "out")
 
 
+@pytest.mark.parametrize("cam", ["stem", "ccw", "inch"])
+@pytest.mark.parametrize("suffix", ["csv", "txt", "xyz"])
+def test_a_list_of_any_origin_is_verified_as_the_spline_through_it(cam: str, suffix: str, tmp_path: Path) -> None:
+    tolerance = 4e-5 if cam == "inch" else 0.001
+    recipe = written(tmp_path, cam, f", step: 1, suffix: {suffix}", str(tolerance))
+    assert camgeo.export(recipe, tmp_path / "out").ok
+    path = tmp_path / "out" / "cam" / f"cam.{suffix}"
+    assert camgeo.verify(recipe, path).ok
+    lines = path.read_text(encoding="ascii").splitlines()
+    mark = "," if suffix == "csv" else " "
+    for times, ok in ((2.0, False), (-2.0, False), (0.1, True)):
+        place = np.array(lines[90].split(mark), dtype=float)
+        place *= 1.0 + times * tolerance / np.hypot(*place[:2])
+        moved = mark.join(map(repr, place.tolist()))
+        path.write_text("\n".join([*lines[:90], moved, *lines[91:]]), encoding="ascii")
+        report = camgeo.verify(recipe, path)
+        assert report.ok == ok, times
+        assert ok or {check.name for check in report.checks if not check.ok} == {"contour", "motion"}
+
+
+def test_a_list_of_points_is_of_one_contour(tmp_path: Path) -> None:
+    recipe = written(tmp_path, "stem")
+    camgeo.export(recipe, tmp_path / "out")
+    groove = CAMS["stem"].replace("radius: 10}", "radius: 10}\n  track: {groove: {clearance: 0.03, depth: 6}}")
+    recipe.write_text(groove + "part: {thickness: 10, outer: 180}\n", encoding="utf-8")
+    report = camgeo.verify(recipe, tmp_path / "out" / "cam" / "cam.csv")
+    (check,) = (check for check in report.checks if not check.ok)
+    assert (check.name, check.detail) == ("readable", "a list of points has one contour, the part 2")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("0,0\n1e300,0\n1,1\n0,1\n0,0\n", "a coordinate is 1e\\+300, which no part has"),
         ("0,0\n1,0\n1,1\n0,1\n0,0.5\n", "the last point is not the first"),
         ("0,0\n1,0\n1,0\n1,1\n0,1\n0,0\n", "point 3 is the one before it"),
         ("0,0\n1,x\n1,1\n0,1\n0,0\n", "a line is not of two or three numbers"),

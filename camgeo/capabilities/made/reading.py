@@ -17,6 +17,7 @@ from camgeo.schema.scalars import Complaint
 from kin.made.points import SurfacePoints
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
+from kin.read.point_list import is_point_list
 from kin.read.points import PointTable, heading_of, read_points
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
     """Whether a file holds measured points, and not rows for a machine."""
     if "as" in options:
         return options["as"] == "measured"
+    if is_point_list(path):  # of a curve, which is judged as a contour
+        return False
     if path.suffix.lower() != ".csv":
         return True
     heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
