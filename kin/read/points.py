@@ -105,6 +105,9 @@ def read_points(path: Path) -> PointTable:
     text = _decoded(data)
     if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
         return _checked(_dmis(text, path), path)
+    if text.lstrip().upper().startswith("DMISMN"):
+        message = "a program that measures, and no point FA(label)=FEAT/POINT,CART of what it measured: give its output"
+        raise ReadError("empty", message, path)
     return _checked(_table(text, path), path)
 
 

@@ -142,6 +142,17 @@ def test_a_list_of_any_origin_is_verified_as_the_spline_through_it(cam: str, suf
         assert ok or {check.name for check in report.checks if not check.ok} == {"contour", "motion"}
 
 
+def test_a_table_of_a_machine_is_one_with_any_suffix(tmp_path: Path) -> None:
+    """A table for a drive under the name of a text is judged as ever, and is no list of points."""
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(STEM + "export: {files: [{csv: {as: controller, for: plain}}]}\n", encoding="utf-8")
+    assert camgeo.export(recipe, tmp_path / "out").ok
+    table = (tmp_path / "out" / "cam" / "cam.csv").rename(tmp_path / "table.txt")
+    report = camgeo.verify(recipe, table)
+    assert report.ok
+    assert "interpolation" in {check.name for check in report.checks}
+
+
 def test_a_list_of_points_is_of_one_contour(tmp_path: Path) -> None:
     recipe = written(tmp_path, "stem")
     camgeo.export(recipe, tmp_path / "out")

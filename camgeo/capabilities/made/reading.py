@@ -17,6 +17,7 @@ from camgeo.schema.scalars import Complaint
 from kin.made.points import SurfacePoints
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
+from kin.read.formats import FORMATS
 from kin.read.point_list import is_point_list
 from kin.read.points import PointTable, heading_of, read_points
 
@@ -41,7 +42,7 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
         return options["as"] == "measured"
     if is_point_list(path):  # of a curve, which is judged as a contour
         return False
-    if path.suffix.lower() != ".csv":
+    if path.suffix.lower() not in FORMATS["csv"].suffixes:
         return True
     heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
     return not {GRINDER, DRIVE}.intersection(heading)

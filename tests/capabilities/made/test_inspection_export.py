@@ -8,6 +8,7 @@ from support.measured import RECIPES, disc
 
 import camgeo
 from camgeo.cli.main import main
+from camgeo.common.errors import CallError
 
 ZONE = "\nmade: {profile: 0.02, datum: part}"
 
@@ -86,3 +87,9 @@ def test_options_that_do_not_go_with_it_are_told(files, told, tmp_path, capsys):
     recipe.write_text(disc("kind: flat") + ZONE + f"\nexport: {{files: [{files}]}}", "utf-8")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_program_is_not_what_it_measures(tmp_path):
+    recipe, report = exported(tmp_path, next(iter(RECIPES.values())), "{dmis: {step: 5}}")
+    with pytest.raises(CallError, match=r"a program that measures, and no point FA\(label\)=FEAT/POINT,CART of what"):
+        camgeo.verify(recipe, report.path / "part.dmi")
