@@ -25,7 +25,7 @@ PLANTED = {
     "the core knows no capability": ("camgeo/output/skipped.py", "from camgeo.capabilities.sweep import keys"),
     "kin judges without camgeo": ("kin/judge/verify.py", "from camgeo.version import __version__"),
     "Layers of kin": ("kin/numeric/angles.py", "from kin.law import contacts"),
-    "in a circle": ("kin/judge/check.py", "from kin.judge import verdict"),
+    "in a circle": ("kin/judge/check.py", "from kin.judge import closure"),
     "know no other": ("camgeo/capabilities/study/margins.py", "from camgeo.capabilities.sweep import keys"),
 }
 
