@@ -60,9 +60,16 @@ def test_the_core_names_no_capability_for_types_either() -> None:
 def linted(folder: Path) -> subprocess.CompletedProcess[str]:
     """Run import-linter over the packages in a folder; its words are plain and not wrapped, wherever this runs."""
     code = "from importlinter.cli import lint_imports_command as run; run(['--no-cache'])"
-    environment = {**os.environ, "TERM": "dumb", "FORCE_COLOR": "", "TTY_COMPATIBLE": "0", "COLUMNS": "200"}
+    environment = {
+        **os.environ,
+        "TERM": "dumb",
+        "FORCE_COLOR": "",
+        "TTY_COMPATIBLE": "0",
+        "COLUMNS": "200",
+        "PYTHONUTF8": "1",
+    }
     return subprocess.run(
-        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False
     )
 
 

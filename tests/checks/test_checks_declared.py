@@ -231,6 +231,14 @@ def of_text(text: str) -> tuple[dict[str, Any], ...]:
     return tuple(pipeline.check(load_text(text, "cam.yaml")).report["checks"])
 
 
+MORE["a table for a drive"] = """\
+cam:
+  kind: disc
+  base_radius: 30
+  follower: {kind: roller, radius: 8}
+  motion: [{rise: 10, over: 180, law: polynomial-345}, {return: 10, over: 180, law: polynomial-345}]
+export: {tolerance: 0.001, files: [{csv: {as: controller, for: codesys}}]}
+"""
 OF_POINTS = {"made-profile", "made-motion", "made-output"}  # of measured points, which no recipe exports
 
 
