@@ -109,8 +109,8 @@ def _files(recipe: Recipe, design: Design, run: Run) -> list[_FilePoints]:
         points = _points(recipe, design, file, place)
         surfaces = [one for disc in points.discs for one in disc.surfaces]
         files.append(_FilePoints(file.file, {one.surface.name: one.points.deviations for one in surfaces}))
-        lacking = {disc.part.name for disc in points.missing}
-        missing = [disc for disc in (points.missing if missing is None else missing) if disc.part.name in lacking]
+        lacking = {disc.name for disc in points.missing}
+        missing = [disc for disc in (points.missing if missing is None else missing) if disc.name in lacking]
     demand_discs(missing or ())
     return files
 

@@ -41,6 +41,11 @@ class DiscPoints:
     surfaces: tuple[OnSurface, ...] = ()
     placing: Placing = Placing()
 
+    @property
+    def name(self) -> str:
+        """Name of its surfaces, such as `disc 2`."""
+        return " and ".join(surface.name for surface in self.part.surfaces)
+
 
 @dataclass(frozen=True, eq=False)
 class Points:
@@ -97,7 +102,7 @@ def _by_disc(parts: Sequence[PartIntent], table: PointTable, path: Path, place: 
     labels = [label_of(label) for label in table.labels]
     if len(parts) == 1:
         return [(0, table)]
-    if not labels or not set(labels) <= set(owners):
+    if not labels or not all(labels) or not set(labels) <= set(owners):
         return [(disc_of(path, place, len(parts)), table)]
     rank = np.array([owners[label] for label in labels])
     return [(disc, table.rows(rank == disc)) for disc in sorted(set(rank.tolist()))]
@@ -106,8 +111,8 @@ def _by_disc(parts: Sequence[PartIntent], table: PointTable, path: Path, place: 
 def demand_discs(missing: Sequence[DiscPoints]) -> None:
     """Raise CallError where there are discs without points."""
     if missing:
-        names = " and ".join(disc.part.name for disc in missing)
-        raise CallError(f"points of the disc {names} are missing: give a file for each disc")
+        names = " and ".join(disc.name for disc in missing)
+        raise CallError(f"points of {names} are missing: give a file for each disc")
 
 
 def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align: str) -> DiscPoints:
