@@ -32,10 +32,10 @@ RECIPES = {
     + VERIFY.replace("FILES", "dxf, 3mf"),
     "yoke": "cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}\npart: {thickness: 8, bore: 10}\n"
     + VERIFY.replace("FILES", "dxf, stl"),
-    "milled": DISC
-    + "}\npart: {thickness: 10, bore: 12}\nmanufacture: {cutter: 6, feed: 300, plunge: 100, spindle: 8000,"
-    + " depth_of_cut: 2, safe_height: 5}\n"  # needs: milling
-    + VERIFY.replace("FILES", "gcode"),
+    "milled": DISC  # needs: milling
+    + "}\npart: {thickness: 10, bore: 12}\nmanufacture: {cutter: 6, feed: 300, plunge: 100, "  # needs: milling
+    + "spindle: 8000, depth_of_cut: 2, safe_height: 5}\n"  # needs: milling
+    + VERIFY.replace("FILES", "gcode"),  # needs: milling
 }
 
 
