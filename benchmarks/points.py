@@ -6,14 +6,11 @@ cam with a roller; one process each, on one thread. What is aimed at: 0.3 s, 3 s
 
 from __future__ import annotations
 
-import argparse
-import os
-import resource
-import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
+
+from counted import peak_mb, table
 
 COUNTS = (1_000, 100_000, 1_000_000)
 RECIPE = """
@@ -31,7 +28,7 @@ made: {profile: 0.05}
 """
 
 
-def judge(count: int) -> str:
+def judge(count: int) -> list[str]:
     """Row of the table for a number of points: twice judged, since the first call imports."""
     import numpy as np
 
@@ -54,25 +51,8 @@ def judge(count: int) -> str:
         begin = time.process_time()
         made = dict(camgeo.verify(recipe, file))["made"]
         spent = time.process_time() - begin
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-    return f"| {count} | {made['surfaces'][0]['spans']} | {spent:.2f} | {memory:.0f} |"
-
-
-def main(counts: tuple[int, ...]) -> None:
-    """Print the table, each row from a process of its own."""
-    print("| points | spans | processor s | greatest MB |")
-    print("| --- | --- | --- | --- |", flush=True)
-    for count in counts:
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        subprocess.run([sys.executable, __file__, "--count", str(count)], env=environment, check=True)
+    return [str(made["surfaces"][0]["spans"]), f"{spent:.2f}", peak_mb()]
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
-    parser.add_argument("--count", type=int, help="a row for so many points")
-    arguments = parser.parse_args()
-    if arguments.count:
-        print(judge(arguments.count), flush=True)
-    else:
-        main((200,) if arguments.small else COUNTS)
+    table(str(__doc__), ("points", "spans", "processor s", "greatest MB"), judge, COUNTS, 200)

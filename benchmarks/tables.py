@@ -7,20 +7,17 @@ with dwells between them, and two without. What is aimed at: 10, 30, 250 ms and 
 
 from __future__ import annotations
 
-import argparse
 import math
-import os
-import resource
-import subprocess
-import sys
 import time
+
+from counted import peak_mb, table
 
 COUNTS = (36, 360, 3_600, 100_000)
 MANY = 100_000  # rows whose last digit of fewer than four is many rows long
 SHORT = 20_000  # rows that are read again and again for their least time
 
 
-def measure(count: int) -> str:
+def measure(count: int) -> list[str]:
     """Row of the table for a number of rows."""
     import numpy as np
 
@@ -46,26 +43,9 @@ def measure(count: int) -> str:
                 from_table(rows, 0.5 * 10.0**-places)
                 best = min(best, time.process_time() - begin)
             cells.append(f"{1e3 * best:.3g}")
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     half = len(cells) // 2
-    return f"| {count} | {', '.join(cells[:half])} | {', '.join(cells[half:])} | {memory:.0f} |"
-
-
-def main(counts: tuple[int, ...]) -> None:
-    """Print the table, each row from a process of its own."""
-    print("| rows | with dwells, ms | without, ms | greatest MB |")
-    print("| --- | --- | --- | --- |", flush=True)
-    for count in counts:
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        subprocess.run([sys.executable, __file__, "--count", str(count)], env=environment, check=True)
+    return [", ".join(cells[:half]), ", ".join(cells[half:]), peak_mb()]
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
-    parser.add_argument("--count", type=int, help="a row for so many rows")
-    arguments = parser.parse_args()
-    if arguments.count:
-        print(measure(arguments.count), flush=True)
-    else:
-        main((36,) if arguments.small else COUNTS)
+    table(str(__doc__), ("rows", "with dwells, ms", "without, ms", "greatest MB"), measure, COUNTS, 36)

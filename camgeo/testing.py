@@ -292,8 +292,8 @@ def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN40
         report = check(recipe, **options)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
-    told: Entry = dict(report)
-    _all_hold(told["checks"], told, recipe, recipe.name)
+    entry: Entry = dict(report)
+    _all_hold(entry["checks"], entry, recipe, recipe.name)
     return report
 
 
@@ -312,8 +312,8 @@ def assert_verified(
 
     recipe = order_of(recipe)
     report = verify(recipe, path, *paths, **options)
-    told: Entry = dict(report)
-    _all_hold(told["checks"], told, recipe, ", ".join(str(each) for each in (path, *paths)))
+    entry: Entry = dict(report)
+    _all_hold(entry["checks"], entry, recipe, ", ".join(str(each) for each in (path, *paths)))
     return report
 
 

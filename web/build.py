@@ -243,7 +243,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         )
     first = next(one for one in shown if one["name"] == FIRST)
     text = str(first["text"])
-    made = first_page(text)
+    judged = first_page(text)
     scene = dict(camgeo.design(camgeo.load(text)).scene())
     scene["name"] = FIRST
     style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
@@ -259,7 +259,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         (target / name).write_bytes(data)
     frame = asset("page.html")
     parts = {
-        "policy": policy(made),
+        "policy": policy(judged),
         "stage": between(frame, '<div class="left">', '<section class="checks"'),
         "note": "",
         "drawing": str(scene["drawing"]),
@@ -274,13 +274,13 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     return f"{target}: {size / 1e6:.1f} MB"
 
 
-def policy(made: str) -> str:
+def policy(page: str) -> str:
     """What the page may load, for its content security policy: its own files, and the judged page's style and script.
 
     That page stands in a frame, which takes the policy over, and its style and script are the same for every recipe.
     """
-    scripts = re.findall(r"<script>(.*?)</script>", made, re.DOTALL)
-    styles = re.findall(r"<style>(.*?)</style>", made, re.DOTALL)
+    scripts = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+    styles = re.findall(r"<style>(.*?)</style>", page, re.DOTALL)
     (script,), (style,) = scripts, styles
     return "; ".join(
         [
@@ -314,7 +314,7 @@ def between(text: str, start: str, end: str) -> str:
 def filled(text: str, parts: dict[str, str]) -> str:
     """A text with its {{parts}} in their places, those within parts too."""
     once = re.sub(r"\{\{stage\}\}", lambda _: parts["stage"], text)
-    return re.sub(r"\{\{([\w.:-]+)\}\}", lambda found: parts[found[1]], once)
+    return re.sub(r"\{\{([\w.:-]+)\}\}", lambda mark: parts[mark[1]], once)
 
 
 def escaped(text: str) -> str:

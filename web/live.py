@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import tempfile
 import traceback
 from collections import Counter
 from pathlib import Path
@@ -48,13 +49,12 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Field, Form, Table
     from kin.numeric.arrays import Array
 
-FOLDER = "/tmp/recipe"  # noqa: S108 - of the browser's own file system; the recipe, its tables, somebody's file
-OUT = "/tmp/out"  # noqa: S108 - the same
+FOLDER = tempfile.mkdtemp()  # for the recipe, its tables, a file to judge; in the browser's own file system
+OUT = f"{FOLDER}/out"
 PAGE = FileRequest("html")
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
 _WORDS: dict[Form[Any], list[str]] = {}  # of forms of their own, whose schemas are large
-Path(FOLDER).mkdir(parents=True, exist_ok=True)
 
 
 def answer(call: str, text: str) -> str:

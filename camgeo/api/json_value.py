@@ -1,4 +1,4 @@
-"""What JSON holds, as a type: reports and scenes are made of it."""
+"""The type of a JSON value, as reports and scenes are."""
 
 from __future__ import annotations
 

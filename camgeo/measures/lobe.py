@@ -63,9 +63,9 @@ class EventError(CamgeoError, ValueError):
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> Event:
     """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
-    made = monotone(exact)
-    datum, _ = made.least()
-    crossings = _crossings(made, datum + lift)
+    pieces = monotone(exact)
+    datum, _ = pieces.least()
+    crossings = _crossings(pieces, datum + lift)
     if len(crossings) != 2:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
     first, last = crossings.tolist()
@@ -83,14 +83,14 @@ def _off_rest(event: Event, exact: ExactCam) -> Event:
     return Event(event.lift, float(rest.max()) - TURN, float(rest.min()))
 
 
-def _crossings(made: Pieces, level: float) -> Array:
+def _crossings(pieces: Pieces, level: float) -> Array:
     """Where a level is crossed, rising: the end of the turn is its beginning, and on a rest through it none is."""
-    places = made.crossings(level)
+    places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
         return places
     middles = np.array([0.5 * places[1], 0.5 * (places[-2] + TURN)])
-    values = made.at(np.searchsorted(made.x, middles, side="right") - 1, middles)
-    rests, rested = (np.abs(values - level) <= made.noise).tolist()
+    values = pieces.at(np.searchsorted(pieces.x, middles, side="right") - 1, middles)
+    rests, rested = (np.abs(values - level) <= pieces.noise).tolist()
     return places[int(rests) : len(places) - int(rested or not rests)]
 
 
@@ -173,5 +173,5 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
 
 def moved_by(recipe: Recipe, design: Design) -> Moved | None:
     """What the follower moves besides itself, such as a valve; None where nothing is told of it."""
-    made = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
-    return next((moved for moved in made if moved is not None), None)
+    each = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
+    return next((moved for moved in each if moved is not None), None)

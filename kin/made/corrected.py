@@ -15,10 +15,10 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, left
 from kin.follower.base import Closure, Follower
-from kin.follower.drive import extremes_between
+from kin.follower.drive import CLOSE, extremes_between
 from kin.follower.envelope import Frames
 from kin.follower.motion_error import Judged, Play, motion_error, with_steps
-from kin.made.motion import derivatives_of, metal_of, positions_about, step_of
+from kin.made.motion import metal_of, step_of
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.feet import Feet, equal_steps, gauss
 from kin.numeric.records import dataclass, replace
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 NEWTON_STEPS = 6  # from the exact contour's foot: the last changes nothing
 DIFFERENCE = 1e-3  # rad, of a place on the metal: above rounding, far below a span
+FIT = np.linalg.inv(np.vander(np.arange(5.0), increasing=True))  # coefficients of a quartic by its values at 0 to 4
 LIMIT_ANGLES = 720  # shaft angles at which the effect of a tolerance is found
 
 
@@ -226,18 +227,37 @@ class Corrected(Follower):
     def added(self, shaft: Array) -> Array:
         """What the change of the metal adds to each contact's position, and two derivatives by the shaft angle.
 
-        (c, 3, n) at shaft angles (n,), mm or radians.
+        (c, 3, n) at shaft angles (n,), mm or radians. Derivatives are by five places of the stretch between two breaks,
+        since velocity or acceleration jumps there.
         """
-        step = step_of(self.curve)
-        errors, _ = positions_about(self.metal, shaft, step)
-        return derivatives_of(errors, step)
+        ends = np.unique(np.concatenate([self.motion.breaks, self.metal_breaks, [0.0]]))
+        ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]
+        at = np.mod(shaft, TURN)
+        index = np.searchsorted(ends, at, side="right") - 1
+        low, high = ends[index], np.append(ends[1:], TURN)[index]
+        step = np.minimum(step_of(self.curve), (high - low) / 4.0)
+        first = np.clip(at - 2.0 * step, low, high - 4.0 * step)
+        errors = self._errors(first + step * np.arange(5.0)[:, None])
+        x = (at - first) / step
+        power = x[None] ** np.arange(5.0)[:, None]
+        zero = np.zeros_like(x)
+        slope = np.stack([zero, *(k * power[k - 1] for k in range(1, 5))])
+        bend = np.stack([zero, zero, *(k * (k - 1) * power[k - 2] for k in range(2, 5))])
+        polynomial = np.tensordot(FIT, errors, axes=([1], [1]))  # coefficients (5, c, n)
+        rates = [np.einsum("kn,kcn->cn", row, polynomial) for row in (slope, bend)]
+        return np.stack([self._errors(at[None])[:, 0], rates[0] / step, rates[1] / step**2], axis=1)
+
+    def _errors(self, shaft: Array) -> Array:
+        """What the metal adds to each contact's position at shaft angles (m, n): (c, m, n)."""
+        positions, _ = self.metal.positions(shaft.ravel())
+        return (positions - self.metal.follower.intended(shaft.ravel())).reshape(-1, *shaft.shape)
 
     @cached_property
     def metal_breaks(self) -> Array:
-        """Shaft angles at which a contact stands on a break of the contour."""
-        points, normals = self.metal.surface(self.metal.follower.envelope.breaks)
-        angles = [angle for angle, _ in self.metal.gauge.touching(points, normals)]
-        return np.mod(np.concatenate(angles), TURN)
+        """Shaft angles at which a contact comes upon, or leaves, a break of the contour."""
+        corners = self.metal.corners
+        touches = [self.metal.gauge.touching(corners.points, side) for side in (corners.before, corners.after)]
+        return np.mod(np.concatenate([angle for touch in touches for angle, _ in touch]), TURN)
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion beyond that on the metal, and play beyond it; see `Follower`."""

@@ -4,11 +4,15 @@ Every point of the metal and its normal would put a contact at one shaft angle i
 Over the parameter these pairs are a curve; where the metal is hollow beyond what the contact reaches into, it folds.
 The contact rests where no metal is in its way: of all places with the same shaft angle on the one that puts it the
 farthest out. So contacts that leap over a dent are found as they are, which no formula of first order tells.
+
+Where the exact contour's radius of curvature jumps, a deviation that is smooth over the parameter leaves a corner, on
+which the contact turns: there the pair runs over all normals between those of both sides.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -32,7 +36,30 @@ PER_SPAN = 12  # of them in a span of the smoothed deviation
 STEPS = 12  # of the search within two places: to rounding
 SETTLED = 1e-14  # rad
 ROUNDING = 1e-12  # rad, by which neighbouring places overlap
+BEFORE = 1e-12  # rad before a break of the exact contour, where its other side is looked at
 NO_BREAKS = np.zeros(0)
+
+
+class Corners(NamedTuple):
+    """Points of the metal at breaks of the exact contour (m, 2), mm, and outward normals before and after, (m, 2)."""
+
+    parameters: Array
+    points: Array
+    before: Array
+    after: Array
+
+
+class _Pieces(NamedTuple):
+    """Stretches of metal between two places (n,), and the shaft angle of a contact at the first, and to the second.
+
+    `corner` is the index of the corner that a piece is, else -1; `low` and `high` are then shares of its turn.
+    """
+
+    low: Array
+    high: Array
+    corner: Indices
+    angle: Array
+    step: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,23 +125,54 @@ class Metal:
                 return float(angle[worst])
         return None
 
+    @cached_property
+    def corners(self) -> Corners:
+        """Corners that it has where the exact contour's radius of curvature may jump; of no angle where it does not."""
+        breaks = np.mod(self.follower.envelope.breaks, TURN)
+        points, after = self.surface(breaks)
+        return Corners(breaks, points, self.surface(breaks - BEFORE)[1], after)
+
     def _touching(self, parameter: Array, contact: int) -> tuple[Array, Array]:
         return self.gauge.touching(*self.surface(parameter))[contact]
 
-    def _resting(self, contact: int, shaft: Array) -> tuple[Array, Array]:
-        outwards = self.gauge.contacts[contact].sense  # own positions grow outwards
-        low = self.places
-        angle, _ = self._touching(low, contact)
+    def _within(self, place: Array, corner: Indices, contact: int) -> tuple[Array, Array]:
+        """Shaft angles and positions of a contact at places (n,) of pieces that are `corner`."""
+        points, normals = self.surface(np.where(corner < 0, place, 0.0))
+        turned = corner >= 0
+        own, share = corner[turned], place[turned, None]
+        points[turned] = self.corners.points[own]
+        chord = (1.0 - share) * self.corners.before[own] + share * self.corners.after[own]
+        normals[turned] = chord / np.hypot(chord[:, :1], chord[:, 1:])
+        return self.gauge.touching(points, normals)[contact]
+
+    def _pieces(self, contact: int) -> _Pieces:
+        """All pieces in order. Raises ContactError where the contact does not reach the metal."""
+        breaks = self.corners.parameters
+        near = np.mod(self.places[:, None] - breaks + 2.0 * BEFORE, TURN) < 4.0 * BEFORE
+        places = self.places[~near.any(axis=1)]
+        low = np.concatenate([places, np.mod(breaks - BEFORE, TURN), breaks])
+        corner = np.full(len(low), -1)
+        corner[len(places) : len(places) + len(breaks)] = np.arange(len(breaks))
+        order = np.argsort(low, kind="stable")
+        low, corner = low[order], corner[order]
+        share = np.where(corner >= 0, 0.0, low)
+        angle, _ = self._within(share, corner, contact)
         if not np.isfinite(angle).all():
             at = int(np.argmin(np.isfinite(angle)))
             raise ContactError("the metal is out of the follower's reach", float(low[at]))
-        high = np.append(low[1:], low[0] + TURN)
-        step = np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi
-        query, piece = _pairs(np.mod(shaft, TURN), angle, step)
-        a, b = low[piece], high[piece]
-        off = np.mod(shaft[query] - angle[piece] + np.pi, TURN) - np.pi
-        place = self._found(contact, shaft[query], (a, b), (-off, step[piece] - off))
-        _, position = self._touching(place, contact)
+        high = np.where(corner >= 0, 1.0, np.append(low[1:], low[0] + TURN))
+        return _Pieces(share, high, corner, angle, np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi)
+
+    def _resting(self, contact: int, shaft: Array) -> tuple[Array, Array]:
+        outwards = self.gauge.contacts[contact].sense  # own positions grow outwards
+        pieces = self._pieces(contact)
+        query, piece = _pairs(np.mod(shaft, TURN), pieces.angle, pieces.step)
+        corner = pieces.corner[piece]
+        off = np.mod(shaft[query] - pieces.angle[piece] + np.pi, TURN) - np.pi
+        ends = (pieces.low[piece], pieces.high[piece])
+        place = self._place(contact, shaft[query], corner, ends, (-off, pieces.step[piece] - off))
+        _, position = self._within(place, corner, contact)
+        place[corner >= 0] = self.corners.parameters[corner[corner >= 0]]
         best = np.full(len(shaft), -np.inf)
         np.maximum.at(best, query, outwards * position)
         if not np.isfinite(best).all():
@@ -124,8 +182,10 @@ class Metal:
         parameter[query[won]] = place[won]
         return outwards * best, parameter
 
-    def _found(self, contact: int, shaft: Array, ends: tuple[Array, Array], off: tuple[Array, Array]) -> Array:
-        """Parameters between two ends (n,) at which the contact stands at shaft angles (n,): Illinois' rule.
+    def _place(
+        self, contact: int, shaft: Array, corner: Indices, ends: tuple[Array, Array], off: tuple[Array, Array]
+    ) -> Array:
+        """Places between two ends (n,) at which the contact stands at shaft angles (n,): Illinois' rule.
 
         `off` are the shaft angles at the ends less those.
         """
@@ -134,7 +194,7 @@ class Metal:
         for _ in range(STEPS):
             width = at_b - at_a
             place = np.where(width != 0.0, b - at_b * (b - a) / np.where(width != 0.0, width, 1.0), a)
-            angle, _ = self._touching(place, contact)
+            angle, _ = self._within(place, corner, contact)
             at = np.mod(angle - shaft + np.pi, TURN) - np.pi
             same = (at > 0.0) == (at_b > 0.0)
             a, at_a = np.where(same, a, b), np.where(same, 0.5 * at_a, at_b)

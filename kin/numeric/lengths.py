@@ -1,6 +1,6 @@
-"""Lengths in the words of a verdict: composed in mm, and shown in the unit of whoever reads them.
+"""Lengths in the words of a verdict: composed in mm, and shown in the unit of the report.
 
-Words are put together in many places, by which nobody knows yet who reads them. So a length stands among them as its
+Words are put together in many places that do not know the unit of the report. So a length stands among them as its
 whole value and its form, between two characters of Unicode's private use, and becomes digits at the end.
 """
 
@@ -70,8 +70,8 @@ def in_unit(words: str, mm: float, unit: str) -> str:
 def shown(words: str, mm: float = 1.0, unit: str = "mm") -> str:
     """Show the lengths of marked words in a unit of so many mm."""
 
-    def digits(found: re.Match[str]) -> str:
-        value, form, power = found.groups()
+    def digits(mark: re.Match[str]) -> str:
+        value, form, power = mark.groups()
         return unit if value is None else f"{float(value) / mm ** int(power):{form}}"
 
     return _MARKED.sub(digits, words)

@@ -1,4 +1,4 @@
-"""Tables of motions and loads as text: columns by heading or number, in the units of headings or of whoever reads."""
+"""Tables of motions and loads as text: columns by heading or number, in the units of the headings or of the caller."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 import pytest
 from support.disc_followers import FOLLOWERS
+from support.measured import RECIPES, surfaces
 
 from kin.made.metal import Metal
 from kin.made.smooth import fit
@@ -141,3 +142,24 @@ def test_metal_too_much_lifts_every_follower_by_what_first_order_says(kind):
     assert up == pytest.approx(-down, rel=1e-3)
     limit = follower.motion_limit(e)
     assert np.abs(up).max() <= (np.radians(limit) if follower.unit == "deg" else limit) * (1.0 + 1e-6)
+
+
+def test_a_face_turns_on_the_corner_that_a_jump_of_curvature_leaves() -> None:
+    """Radii of 45 and 5 mm meet: a smooth deviation makes a corner, on which the face stays for a tenth of a degree."""
+    ((_, _, surface),) = surfaces(RECIPES["yoke"])
+    follower = surface.gauge
+    breaks = follower.envelope.breaks
+    metal = Metal.of(follower, 1, lambda t: np.stack([0.02 * np.sin(3.0 * t + 0.4), 0.06 * np.cos(3.0 * t + 0.4)]))
+    dense = np.concatenate([np.linspace(0.0, 2.0 * np.pi, 400_001), breaks])
+    points = metal.surface(dense)[0]
+    shaft = (breaks[:, None] + np.radians(np.linspace(-0.4, 0.4, 41))).ravel()
+    turns = []
+    for contact, positions in enumerate(metal.positions(shaft)[0]):
+        (first, second), base = follower.touching(np.zeros((2, 2)), np.eye(2))[contact]
+        outwards = follower.touching(np.eye(2), np.eye(2))[contact][1] - base
+        normal = round(np.sin(second - first)) * (shaft - first)
+        reach = [(points @ np.array([np.cos(angle), np.sin(angle)])).max() for angle in normal]
+        assert np.abs(positions - base[0] - outwards[0] * np.array(reach)).max() < 1e-8
+        before, after = (follower.touching(metal.corners.points, side)[contact][0] for side in metal.corners[2:])
+        turns.append(np.abs(np.degrees(after - before)).max())
+    assert min(turns) > 0.1

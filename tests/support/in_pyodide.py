@@ -17,7 +17,7 @@ import camgeo
 from camgeo.files.triangulate import region
 from kin.read.mesh.mesh import Mesh
 
-OUT = Path("/tmp/out")  # of its own file system
+OUT = Path.home() / "out"  # in the file system of the browser
 HUBBED = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 10, hub: {diameter: 18, height: 4}}\n"
 
 

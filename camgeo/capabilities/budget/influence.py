@@ -182,15 +182,15 @@ class Held:
         return self.axis * (self.guide + 1j * offset)
 
     def shared(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """One size that acts at every contact."""
+        """Influence of a dimension that all contacts share: one entry, `change` of each contact, stacked."""
         return [np.stack([change(bearing)[None] for bearing in self.bearings])]
 
     def each(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """A size of its own for each contact."""
+        """Influence of a dimension that each contact has for itself: an entry for each, 0 at the others."""
         return [rows for i in range(len(self.bearings)) for rows in self.only(i, change)]
 
     def only(self, index: int, change: Callable[[Bearing], Array]) -> list[Array]:
-        """A size that acts at one contact."""
+        """Influence of a dimension that the contact `index` alone has: one entry, 0 at the others."""
         return [self._alone(index, change(self.bearings[index])[None])]
 
     def first(self, change: Callable[[Bearing], Array]) -> list[Array]:
@@ -297,7 +297,7 @@ def _of_linkage(design: Design, shaft: Array) -> Dimensions:
 
 
 def _both(row: Array) -> Array:
-    """One size (n,), or (k, n) by component, that does the same to either contact: (2, k, n)."""
+    """Influence (2, k, n) of a dimension that moves both contacts alike: (n,), or (k, n) by its components."""
     return np.stack([np.atleast_2d(row)] * 2)
 
 
@@ -306,7 +306,7 @@ def _in_any(change: Callable[[complex], Array]) -> Array:
 
 
 def _at_each(first: Array, second: Array) -> Array:
-    """One size (n,) that does something to the first contact and something to the second: (2, 1, n)."""
+    """Influence (2, 1, n) of a dimension that moves the first contact by (n,), the second by (n,)."""
     return np.stack([first, second])[:, None]
 
 

@@ -50,18 +50,18 @@ def points_of(contour: Contour, radius: float) -> Complexes:
 
 
 def read_metal(
-    contact: Contact[Guide, Touch], side: Side, contour: Contour, meant: Complexes, wander: float
+    contact: Contact[Guide, Touch], side: Side, contour: Contour, intended: Complexes, wander: float
 ) -> ReadMetal:
     """The metal of a contour under a contact, see `ReadMetal`; raises LostError for a contour that is too long."""
     guide, touch = contact.guide, contact.touch
     hand = guide.side if isinstance(guide, Oscillating) else 1
     if isinstance(touch, Flat):
-        return ReadMetal(points_of(contour, np.inf), side, hand, meant, wander)
+        return ReadMetal(points_of(contour, np.inf), side, hand, intended, wander)
     if touch.radius > 0.0:
-        return ReadMetal(points_of(contour, touch.radius), side, hand, meant, wander)
+        return ReadMetal(points_of(contour, touch.radius), side, hand, intended, wander)
     # the path of a knife edge is a line, or a circle about the pivot
     path = guide.arm if isinstance(guide, Oscillating) else np.inf
-    return EdgeMetal(points_of(contour, path), side, hand, meant, wander)
+    return EdgeMetal(points_of(contour, path), side, hand, intended, wander)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class ReadMetal:
     points: Complexes
     side: Side
     hand: Side
-    meant: Complexes
+    intended: Complexes
     wander: float
 
     def reach(self, normal: Complexes) -> Array:
@@ -131,19 +131,19 @@ class ReadMetal:
         return swung
 
     def _held(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]]) -> Array:
-        """What holds the touch, (parts, angles): the greatest bound by the points, or the least from within.
+        """Position (parts, angles) in which the follower touches: the greatest bound of a point, the least inside.
 
         `bound` gives bounds (parts, k) by the points of k indices, of parts whose rows are (parts, 1).
         """
         shape = np.broadcast_shapes(*(row.shape for row in rows), self.meant.shape)
         whole = [np.broadcast_to(row, shape) for row in rows]
         held = np.empty(shape)
-        for angle, meant in enumerate(self.meant):
-            held[:, angle] = self._nearby(bound, [row[:, angle, None] for row in whole], meant)
+        for angle, intended in enumerate(self.meant):
+            held[:, angle] = self._nearby(bound, [row[:, angle, None] for row in whole], intended)
         return held
 
-    def _nearby(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]], meant: complex) -> Array:
-        count, distances = len(self.points), np.abs(self.points - meant)
+    def _nearby(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]], intended: complex) -> Array:
+        count, distances = len(self.points), np.abs(self.points - intended)
         place = int(distances.argmin())
         few = self._few(place, self.wander + 2.0 * float(distances[place]))
         while True:
@@ -173,7 +173,7 @@ class ReadMetal:
 
 @dataclass(frozen=True, eq=False)
 class EdgeMetal(ReadMetal):
-    """The same under a knife edge, whose `radius` is what the metal has grown: held where its path crosses a chord."""
+    """Metal of a file under a knife edge: it touches where its path crosses a chord; `radius`, mm, offsets it."""
 
     @cached_property
     def _normals(self) -> Complexes:

@@ -1,4 +1,4 @@
-"""What budgets add: the key `budget`, figures, a section of the report, a panel and a plot of the page, a starter."""
+"""Record of budgets: the key `budget`, figures, a section of the report, a panel and a plot of the page, a starter."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ LEFT_STEP = 10  # degrees from one angle of what is left to the next
 
 
 def section(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
-    """What a report says of a budget: lengths in the recipe's unit, angles in degrees."""
+    """Entry `budget` of a report: lengths in the recipe's unit, angles in degrees."""
     budget, (scale, unit) = outcome.budget, motion_unit(recipe)
     entry: dict[str, Any] = {
         "permitted": scale * budget.permitted,
@@ -124,7 +124,7 @@ def _split(recipe: Recipe, split: Split) -> dict[str, Any]:
 
 
 def _over_turn(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
-    """What each dimension adds to the worst case every few degrees, at the contact that is worst of all."""
+    """Part of each dimension in the worst case every `SHARES_STEP` degrees, at the worst contact, in mm or degrees."""
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
     added = by_name(rows, powers(rows, outcome.worst_output, "worst")[:, ::step])

@@ -63,11 +63,11 @@ class PlacedLobe:
 
     @property
     def moved(self) -> Moved | None:
-        """What its follower moves, such as a valve."""
+        """Motion of the part that its follower drives, such as a valve; None without one."""
         return moved_by(self.lobe.recipe, self.design)
 
-    def told_at(self, engine: Engine) -> float:
-        """Lift of its follower, mm, at which an engine's events are told."""
+    def event_lift(self, engine: Engine) -> float:
+        """Lift of its follower, mm, that an engine's events are of."""
         return self.moved.follower_lift(engine.lift) if engine.at_valve and self.moved is not None else engine.lift
 
     @property
@@ -159,7 +159,7 @@ def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Des
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
     """Events of a cylinder with an intake and an exhaust lobe; None without both."""
-    own = {lobe.lobe.valve: lobe.event(lobe.told_at(engine)) for lobe in lobes if lobe.lobe.cylinder == cylinder}
+    own = {lobe.lobe.valve: lobe.event(lobe.event_lift(engine)) for lobe in lobes if lobe.lobe.cylinder == cylinder}
     intake, exhaust = own.get("intake"), own.get("exhaust")
     if intake is None or exhaust is None:
         return None

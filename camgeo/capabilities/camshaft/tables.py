@@ -75,6 +75,6 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
 def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:
     """Lift, mm or rad, at which a lobe's events are told: the engine's; of a machine's lobes half of the stroke."""
     if recipe.engine is not None and lobe.lobe.recipe.cam.arrangement.unit == "mm":
-        return lobe.told_at(recipe.engine)
+        return lobe.event_lift(recipe.engine)
     lift = lobe.design.motion.rows(np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False), 0)[0]
     return 0.5 * float(np.ptp(lift)) + float(lift.min())

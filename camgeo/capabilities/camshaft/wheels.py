@@ -26,7 +26,7 @@ OUTER, RIM = 138.0, 150.0  # px of the crank's wheel: the outer ring's middle, a
 
 def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, Event]]:
     """Return the events of each cylinder's valves, `intake` before `exhaust`, cylinders in the order of firing."""
-    events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(lobe.told_at(engine)) for lobe in lobes}
+    events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(lobe.event_lift(engine)) for lobe in lobes}
     rows = {
         cylinder: {valve: event for valve in DEAD_CENTRES if (event := events.get((cylinder, valve))) is not None}
         for cylinder in engine.firing

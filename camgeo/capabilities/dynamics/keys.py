@@ -109,7 +109,7 @@ class Coil:
         return PER_MM * self.rate * (self.free - self.seat + lift)
 
     def left(self, lift: float) -> float | None:
-        """What is left to the coils at a lift, mm; None where it is not known."""
+        """Travel that is left, mm, before the coils bind, at a lift, mm; None without a solid length."""
         return None if self.solid is None else self.seat - lift - self.solid
 
 

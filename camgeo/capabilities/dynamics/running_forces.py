@@ -252,7 +252,7 @@ class FollowerRunning(Running):
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:
-    """What moves as it runs, None without dynamics, and with an elastic train whose contacts' material is not given.
+    """Forces of the running train; None without dynamics, and for an elastic train whose contacts have no material.
 
     An elastic train with it has the forces of a rigid follower under the same spring besides its own.
     Raises RecipeErrors for one contact that nothing holds on the cam, and a linkage that does not turn.

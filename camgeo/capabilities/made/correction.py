@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.cams.family import ExactCam
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import demand_discs, points_of
+from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
 from camgeo.capabilities.made.reading import Probing
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
@@ -109,8 +109,8 @@ def _files(recipe: Recipe, design: Design, run: Run) -> list[_FilePoints]:
         points = _points(recipe, design, file, place)
         surfaces = [one for disc in points.discs for one in disc.surfaces]
         files.append(_FilePoints(file.file, {one.surface.name: one.points.deviations for one in surfaces}))
-        lacking = {disc.name for disc in points.missing}
-        missing = [disc for disc in (points.missing if missing is None else missing) if disc.name in lacking]
+        lacking = {name_of(disc.part) for disc in points.missing}
+        missing = [disc for disc in (points.missing if missing is None else missing) if name_of(disc.part) in lacking]
     demand_discs(missing or ())
     return files
 

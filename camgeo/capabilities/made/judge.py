@@ -12,7 +12,7 @@ import numpy as np
 
 from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
 from camgeo.capabilities.made.keys import Made, datum_of
-from camgeo.capabilities.made.placed import demand_discs, points_of
+from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
 from camgeo.synthesis.intent import closures_between, permitted
 from kin.judge.check import Check
 from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
@@ -154,46 +154,46 @@ def systematic(call: Call) -> float:
     return math.hypot(call.error or 0.0, 0.0 if call.axes is None else call.axes[0])
 
 
-def motion_uncertainty(made: PartMade, call: Call) -> Array:
+def motion_uncertainty(result: PartMade, call: Call) -> Array:
     """Expanded uncertainty of the motion over its shaft angles (n,), mm or rad."""
     turning = 0.0 if call.axes is None else call.axes[1]
-    expanded: Array = np.hypot(made.motion.uncertainty(systematic(call)), turning * np.abs(made.motion.intended[1]))
+    expanded: Array = np.hypot(result.motion.uncertainty(systematic(call)), turning * np.abs(result.motion.intended[1]))
     return expanded
 
 
-def checks_of(recipe: Recipe, made: PartMade, call: Call) -> tuple[list[Check], dict[str, str]]:
+def checks_of(recipe: Recipe, result: PartMade, call: Call) -> tuple[list[Check], dict[str, str]]:
     """Checks on the profile of each disc, the motion and the output, where there is a limit; and their verdicts."""
     checks, verdicts = [], {}
     zone = recipe.of(Made)
     if zone is not None and zone.profile is not None:
-        for disc in made.discs:
+        for disc in result.discs:
             e = np.abs(disc.profile.e)
             worst = int(np.argmax(e + disc.uncertain))
             judged = _held(PROFILE.name, 2.0 * e, 2.0 * disc.uncertain, zone.profile, "mm")
             parameter = np.concatenate([one.parameter for one in disc.profile.deviations])
             at = disc.surfaces[0].on.surface.gauge.shaft_angle(parameter[worst : worst + 1])[0]
-            name = disc.part.name if len(made.discs) > 1 else ""
+            name = name_of(disc.part)
             checks.append(replace(judged[0], at_deg=degrees(float(at)), surface=name))
             verdicts[f"{PROFILE.name} {name}".strip()] = judged[1]
     limits = permitted(recipe, recipe.export.tolerance)
     if limits.motion is not None:
-        off, uncertain = np.abs(made.motion.remaining), motion_uncertainty(made, call)
-        unit = made.surfaces[0].on.surface.gauge.unit
+        off, uncertain = np.abs(result.motion.remaining), motion_uncertainty(result, call)
+        unit = result.surfaces[0].on.surface.gauge.unit
         turn = math.degrees(1.0) if unit == "deg" else 1.0
         judged = _held(MOTION.name, turn * off, turn * uncertain, limits.motion, unit)
         worst = int(np.argmax(off + uncertain))
-        checks.append(replace(judged[0], at_deg=degrees(float(made.motion.shaft[worst]))))
+        checks.append(replace(judged[0], at_deg=degrees(float(result.motion.shaft[worst]))))
         verdicts[MOTION.name] = judged[1]
-    if limits.output is not None and made.output is not None:
-        linkage = made.discs[0].part.linkage
+    if limits.output is not None and result.output is not None:
+        linkage = result.discs[0].part.linkage
         assert linkage is not None
         swings = linkage.mechanism.unit == "deg"
         turn = math.degrees(1.0) if swings else 1.0
-        off = np.abs(made.output.worst)
-        gain = COVERAGE * made.output.sds
+        off = np.abs(result.output.worst)
+        gain = COVERAGE * result.output.sds
         judged = _held(OUTPUT.name, turn * off, turn * gain, limits.output, "deg" if swings else "mm")
         worst = int(np.argmax(off + gain))
-        checks.append(replace(judged[0], at_deg=degrees(float(made.output.shaft[worst]))))
+        checks.append(replace(judged[0], at_deg=degrees(float(result.output.shaft[worst]))))
         verdicts[OUTPUT.name] = judged[1]
     return checks, verdicts
 

@@ -39,18 +39,18 @@ STYLE = (
 )
 
 
-def write(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call) -> list[str]:
+def write(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call) -> list[str]:
     """Write the three files; returns their paths. Raises SurroundingsError as the disk does not do what it should."""
     folder = Path(call.out or "")
-    drawing = _drawing(recipe, made)
-    page = _page(recipe, made, section, call, drawing)
+    drawing = _drawing(recipe, result)
+    page = _page(recipe, result, section, call, drawing)
     files = {".html": page.encode(), ".svg": drawing.encode()}
     written = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
         table = folder / f"{recipe.name}-made.csv"
         part = table.with_name(f".{table.name}.partial")
-        _write_points(recipe, made, part)
+        _write_points(recipe, result, part)
         part.replace(table)
         for suffix, data in files.items():
             path = folder / f"{recipe.name}-made{suffix}"
@@ -66,13 +66,13 @@ def write(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call) -
 # --- the table --------------------------------------------------------------------------------------------------------
 
 
-def _write_points(recipe: Recipe, made: PartMade, path: Path) -> None:
+def _write_points(recipe: Recipe, result: PartMade, path: Path) -> None:
     """Every place with its foot, deviation and residual, as the file is drawn, in the recipe's unit."""
     unit, sign = UNIT_NAMES[recipe.units], -1.0 if recipe.rotation == "ccw" else 1.0
     names = ["surface", "file", "line", f"x_{unit}", f"y_{unit}", "shaft_deg", f"foot_x_{unit}", f"foot_y_{unit}"]
     names += [f"deviation_{unit}", f"residual_{unit}", "outlier"]
     blocks = []
-    for rank, one in enumerate(made.surfaces):
+    for rank, one in enumerate(result.surfaces):
         points, deviations = one.on.points, one.on.points.deviations
         feet = points.follower.envelope.points(deviations.parameter)
         shaft = np.mod(np.degrees(points.follower.shaft_angle(deviations.parameter)), 360.0)
@@ -87,13 +87,13 @@ def _write_points(recipe: Recipe, made: PartMade, path: Path) -> None:
 # --- the drawing round the contour ------------------------------------------------------------------------------------
 
 
-def _drawing(recipe: Recipe, made: PartMade) -> str:
+def _drawing(recipe: Recipe, result: PartMade) -> str:
     """The exact contours, and the smoothed deviation magnified along their normals, with where metal is too much."""
     sign = np.array([1.0, 1.0 if recipe.rotation == "ccw" else -1.0])  # of a drawing whose y axis points down
     t = equal_steps(LOOKS)
     size, most = 0.0, 0.0
     curves = []
-    for one in made.surfaces:
+    for one in result.surfaces:
         frame = one.on.points.follower.envelope.frames(t)
         e = one.fit.curve.rows(t)[0]
         size, most = max(size, float(np.abs(frame.points).max())), max(most, float(np.abs(e).max()))
@@ -135,9 +135,9 @@ def _path(points: Array) -> str:
 # --- the page ---------------------------------------------------------------------------------------------------------
 
 
-def _page(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call, drawing: str) -> str:
+def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call, drawing: str) -> str:
     unit, mm = UNIT_NAMES[recipe.units], recipe.mm
-    scale, moved = scale_of(recipe, made)
+    scale, moved = scale_of(recipe, result)
     parts = [f"<h1>{one_line(recipe.name)}</h1><p>{one_line(', '.join(section['files']))}</p>"]
     rows = "".join(
         f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>"
@@ -149,15 +149,15 @@ def _page(recipe: Recipe, made: PartMade, section: dict[str, Any], call: Call, d
     remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
     parts.append(f"{verdicts}<table>{rows}</table><ul>{remarks}</ul>")
     parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
-    for one in made.surfaces:
+    for one in result.surfaces:
         name = f" of {one_line(one.on.surface.name)}" if one.on.surface.name else ""
         parts.append(f"<h2>Deviation{name} over the shaft angle, {unit}</h2>{_over_shaft(recipe, one)}")
-    errors, uncertain = made.motion, motion_uncertainty(made, call)
+    errors, uncertain = result.motion, motion_uncertainty(result, call)
     shaft = np.degrees(errors.shaft)
     limit = _limit(recipe, moved)
     parts.append(f"<h2>Error of the motion less its constant offset, {moved}</h2>")
     parts.append(_plot(shaft, scale * errors.remaining, scale * uncertain, zone=limit))
-    parts.append("<h2>What to take off</h2>" + _take_off(made, mm, unit))
+    parts.append("<h2>What to take off</h2>" + _take_off(result, mm, unit))
     body = "\n".join(parts)
     return (
         '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
@@ -250,9 +250,9 @@ def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
     return stretches
 
 
-def _take_off(made: PartMade, mm: float, unit: str) -> str:
+def _take_off(result: PartMade, mm: float, unit: str) -> str:
     rows: list[Sequence[str]] = []
-    for one in made.surfaces:
+    for one in result.surfaces:
         for begin, end, most, at in stretches(one):
             rows.append((one.on.surface.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
     if not rows:

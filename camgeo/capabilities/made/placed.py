@@ -41,11 +41,6 @@ class DiscPoints:
     surfaces: tuple[OnSurface, ...] = ()
     placing: Placing = Placing()
 
-    @property
-    def name(self) -> str:
-        """Name of its surfaces, such as `disc 2`."""
-        return " and ".join(surface.name for surface in self.part.surfaces)
-
 
 @dataclass(frozen=True, eq=False)
 class Points:
@@ -108,10 +103,15 @@ def _by_disc(parts: Sequence[PartIntent], table: PointTable, path: Path, place: 
     return [(disc, table.rows(rank == disc)) for disc in sorted(set(rank.tolist()))]
 
 
+def name_of(part: PartIntent) -> str:
+    """Name of one of several discs, that of its surface, such as `disc 2`; empty where a part is the only one."""
+    return part.surfaces[0].name if len(part.surfaces) == 1 else part.name
+
+
 def demand_discs(missing: Sequence[DiscPoints]) -> None:
     """Raise CallError where there are discs without points."""
     if missing:
-        names = " and ".join(disc.name for disc in missing)
+        names = " and ".join(name_of(disc.part) for disc in missing)
         raise CallError(f"points of {names} are missing: give a file for each disc")
 
 

@@ -67,8 +67,8 @@ def _shown(report: dict[str, Any], everything: bool) -> str:
 
 def _profile(recipe: Recipe) -> float | None:
     """Width of the profile's zone."""
-    made = recipe.of(Made)
-    return None if made is None else made.profile
+    keys = recipe.of(Made)
+    return None if keys is None else keys.profile
 
 
 def _corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:

@@ -33,7 +33,7 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
     if design.trimmed:
         raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
     try:
-        made = made_part(recipe, design, paths, call)
+        result = made_part(recipe, design, paths, call)
     except (UnlikePointsError, GapError, UnsettledError) as error:
         raise CallError(f"{', '.join(escaped(str(path)) for path in paths)}: {error}") from error
     except (ContactError, FrameError) as error:
@@ -42,11 +42,11 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
         if isinstance(error, CallError):
             raise
         raise CallError(f"{name}: {error}") from error
-    checks, verdicts = checks_of(recipe, made, call)
-    report = section(recipe, paths, made, call, verdicts)
+    checks, verdicts = checks_of(recipe, result, call)
+    report = section(recipe, paths, result, call, verdicts)
     if call.out is not None:
         from camgeo.capabilities.made.output import write  # most calls write nothing
 
         with clock.stage("write"):
-            report["written"] = write(recipe, made, report, call)
+            report["written"] = write(recipe, result, report, call)
     return Results({"made": report}, checks)

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.capabilities.made.judge import motion_uncertainty, systematic
 from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.placed import name_of
 from camgeo.measures.units import UNIT_NAMES
 from kin.made.causes import causes
 from kin.made.motion import COVERAGE, least_fault
@@ -30,47 +31,47 @@ DERIVATIVES = ("error", "velocity", "acceleration")
 
 
 def section(
-    recipe: Recipe, paths: Sequence[Path], made: PartMade, call: Call, verdicts: Mapping[str, str]
+    recipe: Recipe, paths: Sequence[Path], result: PartMade, call: Call, verdicts: Mapping[str, str]
 ) -> dict[str, Any]:
     """Give the section `made`."""
     entry: dict[str, Any] = {
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],
         "verdicts": dict(verdicts),
-        "discs": [_disc(recipe, disc) for disc in made.discs],
-        "surfaces": [_surface(recipe, paths, one) for one in made.surfaces],
-        "motion": motion_section(recipe, made, call),
+        "discs": [_disc(recipe, disc) for disc in result.discs],
+        "surfaces": [_surface(recipe, paths, one) for one in result.surfaces],
+        "motion": motion_section(recipe, result, call),
     }
-    if made.play is not None:
-        worst = {key: int(pick(made.play.gap)) for key, pick in (("least", np.argmin), ("most", np.argmax))}
-        scale, unit = scale_of(recipe, made)
+    if result.play is not None:
+        worst = {key: int(pick(result.play.gap)) for key, pick in (("least", np.argmin), ("most", np.argmax))}
+        scale, unit = scale_of(recipe, result)
         entry["play"] = {"unit": unit}
         for key, at in worst.items():
-            entry["play"][key] = scale * float(made.play.gap[at])
-            entry["play"][f"{key}_at_deg"] = degrees(float(made.play.shaft[at]))
-        entry["play"]["uncertainty"] = scale * COVERAGE * float(made.play.sds.max())
-    if made.output is not None:
-        linkage = made.discs[0].part.linkage
+            entry["play"][key] = scale * float(result.play.gap[at])
+            entry["play"][f"{key}_at_deg"] = degrees(float(result.play.shaft[at]))
+        entry["play"]["uncertainty"] = scale * COVERAGE * float(result.play.sds.max())
+    if result.output is not None:
+        linkage = result.discs[0].part.linkage
         swings = linkage is not None and linkage.mechanism.unit == "deg"
         factor = math.degrees(1.0) if swings else 1.0 / recipe.mm
-        worst_at = int(np.argmax(np.abs(made.output.worst)))
+        worst_at = int(np.argmax(np.abs(result.output.worst)))
         entry["output"] = {
             "unit": "deg" if swings else UNIT_NAMES[recipe.units],
-            "max": factor * abs(float(made.output.worst[worst_at])),
-            "at_deg": degrees(float(made.output.shaft[worst_at])),
-            "centred": factor * float(np.abs(made.output.centred).max()),
-            "uncertainty": factor * COVERAGE * float(made.output.sds[worst_at]),
+            "max": factor * abs(float(result.output.worst[worst_at])),
+            "at_deg": degrees(float(result.output.shaft[worst_at])),
+            "centred": factor * float(np.abs(result.output.centred).max()),
+            "uncertainty": factor * COVERAGE * float(result.output.sds[worst_at]),
         }
-    if made.lifts is not None:
-        scale, _ = scale_of(recipe, made)
-        entry["lifts"] = {"zero": scale * made.lifts[0], "turned_deg": math.degrees(made.lifts[1])}
-    entry["remarks"] = list(made.remarks)
+    if result.lifts is not None:
+        scale, _ = scale_of(recipe, result)
+        entry["lifts"] = {"zero": scale * result.lifts[0], "turned_deg": math.degrees(result.lifts[1])}
+    entry["remarks"] = list(result.remarks)
     return entry
 
 
-def scale_of(recipe: Recipe, made: PartMade) -> tuple[float, str]:
+def scale_of(recipe: Recipe, result: PartMade) -> tuple[float, str]:
     """Factor and unit of the follower's motion in a report."""
-    swings = made.surfaces[0].on.surface.gauge.unit == "deg"
+    swings = result.surfaces[0].on.surface.gauge.unit == "deg"
     return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
 
 
@@ -81,7 +82,7 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
     parameter = held.deviations[surface].parameter[index : index + 1]
     gauge = disc.surfaces[surface].on.surface.gauge
     entry: dict[str, Any] = {
-        "name": disc.part.name,
+        "name": name_of(disc.part),
         "datum": held.datum,
         "profile": 2.0 * held.greatest / mm,
         "greatest": float(held.e[worst]) / mm,
@@ -188,11 +189,11 @@ def _surface(recipe: Recipe, paths: Sequence[Path], one: SurfaceMade) -> dict[st
     }
 
 
-def motion_section(recipe: Recipe, made: PartMade, call: Call) -> dict[str, Any]:
+def motion_section(recipe: Recipe, result: PartMade, call: Call) -> dict[str, Any]:
     """Errors of the motion with their uncertainties."""
-    scale, unit = scale_of(recipe, made)
-    errors = made.motion
-    uncertain = motion_uncertainty(made, call)
+    scale, unit = scale_of(recipe, result)
+    errors = result.motion
+    uncertain = motion_uncertainty(result, call)
     phase, remaining = errors.phase
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
     common: Array = np.abs(errors.gain) * systematic(call)

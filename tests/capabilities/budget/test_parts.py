@@ -237,7 +237,7 @@ def test_on_a_file_sizes_do_what_they_do_on_the_exact_contour(name: str, tmp_pat
         read = errors_by_contact(recipe, design, stated, SHAFT, contours)(Stepped(word, 0.01))
         reach = 65.0 if name == "knife-arm" else 1.0  # of its arm, whose errors are angles
         assert reach * np.abs(exact).max() > 0.01
-        assert reach * np.abs(exact - read).max() < 1.5e-4, word
+        assert reach * np.abs(exact - read).max() < 1.1e-4, word
 
 
 def test_the_command_simulates_a_file(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -69,13 +69,8 @@ def runs_of(folder, text, *deviations, noise=0.0):
     return runs
 
 
-UNSETTLED = pytest.mark.xfail(
-    strict=True, reason="its verdict is not settled: an extreme lies where contact has a kink"
-)
-
-
 @pytest.mark.thin(4)
-@pytest.mark.parametrize("kind", [pytest.param(kind, marks=UNSETTLED if kind == "yoke" else ()) for kind in RECIPES])
+@pytest.mark.parametrize("kind", list(RECIPES))
 def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     text = plain(RECIPES[kind])
     recipe = written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), "dxf, {dxf: {as: arcs, correct: 1}}")
