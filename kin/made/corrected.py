@@ -250,7 +250,9 @@ class Corrected(Follower):
     def _errors(self, shaft: Array) -> Array:
         """What the metal adds to each contact's position at shaft angles (m, n): (c, m, n)."""
         positions, _ = self.metal.positions(shaft.ravel())
-        return (positions - self.metal.follower.intended(shaft.ravel())).reshape(-1, *shaft.shape)
+        errors = positions - self.metal.follower.intended(shaft.ravel())
+        each: Array = errors.reshape(-1, *shaft.shape)
+        return each
 
     @cached_property
     def metal_breaks(self) -> Array:

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 NEAR = 1e-6  # share by which sums are off, below which rounding would stop a search along Newton's steps
+STRAIGHT = 1e-6  # of the greatest break: less of it is rounding
+SINGULAR = 1e-9  # of the greatest bend of the bound: a lesser one is none
 BROKEN = 1e-11  # share of what is permitted by which a sum may exceed it in the course of the search
 LEAST_STEP = 1e-12  # of Newton's, below which nothing is gained
 MOST_STEPS = 200  # of Newton's method; ten are usual
@@ -189,11 +191,16 @@ def _multipliers(start: Array, problem: Problem) -> Array:
             return now
         per = q * t**q / ((q + problem.k) * (now @ weights))
         bend = (weights[moving] * per) @ weights[moving].T
-        step = np.zeros(len(now))
-        step[moving] = np.linalg.lstsq(bend, broken[moving], rcond=None)[0]
+        step, longest = np.zeros(len(now)), 1.0
+        step[moving] = np.linalg.lstsq(bend, broken[moving], rcond=SINGULAR)[0]
+        straight = broken[moving] - bend @ step[moving]
+        if (
+            np.abs(straight).max() > STRAIGHT * off
+        ):  # more angles than unknowns: so far the bound rises, and never bends
+            step[moving], longest = straight, math.inf
         down = step < 0.0
         ratios = np.where(down, now / np.where(down, -step, 1.0), math.inf)
-        size, value = min(1.0, float(ratios.min())), bound(now)
+        size, value = min(longest, float(ratios.min())), bound(now)
         stops = ratios <= size  # the multipliers that come to 0 and stay there
         while off > NEAR and bound(np.maximum(now + size * step, 0.0)) < value:
             size, stops = 0.5 * size, np.zeros_like(moving)

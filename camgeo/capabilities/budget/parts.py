@@ -232,8 +232,8 @@ def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, C
     for i, contact in enumerate(contacts):
         surface = next(surface for surface in design.exact.surfaces if surface.name == contact.surface)
         if read is not None:
-            meant = bearing(contact, surface.side, shaft, position).point
-            metal: Metal = read_metal(contact, surface.side, read[contact.surface], meant, _wander(budget, meant))
+            intended = bearing(contact, surface.side, shaft, position).point
+            metal: Metal = read_metal(contact, surface.side, read[contact.surface], intended, _wander(budget, intended))
         elif i < len(parameters):
             metal = ExactMetal(surface.curve, surface.side, parameters[i])
         else:  # opposite on one surface, or on one of its own, whose parameter is the shaft angle
@@ -244,9 +244,9 @@ def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, C
     return places
 
 
-def _wander(budget: Budget, meant: Complexes) -> float:
+def _wander(budget: Budget, intended: Complexes) -> float:
     """How far a contact wanders along the contour, about, mm: as far as all sizes together displace it."""
-    size = float(np.abs(meant).max())
+    size = float(np.abs(intended).max())
     return sum((tolerance or 0.0) * (size if WORDS[name].angle else 1.0) for name, tolerance in budget.tolerances)
 
 

@@ -66,7 +66,7 @@ def read_metal(
 
 @dataclass(frozen=True, eq=False)
 class ReadMetal:
-    """Points (k,) of a contour in order, at shaft angles (n,), at which it is meant to be touched near `meant` (n,).
+    """Points (k,) of a contour in order, at shaft angles (n,), at which it is meant to be touched near `intended` (n,).
 
     The metal lies on its `side`; `hand` is the side of an arm. `wander` is how far along the contour a contact is
     looked for at first, mm: farther where it is found at an end of that.
@@ -126,7 +126,7 @@ class ReadMetal:
 
     def _swung(self, bound: Callable[..., Array], pivot: Complexes, *sizes: Array) -> Complexes:
         """Direction from a pivot, turned from that to the place of contact by what the bounds of its turn hold."""
-        start = (self.meant - pivot) / np.abs(self.meant - pivot)
+        start = (self.intended - pivot) / np.abs(self.intended - pivot)
         swung: Complexes = start * np.exp(1j * self.hand * self._held(bound, (pivot, *sizes, start)))
         return swung
 
@@ -135,10 +135,10 @@ class ReadMetal:
 
         `bound` gives bounds (parts, k) by the points of k indices, of parts whose rows are (parts, 1).
         """
-        shape = np.broadcast_shapes(*(row.shape for row in rows), self.meant.shape)
+        shape = np.broadcast_shapes(*(row.shape for row in rows), self.intended.shape)
         whole = [np.broadcast_to(row, shape) for row in rows]
         held = np.empty(shape)
-        for angle, intended in enumerate(self.meant):
+        for angle, intended in enumerate(self.intended):
             held[:, angle] = self._nearby(bound, [row[:, angle, None] for row in whole], intended)
         return held
 

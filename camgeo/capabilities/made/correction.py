@@ -49,11 +49,13 @@ class RunMade:
     """What the points of a run tell: the number of points on each surface by its name, and its smoothed deviation.
 
     `curves` are means of those of the run's files; they are on the same spans in all runs, so that they can be added.
+    `error` is the greatest stated for its files, expanded (k = 2), mm: it is common to all points and does not average.
     """
 
     files: tuple[str, ...]
     points: Mapping[str, int]
     curves: Mapping[str, Smooth]
+    error: float = 0.0
 
 
 class _FilePoints(NamedTuple):
@@ -77,10 +79,12 @@ def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
     Raises CallError, naming the file, for points that are none of this part or leave a gap.
     """
     made = recipe.of(Made)
-    runs = [_files(recipe, design, run) for run in (() if made is None else made.points)]
+    listed = () if made is None else made.points
+    runs = [_files(recipe, design, run) for run in listed]
     names = [surface.name for surface in design.exact.surfaces]
     spans = {name: _spans(name, [file for run in runs for file in run]) for name in names} if runs else {}
-    return [_run(run, spans) for run in runs]
+    errors = [max((file.error or 0.0 for file in files), default=0.0) for files in listed]
+    return [replace(_run(run, spans), error=error) for run, error in zip(runs, errors, strict=True)]
 
 
 def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:

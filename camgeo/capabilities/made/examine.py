@@ -47,7 +47,8 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
         "unit": UNIT_NAMES[recipe.units],
         "runs": [_run(recipe, run) for run in runs],
         "corrections": [
-            _correction(recipe, design, totals, share, names) for share, names in _corrected_files(recipe).items()
+            _correction(recipe, design, totals, sum(run.error for run in runs), corrected)
+            for corrected in _corrected_files(recipe).items()
         ],
     }
     return Results({"made": entry})
@@ -66,7 +67,7 @@ def _run(recipe: Recipe, run: RunMade) -> dict[str, Any]:
                 "spans": curve.spans,
                 "greatest": float(e[np.argmax(np.abs(e))]) / recipe.mm,
                 "rms": float(np.sqrt(np.mean(e**2))) / recipe.mm,
-                "uncertainty": COVERAGE * float(curve.deviations(t).max()) / recipe.mm,
+                "uncertainty": math.hypot(COVERAGE * float(curve.deviations(t).max()), run.error) / recipe.mm,
             }
         )
     return {"files": list(run.files), "surfaces": surfaces}
@@ -83,10 +84,13 @@ def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
 
 
 def _correction(
-    recipe: Recipe, design: Design, totals: Mapping[str, Smooth], share: float, names: list[str]
+    recipe: Recipe, design: Design, totals: Mapping[str, Smooth], error: float, corrected: tuple[float, list[str]]
 ) -> dict[str, Any]:
-    """What a share takes off, and what that alone would do to the motion of a part that came out as it is drawn."""
-    t = equal_steps(LOOKS)
+    """What a share takes off in files, and what that alone would do to the motion of a part that came out as drawn.
+
+    `error`, mm, is the sum of what is stated for the probes of all runs.
+    """
+    (share, names), t = corrected, equal_steps(LOOKS)
     shaft = equal_steps(recipe.verify.angles)
     each, greatest, uncertain = {}, 0.0, 0.0
     for surface in design.exact.surfaces:
@@ -103,7 +107,7 @@ def _correction(
         CORRECT.name: share,
         "files": names,
         "greatest": greatest / recipe.mm,
-        "uncertainty": uncertain / recipe.mm,
+        "uncertainty": math.hypot(uncertain, share * error) / recipe.mm,
         "motion": {
             "unit": "deg" if swings else UNIT_NAMES[recipe.units],
             "offset": scale * motion.offset,

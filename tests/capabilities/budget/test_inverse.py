@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from support.made_cases import CASES
 
@@ -110,6 +110,8 @@ def made(weights: np.ndarray, tolerances: list[float | None]) -> Influence:
     st.sampled_from([0.5, 1, 2, 3, 10]),
     st.integers(0, 2**32 - 1),
 )
+@example(2, 5, "worst", 0.5, 2)  # more angles than dimensions, which leaves multipliers undetermined
+@example(4, 25, "worst", 0.5, 1875061228)  # nearly so
 def test_no_angle_is_broken_and_the_dual_proves_the_cost_least(count, angles, kind, exponent, seed) -> None:
     rng = np.random.default_rng(seed)
     weights, costs = rng.uniform(0.01, 3.0, (count, angles)), rng.uniform(0.1, 5.0, count)

@@ -148,7 +148,15 @@ def test_a_file_of_a_run_has_its_own_unit_probe_and_placing(tmp_path):
     entry = "{file: run.csv, units: inch, align: rotation, probe: {radius: 1.5, error: 0.002}}"
     report = camgeo.export(written(tmp_path, ROLLER, [entry], "{dxf: {correct: 1}}"), tmp_path / "out")
     assert report["made"]["runs"][0]["files"] == ["run.csv"]
-    assert report["made"]["runs"][0]["surfaces"][0]["greatest"] == pytest.approx(0.02, abs=5e-4)
+    surface = report["made"]["runs"][0]["surfaces"][0]
+    assert surface["greatest"] == pytest.approx(0.02, abs=5e-4)
+    # the probe's stated error does not average: both uncertainties hold it
+    silent = entry.replace(", error: 0.002", "")
+    without = camgeo.export(written(tmp_path, ROLLER, [silent], "{dxf: {correct: 0.5}}"), tmp_path / "silent")["made"]
+    plain_surface, correction = without["runs"][0]["surfaces"][0], without["corrections"][0]
+    assert surface["uncertainty"] == pytest.approx(np.hypot(plain_surface["uncertainty"], 0.002))
+    half = camgeo.export(written(tmp_path, ROLLER, [entry], "{dxf: {correct: 0.5}}"), tmp_path / "half")["made"]
+    assert half["corrections"][0]["uncertainty"] == pytest.approx(np.hypot(correction["uncertainty"], 0.001))
 
 
 def test_without_a_corrected_file_points_are_only_told(tmp_path):
