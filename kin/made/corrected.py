@@ -259,7 +259,8 @@ class Corrected(Follower):
         """Shaft angles at which a contact comes upon, or leaves, a break of the contour."""
         corners = self.metal.corners
         touches = [self.metal.gauge.touching(corners.points, side) for side in (corners.before, corners.after)]
-        return np.mod(np.concatenate([angle for touch in touches for angle, _ in touch]), TURN)
+        breaks: Array = np.mod(np.concatenate([angle for touch in touches for angle, _ in touch]), TURN)
+        return breaks
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion beyond that on the metal, and play beyond it; see `Follower`."""
