@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from camgeo.api.design import Design
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import FileCall
     from camgeo.synthesis.expected_checks import Foreseen
 
 
@@ -40,6 +41,10 @@ def _judge(
     recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
 ) -> dict[str, Any]:
     return pipeline.judged(recipe, paths, tolerance=tolerance, units=units, gap=gap)
+
+
+def _claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
+    return pipeline.judged_by(recipe, name, call)
 
 
 def _show(
@@ -72,6 +77,7 @@ ROOT = Root(
     export=_export,
     check=_check,
     judge=_judge,
+    claimed=_claimed,
     show=_show,
     explain=_explain,
     foresee=_foresee,

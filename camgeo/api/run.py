@@ -150,8 +150,6 @@ def _judged_by(
     held: bool,
 ) -> Report:
     """Report on files that a capability judges; raises CallError where others are among them."""
-    from camgeo.output.pipeline import judged_by
-    from camgeo.recipe.recipe import Recipe
     from camgeo.registry.capability import FileCall
 
     faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]
@@ -162,12 +160,11 @@ def _judged_by(
     name = escaped(str(claimed[0]))
     if held:
         faults.append(f"{name}: measured points have no tolerance, gap and page of files: give made.profile, and out")
-    if not isinstance(recipe, Recipe):
-        faults.append(f"{name}: measured points are held against the recipe of one cam: give that of the lobe")
-    if faults or not isinstance(recipe, Recipe):
+    if faults:
         raise CallError(*faults)
     unit = None if units is None else UNIT_MM[units]
-    report = judged_by(recipe, registry.judge_of(claimed[0], options), FileCall(paths, unit, options))
+    judge = registry.judge_of(claimed[0], options)
+    report = root_of(recipe).claimed(recipe, judge, FileCall(paths, unit, options))
     return Report(recipe, report, None, tuple(paths))
 
 

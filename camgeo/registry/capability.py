@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
     from camgeo.recipe.starter import Starter
     from camgeo.registry.formats import Alteration, Form, Variant
     from camgeo.registry.root import Root
@@ -116,18 +116,40 @@ class FileCall(NamedTuple):
     options: Mapping[str, object] = EMPTY
 
 
+class ShaftCam(NamedTuple):
+    """One of several cams on a shaft; heights are mm, angles rad.
+
+    name       its name, of which the shaft has no other
+    recipe     its own, in the units of the shaft and turning as that does
+    design     its exact cam
+    at         angle by which its metal is turned, counter-clockwise as drawn for `cw`
+    zero       shaft angle at which its motion begins
+    low, high  its ends along the shaft
+    """
+
+    name: str
+    recipe: Recipe
+    design: Design
+    at: float
+    zero: float
+    low: float
+    high: float
+
+
 class FileJudge(NamedTuple):
     """How `verify` has a capability judge files of its own, such as points measured on a part.
 
-    claims   whether a file is of that kind, by its heading or the options of the call; raises OSError
-    options  of a call on such files, by their names; the command line gives their values as text
-    judge    checks and sections; raises CallError for what cannot be judged, SurroundingsError as the disk does
-    shown    lines for the terminal, from the report and whether all is asked for
+    claims       whether a file is of that kind, by its heading or the options of the call; raises OSError
+    options      of a call on such files, by their names; the command line gives their values as text
+    judge        checks and sections; raises CallError for what cannot be judged, SurroundingsError as the disk does
+    judge_shaft  likewise, of files of several cams on one shaft: (recipe of the shaft, its cams, call, clock)
+    shown        lines for the terminal, from the report and whether all is asked for
     """
 
     claims: Callable[[Path, Mapping[str, object]], bool]
     options: Mapping[str, CallOption]
     judge: Callable[[Recipe, Design, FileCall, Clock], Results]
+    judge_shaft: Callable[[Order, Sequence[ShaftCam], FileCall, Clock], Results]
     shown: Callable[[dict[str, Any], bool], str]
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from camgeo.api.check import Check
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Order
+    from camgeo.registry.capability import FileCall
     from camgeo.schema.fields import Table
     from camgeo.schema.yaml_source import Source
     from camgeo.synthesis.expected_checks import Foreseen
@@ -46,6 +47,7 @@ class Root(Generic[R]):
     export   writes and judges files: (recipe, folder, kinds of files or none for all, what hears of stages)
     check    makes and judges all files, and keeps none: (recipe, what hears of stages)
     judge    reports on files of any origin: (recipe, paths, tolerance, unit of files that state none, gap)
+    claimed  reports on files that a capability judges: (recipe, name of the capability, what `verify` is given)
     show     reports likewise, and gives the page that shows the files; None where there is none
     explain  tells a failed check of a report over several lines: (check, report, recipe, name of the recipe's file)
     foresee  checks to come
@@ -58,6 +60,7 @@ class Root(Generic[R]):
     export: Callable[[R, Path, tuple[str, ...], Callable[[str], None]], Outcome]
     check: Callable[[R, Callable[[str], None]], Outcome]
     judge: Callable[[R, list[Path], float | None, float | None, float | None], dict[str, Any]]
+    claimed: Callable[[R, str, FileCall], dict[str, Any]]
     explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
     foresee: Callable[[R], Sequence[Foreseen]]
     show: Callable[[R, list[Path], float | None, float | None, float | None], tuple[dict[str, Any], str]] | None = None

@@ -8,7 +8,7 @@ constant offset are so unseen.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,19 +25,53 @@ from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Sequence
 
     from kin.follower.base import Follower
     from kin.law.contacts import Side, Touch
     from kin.numeric.arrays import Array
 
-    Exact = Callable[[Array], tuple[Array, Array]]  # shaft angles: what the exact cam gives the probe, and where
 
 COARSE_TURNS = 720  # angles at which the zero of the shaft angle is looked for
 STEPS = 12
 STILL = 1e-12  # rad
 UNLIKE = 0.05  # of the stroke: readings that are off by more on average are of something else
 ALIKE = 0.1  # of that, which a turn has to bring it down to
+
+
+class Readings(NamedTuple):
+    """Lifts (n,), mm or rad, at shaft angles (n,), rad.
+
+    They are of a follower with one contact, on metal on a side of its contour; `touch` is that of the probe, None for
+    the follower's own.
+    """
+
+    follower: Follower
+    side: Side
+    shaft: Array
+    lift: Array
+    touch: Touch | None = None
+
+    @property
+    def exact(self) -> Exact:
+        """What the exact cam would give the probe."""
+        probe = probe_of(self.follower, self.side, self.touch)
+
+        def position(angle: Array, raised: float = 0.0) -> tuple[Array, Array]:
+            metal = Metal.of(
+                self.follower, self.side, lambda t: np.stack([np.full_like(t, raised), np.zeros_like(t)]), gauge=probe
+            )
+            positions, places = metal.positions(angle)
+            return positions[0], places[0]
+
+        return position
+
+
+class Exact(Protocol):
+    """What a probe shows on metal that is the exact one, or more by as much all round."""
+
+    def __call__(self, angle: Array, raised: float = 0.0, /) -> tuple[Array, Array]:
+        """Position, mm or rad, at shaft angles (n,), and the parameters where it touches, of metal `raised`, mm."""
 
 
 class Lifts(NamedTuple):
@@ -57,31 +91,23 @@ def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
     return follower_of([replace(contact.away_from(side), touch=touch)], still, side)
 
 
-def points_of_lifts(
-    follower: Follower, side: Side, shaft: Array, lift: Array, touch: Touch | None = None, *, aligned: bool = False
-) -> Lifts:
-    """Make points of lifts (n,), mm or rad, at shaft angles (n,), rad, of a follower with one contact.
+def points_of_lifts(readings: Readings, *, aligned: bool = False) -> Lifts:
+    """Make points of lifts; `aligned` lets the zero of the shaft angle be found.
 
-    `touch` is that of the probe, None for the follower's own. `aligned` lets the zero of the shaft angle be
-    found. Raises UnlikePointsError for readings that are far off, saying what they look like, and where the contact
-    would leave the probe's face.
+    Raises UnlikePointsError for readings that are far off, saying what they look like, and where the contact would
+    leave the probe's face.
     """
-    probe = probe_of(follower, side, touch)
-
-    def exact(angle: Array, raised: float = 0.0) -> tuple[Array, Array]:
-        metal = Metal.of(follower, side, lambda t: np.stack([np.full_like(t, raised), np.zeros_like(t)]), gauge=probe)
-        positions, places = metal.positions(angle)
-        return positions[0], places[0]
-
-    turn = _turn(exact, shaft, lift) if aligned else 0.0
+    follower, side, shaft, lift, touch = readings
+    exact = readings.exact
+    turn = turn_of([readings]) if aligned else 0.0
     meant, places = exact(shaft + turn)
     zero = float((lift - meant).mean())
     off = lift - meant - zero
-    _demand_alike(exact, shaft, lift, off, aligned=aligned)
+    _demand_alike(readings, off, aligned=aligned)
     gain = (exact(shaft + turn, RAISED)[0] - exact(shaft + turn, -RAISED)[0]) / (2.0 * RAISED)
     frame = follower.envelope.frames(places)
     if touch is not None:
-        _demand_on_face(probe, frame.points, shaft + turn)
+        _demand_on_face(probe_of(follower, side, touch), frame.points, shaft + turn)
     metal = frame.points + (side * off / gain)[:, None] * frame.normals
     return Lifts(SurfacePoints(follower, side, metal), turn, zero)
 
@@ -100,27 +126,36 @@ def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
         )
 
 
-def _turn(exact: Exact, shaft: Array, lift: Array) -> float:
-    """What the shaft angles lack, rad, by least squares over the turn and the zero of the readings."""
+def turn_of(readings: Sequence[Readings]) -> float:
+    """What the shaft angles lack, rad, the same for all readings, by least squares; the zero of each is free."""
     every = equal_steps(COARSE_TURNS)
-    table = exact(every)[0]
+    each = [(one.exact, one.shaft, one.lift) for one in readings]
+    tables = [exact(every)[0] for exact, _, _ in each]
 
     def scatter(turn: float) -> float:
-        return float(np.var(lift - np.interp(np.mod(shaft + turn, TURN), every, table, period=TURN)))
+        return sum(
+            len(lift) * float(np.var(lift - np.interp(np.mod(shaft + turn, TURN), every, table, period=TURN)))
+            for table, (_, shaft, lift) in zip(tables, each, strict=True)
+        )
 
     turn = min(every.tolist(), key=scatter)
     h = TURN / COARSE_TURNS / 8.0
     for _ in range(STEPS):
-        low, here, high = (exact(shaft + turn + d)[0] for d in (-h, 0.0, h))
-        columns = np.column_stack([(high - low) / (2.0 * h), np.ones_like(shaft)])
-        step = float(np.linalg.lstsq(columns, lift - here, rcond=None)[0][0])
+        square, product = 0.0, 0.0
+        for exact, shaft, lift in each:
+            low, here, high = (exact(shaft + turn + d)[0] for d in (-h, 0.0, h))
+            slope = (high - low) / (2.0 * h)
+            slope -= slope.mean()
+            square, product = square + float(slope @ slope), product + float(slope @ (lift - here))
+        step = product / square if square > 0.0 else 0.0
         turn += step
         if abs(step) < STILL:
             break
     return math.remainder(turn, TURN)
 
 
-def _demand_alike(exact: Exact, shaft: Array, lift: Array, off: Array, *, aligned: bool) -> None:
+def _demand_alike(readings: Readings, off: Array, *, aligned: bool) -> None:
+    exact, shaft, lift = readings.exact, readings.shaft, readings.lift
     stroke = float(np.ptp(exact(equal_steps(COARSE_TURNS))[0]))
     far = float(np.sqrt(np.mean(off**2)))
     if far <= UNLIKE * stroke:
@@ -128,7 +163,7 @@ def _demand_alike(exact: Exact, shaft: Array, lift: Array, off: Array, *, aligne
     told = f"the lifts are off by {far / stroke:.2g} of the stroke on average"
     looks: list[tuple[float, str]] = []
     for sense, words in ((1.0, []), (-1.0, ["run in the other sense"])):
-        turn = _turn(exact, sense * shaft, lift)
+        turn = turn_of([readings._replace(shaft=sense * shaft)])
         left = float(np.std(lift - exact(sense * shaft + turn)[0]))
         degrees = math.degrees(turn)
         turned = [f"turned by {degrees:.3g} degrees"] if abs(degrees) > 0.05 else []

@@ -7,7 +7,7 @@ their step is a share of the smoothing's span, so that nothing of that is lost, 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -36,6 +36,31 @@ RAISED = 1e-4  # mm: metal raised by as much tells how the motion depends on it
 COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 
 
+class Felt(NamedTuple):
+    """What a contact feels of the metal at n shaft angles: the motion has `gain` (n,) of the deviation of `curve`.
+
+    That is the deviation at `places` (n,), where the metal's outward normals are `normals` (n, 2).
+    """
+
+    curve: Smooth
+    places: Array
+    gain: Array
+    normals: Array
+
+
+class Influence(NamedTuple):
+    """What adds to a weighted sum of a motion's errors, in its unit.
+
+    sd            standard deviation by the noise of the points
+    raised        what a mm more of metal all round adds
+    shifted (2,)  what a mm of shift of the metal adds, along x and y
+    """
+
+    sd: float
+    raised: float
+    shifted: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Errors:
     """Errors of a motion at shaft angles (n,), with their standard deviations; mm or rad, derivatives by rad.
@@ -45,6 +70,7 @@ class Errors:
     sds (3, n)       standard deviations by the noise of the points
     gain (n,)        what a mm more of metal adds to the position
     intended (3, n)  the intended position, velocity and acceleration
+    felt             what each contact feels of the metal
     """
 
     shaft: Array
@@ -52,6 +78,7 @@ class Errors:
     sds: Array
     gain: Array
     intended: Array
+    felt: tuple[Felt, ...]
 
     @property
     def offset(self) -> float:
@@ -67,11 +94,24 @@ class Errors:
     @property
     def phase(self) -> tuple[float, Array]:
         """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
-        columns = np.column_stack([np.ones_like(self.shaft), -self.intended[1]])
-        if not float(np.ptp(self.intended[1])) > 0.0:
-            return 0.0, self.remaining
-        offset_and_turn = np.linalg.lstsq(columns, self.rows[0], rcond=None)[0]
-        return float(offset_and_turn[1]), self.rows[0] - columns @ offset_and_turn
+        turn = float(self.phase_weights @ self.rows[0])
+        remaining = self.rows[0] + turn * self.intended[1]
+        return turn, remaining - remaining.mean()
+
+    @property
+    def phase_weights(self) -> Array:
+        """Weights (n,) of the errors in the turn of least squares, beside a constant offset: 0 without any motion."""
+        column = self.intended[1].mean() - self.intended[1]
+        square = float(column @ column)
+        weights: Array = column / square if square > 0.0 else np.zeros_like(column)
+        return weights
+
+    def influence(self, weights: Array) -> Influence:
+        """What adds to the sum of the errors with these weights (n,)."""
+        each = [(one, weights * one.gain) for one in self.felt]
+        sd = math.sqrt(sum(one.curve.deviation_of_sum(one.places, share) ** 2 for one, share in each))
+        shifted: Array = np.sum([share @ one.normals for one, share in each], axis=0)
+        return Influence(sd, float(sum(share.sum() for _, share in each)), shifted)
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
         """Expanded uncertainty of the error (n,), k = 2; `systematic` is that of the metal, k = 2, mm, (n,) or one."""
@@ -136,7 +176,8 @@ def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array) 
         rate = np.abs(FIRST @ place / step)
         gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
         sds = np.stack([np.abs(gain) * rate**q * curve.deviations(place[2], q) for q in range(3)])
-        contacts.append(Errors(shaft, rows, sds, gain, intended))
+        normals = side * follower.envelope.frames(place[2]).normals
+        contacts.append(Errors(shaft, rows, sds, gain, intended, (Felt(curve, place[2], gain, normals),)))
     return contacts
 
 
@@ -157,7 +198,9 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
     rows = 0.5 * (pushing.rows + stopping.rows)
     sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
     gap = stopping.rows[0] - pushing.rows[0]
-    middle = Errors(pushing.shaft, rows, sds, np.maximum(np.abs(pushing.gain), np.abs(stopping.gain)), pushing.intended)
+    gain = np.maximum(np.abs(pushing.gain), np.abs(stopping.gain))
+    felt = tuple(one._replace(gain=0.5 * one.gain) for one in (*pushing.felt, *stopping.felt))
+    middle = Errors(pushing.shaft, rows, sds, gain, pushing.intended, felt)
     return middle, Play(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
 
 

@@ -121,6 +121,13 @@ class Smooth:
         deviations: Array = self.widened * self.sigma * np.sqrt(np.maximum(square, 0.0))
         return deviations
 
+    def deviation_of_sum(self, t: Array, weights: Array) -> float:
+        """Standard deviation of the sum of values at parameters t (n,), each with its weight (n,), mm."""
+        place, span = _place(t, self.spans)
+        index = (span + np.arange(WIDTH)[:, None]) % self.spans
+        row = np.bincount(index.ravel(), (weights * _values(place, 0, self.spans)).ravel(), self.spans)
+        return self.widened * self.sigma * math.sqrt(max(float(row @ self.factor @ row), 0.0))
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:

@@ -15,6 +15,7 @@ from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.lobe import moved_by
 from camgeo.recipe.part import THINNEST
+from camgeo.registry.capability import ShaftCam
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.numeric.records import dataclass, field, replace
@@ -49,6 +50,12 @@ class PlacedLobe:
     def zero(self) -> float:
         """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k."""
         return self.at - self.lobe.direction
+
+    @property
+    def on_shaft(self) -> ShaftCam:
+        """The lobe as capabilities that judge files are given it."""
+        lobe = self.lobe
+        return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high)
 
     @property
     def contour(self) -> Curve | None:

@@ -14,6 +14,7 @@ from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.pipeline import REPORT, Outcome, demand_any
+from camgeo.registry import registry
 from camgeo.registry.formats import numbers_of
 from camgeo.report.document import Findings, document, encoded
 from camgeo.schema.fields import either
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from camgeo.fit.bound import Bound
     from camgeo.recipe.export import FileRequest
+    from camgeo.registry.capability import FileCall
     from kin.judge.camshaft import CamshaftIntent
     from kin.judge.check import Check
 
@@ -116,6 +118,16 @@ def judged(
         checks += verdict.checks
     findings = _findings(recipe, lobes, checks, files, clock)
     return _report(recipe, findings, lobes)
+
+
+def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, Any]:
+    """Report on files that a capability claims, see `FileJudge.judge_shaft`; raises as it does."""
+    clock = Clock()
+    lobes = placed(recipe, clock)
+    with clock.stage(name):
+        results = registry.judges()[name].judge_shaft(recipe, [lobe.on_shaft for lobe in lobes], call, clock)
+    findings = _findings(recipe, lobes, [*lobe_checks(recipe, lobes), *results.checks], [], clock)
+    return _report(recipe, replace(findings, sections=results.sections), lobes)
 
 
 @dataclass(frozen=True)

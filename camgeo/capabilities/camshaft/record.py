@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.library import CamshaftDesign
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.starter import Starter
+    from camgeo.registry.capability import FileCall
     from camgeo.schema.fields import Table
     from camgeo.schema.yaml_source import Source
     from camgeo.synthesis.expected_checks import Foreseen
@@ -59,6 +60,12 @@ def _judge(
     return pipeline.judged(recipe, paths, tolerance=tolerance, units=units)
 
 
+def _claimed(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, Any]:
+    from camgeo.capabilities.camshaft import pipeline
+
+    return pipeline.judged_by(recipe, name, call)
+
+
 def _explain(check: dict[str, Any], _: dict[str, Any], recipe: CamshaftRecipe, shown: str | None) -> str:
     from camgeo.capabilities.camshaft.library import failed
 
@@ -84,6 +91,7 @@ ROOT = Root(
     export=_export,
     check=_check,
     judge=_judge,
+    claimed=_claimed,
     explain=_explain,
     foresee=_foresee,
     instead="the recipe of a lobe",

@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from camgeo.capabilities.made.placed import DiscPoints
+    from camgeo.capabilities.made.placed import DiscPoints, Points
     from camgeo.capabilities.made.reading import Call, OnSurface
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
-    from kin.made.points import Placing, Profile
+    from kin.made.points import Datum, Placing, Profile
     from kin.numeric.arrays import Array
 
 
@@ -90,9 +90,14 @@ class PartMade:
 
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], call: Call) -> PartMade:
     """All that points tell of a part; raises CallError, and as kin does."""
-    points = points_of(recipe, design, paths, call.probing)
+    datum = datum_of(recipe.of(Made), recipe.part)
+    return part_of_points(recipe, design, points_of(recipe, design, paths, call.probing), call, datum)
+
+
+def part_of_points(recipe: Recipe, design: Design, points: Points, call: Call, datum: Datum) -> PartMade:
+    """All that points tell of a part whose profile has a datum; raises as `made_part`."""
     demand_discs(points.missing)
-    discs = [_disc(recipe, disc, call) for disc in points.discs]
+    discs = [_disc(recipe, disc, call, datum) for disc in points.discs]
     each = {one.on.surface.name: (one.errors, one.play) for disc in discs for one in disc.surfaces}
     motion, play = follower_motion(design, each)
     remarks = [*points.remarks, *_remarks(recipe, discs, call, points.lifts)]
@@ -100,9 +105,9 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], call: Call)
     return PartMade(tuple(discs), motion, play, output, points.lifts, tuple(remarks), points.unit)
 
 
-def _disc(recipe: Recipe, points: DiscPoints, call: Call) -> DiscMade:
+def _disc(recipe: Recipe, points: DiscPoints, call: Call, datum: Datum) -> DiscMade:
     """Smooth the points of a disc, and let the followers run on each surface."""
-    profiled = profile([one.points for one in points.surfaces], datum_of(recipe.of(Made), recipe.part))
+    profiled = profile([one.points for one in points.surfaces], datum)
     shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
     surfaces = []
     for one in points.surfaces:

@@ -158,11 +158,15 @@ def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call,
     parts.append(f"<h2>Error of the motion less its constant offset, {moved}</h2>")
     parts.append(_plot(shaft, scale * errors.remaining, scale * uncertain, zone=limit))
     parts.append("<h2>What to take off</h2>" + _take_off(result, mm, unit))
-    body = "\n".join(parts)
+    return document(recipe.name, "\n".join(parts))
+
+
+def document(name: str, body: str) -> str:
+    """A page of its own on what was made of a recipe of a name."""
     return (
         '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"
-        f"<title>{one_line(recipe.name)}: as made</title><style>{STYLE}</style>\n<body>{body}</body></html>\n"
+        f"<title>{one_line(name)}: as made</title><style>{STYLE}</style>\n<body>{body}</body></html>\n"
     )
 
 

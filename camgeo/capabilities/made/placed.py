@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
     from kin.law.contacts import Touch
+    from kin.made.lifts import Readings
     from kin.read.points import PointTable
 
 BORE = 0.05  # of its diameter: points so near to it are on the bore
@@ -73,7 +74,14 @@ def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Pr
 
     Raises CallError for what is no file of points, and as kin does for points that are not on its contours.
     """
-    tables, parts = tables_of(paths), intents(recipe, design)
+    return points_of_tables(recipe, design, list(zip(paths, tables_of(paths), strict=True)), probing, first)
+
+
+def points_of_tables(
+    recipe: Recipe, design: Design, files: Sequence[tuple[Path, PointTable]], probing: Probing, first: int = 0
+) -> Points:
+    """Points of a part, out of files and their tables, as `points_of`."""
+    parts, tables = intents(recipe, design), [table for _, table in files]
     scale, remarks = scale_of(recipe, tables, probing.units)
     if any(table.measured == "lift" for table in tables):
         lifts, placed = _of_lifts(parts, tables, scale, probing)
@@ -81,7 +89,7 @@ def points_of(recipe: Recipe, design: Design, paths: Sequence[Path], probing: Pr
     if probing.face is not None:
         raise CallError("a face is of an indicator, and these are places: leave it out; a ball has a radius")
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
-    for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
+    for place, (path, table) in enumerate(files):
         for disc, rows in _by_disc(parts, table, path, first + place):
             pieces[disc].append((place, rows, scale))
     discs = [
@@ -149,6 +157,16 @@ def _of_lifts(
     """Points of the metal by the lifts of an indicator."""
     from kin.made.lifts import points_of_lifts
 
+    lifts = points_of_lifts(readings_of(parts, tables, scale, probing), aligned=bool(probing.align))
+    files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
+    lines = np.concatenate([table.lines for table in tables])
+    return (lifts.zero, lifts.turn), [OnSurface(parts[0].surfaces[0], lifts.points, files, lines, len(lines))]
+
+
+def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing) -> Readings:
+    """Lifts of an indicator as tables have them; raises CallError where there are others among them."""
+    from kin.made.lifts import Readings
+
     surface = parts[0].surfaces[0]
     single = len(parts) == 1 and len(parts[0].surfaces) == 1 and len(surface.gauge.contacts) == 1
     if not single or parts[0].linkage is not None:
@@ -170,10 +188,7 @@ def _of_lifts(
         touch = Flat(width=probing.face)
     elif probing.ball is not None:
         touch = Roller(probing.ball) if probing.ball else KnifeEdge()
-    lifts = points_of_lifts(surface.gauge, surface.side, shaft, lift, touch, aligned=bool(probing.align))
-    files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
-    lines = np.concatenate([table.lines for table in tables])
-    return (lifts.zero, lifts.turn), [OnSurface(surface, lifts.points, files, lines, len(lines))]
+    return Readings(surface.gauge, surface.side, shaft, lift, touch)
 
 
 def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:

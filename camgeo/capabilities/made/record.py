@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from camgeo.checks.declared import Declared
     from camgeo.common.clock import Clock
     from camgeo.measures.file_result import FileResult
-    from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import FileCall, Results
+    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.registry.capability import FileCall, Results, ShaftCam
     from camgeo.synthesis.design import Design
 
 OPTIONS = {
@@ -53,6 +53,12 @@ def _judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Resu
     return judge(recipe, design, call, clock)
 
 
+def _judge_shaft(recipe: Order, cams: Sequence[ShaftCam], call: FileCall, clock: Clock) -> Results:
+    from camgeo.capabilities.made.run import judge_shaft
+
+    return judge_shaft(recipe, cams, call, clock)
+
+
 def _examine(recipe: Recipe, design: Design, _: Sequence[FileResult], clock: Clock) -> Results:
     from camgeo.capabilities.made.examine import examine
 
@@ -84,6 +90,6 @@ CAPABILITY = Capability(
     profile=_profile,
     checks=_checks,
     examine=_examine,
-    judges=FileJudge(_claims, OPTIONS, _judge, _shown),
+    judges=FileJudge(_claims, OPTIONS, _judge, _judge_shaft, _shown),
     alteration=Alteration(option=CORRECT, offered=offered, check=check_corrected, alter=_corrected),
 )

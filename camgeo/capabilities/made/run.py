@@ -6,20 +6,19 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.made.judge import checks_of, made_part
 from camgeo.capabilities.made.reading import Call
+from camgeo.capabilities.made.refusal import as_call_errors
 from camgeo.capabilities.made.section import section
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.registry.capability import Results
-from kin.follower.frame_contact import FrameError
-from kin.follower.motion_error import ContactError
-from kin.made.points import UnlikePointsError
-from kin.made.smooth import GapError
-from kin.numeric.errors import UnsettledError
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.common.clock import Clock
-    from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import FileCall
+    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.registry.capability import FileCall, ShaftCam
     from camgeo.synthesis.design import Design
 
 
@@ -32,16 +31,8 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
         raise CallError(f"{name}: there is no exact contour to hold it against: a check of the recipe fails")
     if design.trimmed:
         raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
-    try:
+    with as_call_errors(paths):
         result = made_part(recipe, design, paths, call)
-    except (UnlikePointsError, GapError, UnsettledError) as error:
-        raise CallError(f"{', '.join(escaped(str(path)) for path in paths)}: {error}") from error
-    except (ContactError, FrameError) as error:
-        raise CallError(f"{name}: on the metal that these points tell, {error}") from error
-    except ValueError as error:
-        if isinstance(error, CallError):
-            raise
-        raise CallError(f"{name}: {error}") from error
     checks, verdicts = checks_of(recipe, result, call)
     report = section(recipe, paths, result, call, verdicts)
     if call.out is not None:
@@ -49,4 +40,26 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
 
         with clock.stage("write"):
             report["written"] = write(recipe, result, report, call)
+    return Results({"made": report}, checks)
+
+
+def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock: Clock) -> Results:
+    """Judge points of several cams on one shaft; see `FileJudge`."""
+    from camgeo.capabilities.made.shaft import made_shaft
+    from camgeo.capabilities.made.shaft_section import shaft_section
+
+    paths, units, options = files
+    call = Call.of(options, cams[0].recipe, units)
+    result = made_shaft(cams, paths, call)
+    checks, entries = [], []
+    for one in result.cams:
+        own, verdicts = checks_of(one.points.cam.recipe, one.result, call)
+        checks += [replace(check, surface=one.points.cam.name) for check in own]
+        entries.append(section(one.points.cam.recipe, one.points.paths, one.result, call, verdicts))
+    report = shaft_section(recipe, paths, result, entries)
+    if call.out is not None:
+        from camgeo.capabilities.made.shaft_output import write_shaft
+
+        with clock.stage("write"):
+            report["written"] = write_shaft(recipe, result, report, call)
     return Results({"made": report}, checks)

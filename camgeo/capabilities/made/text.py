@@ -18,9 +18,10 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
         else:
             verdict = "NOT PROVED"
     lines = [f"{report['recipe']}: {verdict}  {escaped(', '.join(section['files']))}"]
-    lines += [f"  {label:<30}{value}" for label, value in table_rows(section, everything=everything)]
+    rows = (shaft_rows if "lobes" in section else table_rows)(section, everything=everything)
+    lines += [f"  {label:<30}{value}" for label, value in rows]
     lines += [f"  remark: {text}" for text in section["remarks"]]
-    lines += [f"  {check['name']}: {escaped(check['detail'])}" for check in report["checks"] if not check["ok"]]
+    lines += [f"  {_named(check)}: {escaped(check['detail'])}" for check in report["checks"] if not check["ok"]]
     lines += [f"  wrote {escaped(path)}" for path in section.get("written", ())]
     return "\n".join(lines)
 
@@ -94,9 +95,35 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
     return rows
 
 
+def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
+    """Give what was found of each lobe, row by row; with everything all that a cam alone has."""
+    rows = []
+    for lobe in section["lobes"]:
+        (disc,), motion, phase = lobe["discs"], lobe["motion"], lobe["phase"]
+        error = motion["error"]
+        profile = f"{disc['profile']:.4g} +- {disc['uncertainty']:.2g} {lobe['unit']}"
+        moved = f"{error['max']:+.4g} +- {error['uncertainty']:.2g} {error['unit']}"
+        rows.append((lobe["name"], f"profile {profile}, motion {moved} at {error['at_deg']:.2f} degrees"))
+        rows.append(("  phase", f"{_late(phase['late_deg'])} +- {phase['uncertainty_deg']:.2g} cam degrees"))
+        if lobe["name"] != section["datum"]:
+            against = f"{_late(phase['against_datum_deg'])} +- {phase['against_datum_uncertainty_deg']:.2g}"
+            rows[-1] = rows[-1][0], f"{rows[-1][1]}; against {section['datum']} {against}"
+        own = table_rows(lobe, everything=everything)
+        rows += [(f"  {label}", value) for label, value in own if everything or "cause: " in label]
+    return rows
+
+
+def _late(degrees: float) -> str:
+    return f"{'early' if degrees < 0.0 else 'late'} by {abs(degrees):.4g}"
+
+
 def _placed(placing: dict[str, Any], unit: str) -> str:
     x, y = placing["shifted"]
     told = f"turned by {placing['turned_deg']:+.4g} degrees"
     if "turned_from_deg" in placing:
         told += f" ({placing['turned_from_deg']:.4g} to {placing['turned_to_deg']:.4g})"
     return told + (f", shifted by ({x:+.4g}, {y:+.4g}) {unit}" if x or y else "")
+
+
+def _named(check: dict[str, Any]) -> str:
+    return f"{check['name']}, {check['surface']}" if "surface" in check else str(check["name"])

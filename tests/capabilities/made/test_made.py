@@ -308,17 +308,6 @@ def test_the_grinders_table_stays_a_grinders(tmp_path, capsys):
     assert "a column y is missing in its heading c_deg, x_mm" in capsys.readouterr().err
 
 
-def test_points_of_camshafts_are_held_against_their_lobes(tmp_path):
-    lobe = tmp_path / "lobe.yaml"
-    lobe.write_text(disc("kind: flat", part="thickness: 10"))
-    shaft = tmp_path / "shaft.yaml"
-    shaft.write_text("camshaft: {diameter: 30, lobes: [{name: a, recipe: lobe.yaml, angle: 0, z: [0, 10]}]}\n")
-    file = tmp_path / "p.csv"
-    file.write_text("x,y\n1,2\n")
-    with pytest.raises(camgeo.CamgeoError):
-        camgeo.verify(shaft, file)
-
-
 def test_lifts_of_an_indicator_with_a_flat_face(tmp_path):
     """It stands on the support of the metal: waves are found where they are, a face too narrow is refused."""
     text = disc("kind: roller, radius: 10, offset: 6")

@@ -1,0 +1,297 @@
+"""Points of several cams on one shaft: which each is of, all judged about its axis, and the phases between them.
+
+A cam's points are told by their column `z` or `lobe`, turned back by the angle at which the cam stands, and judged as
+those of a part of its own. The axis is that of the shaft, so that the profile of a cam may turn about it alone, and
+`--align rotation` turns the shaft as one: what is left of a cam's phase is its own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.made.judge import part_of_points
+from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
+from camgeo.capabilities.made.reading import label_of, sorted_out, tables_of
+from camgeo.capabilities.made.refusal import as_call_errors
+from camgeo.common.errors import CallError
+from camgeo.common.terminal import escaped
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.synthesis.intent import intents
+from kin.made.motion import COVERAGE
+from kin.made.points import turned_at
+from kin.numeric.records import dataclass, replace
+from kin.read.points import LEAST_POINTS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.made.judge import PartMade
+    from camgeo.capabilities.made.reading import Call
+    from camgeo.registry.capability import ShaftCam
+    from kin.made.motion import Errors, Influence
+    from kin.numeric.arrays import Indices
+    from kin.read.points import PointTable
+
+MOST_NAMES = 8  # told one by one
+WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of what is written
+
+
+@dataclass(frozen=True, eq=False)
+class CamPoints:
+    """The points of one cam: files, each with the rows of it that are of this cam."""
+
+    cam: ShaftCam
+    files: tuple[tuple[Path, PointTable], ...]
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The files."""
+        return tuple(path for path, _ in self.files)
+
+    @property
+    def tables(self) -> tuple[PointTable, ...]:
+        """Their rows."""
+        return tuple(table for _, table in self.files)
+
+    def turned(self, angle: float) -> CamPoints:
+        """The points with the metal turned by an angle, rad, counter-clockwise as drawn for `cw`."""
+        drawn = -angle if self.cam.recipe.rotation == "ccw" else angle
+        return replace(self, files=tuple((path, _turned(table, drawn, angle)) for path, table in self.files))
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """How much later than meant a cam moves its follower, rad of the shaft, and its expanded uncertainty.
+
+    `against` is that less the phase of the first cam that was measured.
+    """
+
+    late: float
+    uncertainty: float
+    against: float
+    against_uncertainty: float
+
+
+class CamMade(NamedTuple):
+    """What the points of one cam of a shaft tell."""
+
+    points: CamPoints
+    result: PartMade
+    phase: Phase
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftMade:
+    """What the points of a shaft tell.
+
+    cams     those that were measured, in the order of the recipe
+    missing  names of those that were not
+    late     turn of the shaft as one that was taken out, rad; None where none was to be
+    remarks  sentences
+    """
+
+    cams: tuple[CamMade, ...]
+    missing: tuple[str, ...]
+    late: float | None
+    remarks: tuple[str, ...]
+
+
+def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> ShaftMade:
+    """All that points tell of the cams of a shaft; raises CallError for what is not judged."""
+    if call.probing.align not in {"", "g"}:
+        told = "a shaft is judged about the axis of its bearings, which is not shifted"
+        raise CallError(f"--align: {told}: give --align rotation, or none")
+    tables = tables_of(paths)
+    if len({table.measured for table in tables}) > 1:
+        raise CallError("some files have lifts and others places: give them in calls of their own")
+    scale, _ = scale_of(cams[0].recipe, tables, call.probing.units)
+    lifts = tables[0].measured == "lift"
+    measured = [one.turned(-one.cam.zero if lifts else -one.cam.at) for one in _by_cam(cams, paths, tables, scale)]
+    late = None
+    if call.probing.align:
+        with as_call_errors(paths):
+            late = _common(measured, scale, call)
+        measured = [one.turned(-late) for one in measured]
+    alone = replace(call, probing=replace(call.probing, align=""))
+    results = [_judged(one, alone) for one in measured]
+    phases = _phases(measured, [result.motion for result in results], call)
+    names = {one.cam.name for one in measured}
+    return ShaftMade(
+        tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True)),
+        tuple(cam.name for cam in cams if cam.name not in names),
+        late,
+        tuple(_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names])),
+    )
+
+
+def _judged(points: CamPoints, call: Call) -> PartMade:
+    cam = points.cam
+    if not cam.design.contours:
+        raise CallError(f"{cam.name}: there is no exact contour to hold points against: a check of its recipe fails")
+    if cam.design.trimmed:
+        raise CallError(f"{cam.name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
+    made = cam.recipe.of(Made)
+    datum = "bore" if made is None or made.datum is None else made.datum
+    with as_call_errors(points.paths, cam.name):
+        placed = points_of_tables(cam.recipe, cam.design, points.files, call.probing)
+        return part_of_points(cam.recipe, cam.design, placed, call, datum)
+
+
+# --- which cam a point is of ------------------------------------------------------------------------------------------
+
+
+def _by_cam(
+    cams: Sequence[ShaftCam], paths: Sequence[Path], tables: Sequence[PointTable], scale: float
+) -> list[CamPoints]:
+    """Points of each cam that has any; raises CallError for points of none, and for too few of one."""
+    pieces: list[list[tuple[Path, PointTable]]] = [[] for _ in cams]
+    for path, table in zip(paths, tables, strict=True):
+        owner = _owners(cams, path, table, scale)
+        for rank, piece in enumerate(pieces):
+            if (owner == rank).any():
+                piece.append((path, table.rows(owner == rank)))
+    measured = [CamPoints(cam, tuple(piece)) for cam, piece in zip(cams, pieces, strict=True) if piece]
+    for one in measured:
+        if (count := sum(len(table) for table in one.tables)) < LEAST_POINTS:
+            told = f"{one.cam.name} has {count} points, and at least {LEAST_POINTS} are needed, all round it"
+            raise CallError(f"{', '.join(escaped(str(path)) for path in one.paths)}: {told}")
+    return measured
+
+
+def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: float) -> Indices:
+    """Which cam each point of a file is of (n,)."""
+    name, z = escaped(str(path)), table.columns.get("z")
+    by_label = _by_label(cams, name, table) if table.labels else None
+    if z is None:
+        if by_label is None and len(cams) > 1:
+            told = "a column z or lobe has to tell which lobe each point is on"
+            raise CallError(f"{name}: {told}; lobes are 1 to {len(cams)}, or {_names(cams)}")
+        return np.zeros(len(table), dtype=np.intp) if by_label is None else by_label
+    height = z * scale
+    on = np.array([(height >= cam.low - WITHIN) & (height <= cam.high + WITHIN) for cam in cams])
+    if by_label is not None:
+        on &= by_label == np.arange(len(cams))[:, None]
+    wrong = on.sum(axis=0) != 1
+    if not wrong.any():
+        owner: Indices = np.argmax(on, axis=0)
+        return owner
+    at = int(np.argmax(wrong))
+    mm, unit = cams[0].recipe.mm, UNIT_NAMES[cams[0].recipe.units]
+
+    def span(cam: ShaftCam) -> str:
+        return f"{cam.name}, {cam.low / mm:.9g} to {cam.high / mm:.9g} {unit}"
+
+    here = f"{name}: line {table.lines[at]}: z is {height[at] / mm:.9g} {unit}"
+    if by_label is not None:
+        raise CallError(f"{here}, which is not on {span(cams[int(by_label[at])])}, that its column names")
+    if on[:, at].any():
+        met = " and ".join(cam.name for cam, there in zip(cams, on[:, at].tolist(), strict=True) if there)
+        raise CallError(f"{here}, where {met} meet: give a column lobe too")
+    nearest = min(cams, key=lambda cam: max(cam.low - height[at], height[at] - cam.high))
+    raise CallError(f"{here}, which is on no lobe; the nearest is {span(nearest)}")
+
+
+def _by_label(cams: Sequence[ShaftCam], name: str, table: PointTable) -> Indices:
+    """Which cam each point is of by its label: a name, or a number from 1."""
+    ranks = {str(rank + 1): rank for rank in range(len(cams))}
+    ranks |= {label_of(cam.name): rank for rank, cam in enumerate(cams)}
+    owners = {label: ranks.get(_plain(label)) for label in set(table.labels)}
+    for label, line in zip(table.labels, table.lines.tolist(), strict=True):
+        if owners[label] is None:
+            told = f"line {line}: {escaped(label)[:40]!r} is no lobe"
+            raise CallError(f"{name}: {told}; lobes are 1 to {len(cams)}, or {_names(cams)}")
+    return np.array([owners[label] for label in table.labels], dtype=np.intp)
+
+
+def _plain(label: str) -> str:
+    """A label as names have it; a number such as 2.0 as 2."""
+    plain = label_of(label)
+    whole, point, rest = plain.partition(".")
+    return whole if point and whole.isdigit() and not rest.strip("0") else plain
+
+
+def _names(cams: Sequence[ShaftCam]) -> str:
+    first, *_ = names = [label_of(cam.name) for cam in cams]
+    return ", ".join(names) if len(names) <= MOST_NAMES else f"{first} to {names[-1]}"
+
+
+# --- turns ------------------------------------------------------------------------------------------------------------
+
+
+def _turned(table: PointTable, drawn: float, angle: float) -> PointTable:
+    """A table turned by an angle as drawn, rad; of lifts the shaft's angle is that of a motion so much earlier."""
+    columns = dict(table.columns)
+    if "angle" in columns:
+        columns["angle"] = columns["angle"] + math.degrees(angle)
+    c, s = math.cos(drawn), math.sin(drawn)
+    for x, y in (("x", "y"), ("nx", "ny")):
+        if x in columns:
+            columns |= {x: c * columns[x] - s * columns[y], y: s * columns[x] + c * columns[y]}
+    return replace(table, columns=columns)
+
+
+def _common(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
+    """Angle, rad, by which the shaft as one stands later than meant, by least squares over all its points."""
+    probing = call.probing
+    if measured[0].tables[0].measured == "lift":
+        from kin.made.lifts import turn_of
+
+        return -turn_of(
+            [readings_of(intents(one.cam.recipe, one.cam.design), one.tables, scale, probing) for one in measured]
+        )
+    surfaces = []
+    for one in measured:
+        (part,) = intents(one.cam.recipe, one.cam.design)
+        pieces = [(i, table, scale) for i, table in enumerate(one.tables)]
+        surfaces += [on.points for on in sorted_out(part, pieces, probing)]
+    return turned_at(surfaces).turn
+
+
+# --- phases -----------------------------------------------------------------------------------------------------------
+
+
+def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call) -> list[Phase]:
+    """Phase of each cam, by the turn that explains most of its motion's error; the first is the datum of the others."""
+    lates = [errors.phase[0] for errors in motions]
+    parts = [errors.influence(errors.phase_weights) for errors in motions]
+    shifts = [_on_shaft(part, one.cam.at) for part, one in zip(parts, measured, strict=True)]
+    turning = 0.0 if call.axes is None else call.axes[1]
+    phases = []
+    for late, part, shift in zip(lates, parts, shifts, strict=True):
+        own = _expanded(call, part.sd, part.raised, shift)
+        against = _expanded(call, math.hypot(part.sd, parts[0].sd), part.raised - parts[0].raised, shift - shifts[0])
+        phases.append(Phase(late, math.hypot(own, turning), late - lates[0], against))
+    return [replace(phases[0], against_uncertainty=0.0), *phases[1:]]
+
+
+def _on_shaft(part: Influence, at: float) -> complex:
+    """What a shift of the shaft's axis by a mm adds, as a vector in its own axes."""
+    return complex(*part.shifted) * complex(math.cos(at), math.sin(at))
+
+
+def _expanded(call: Call, sd: float, raised: float, shift: complex) -> float:
+    """Expanded uncertainty of noise, a common error of the probe, and a shift of the axis."""
+    axes = 0.0 if call.axes is None else call.axes[0]
+    return math.hypot(COVERAGE * sd, raised * (call.error or 0.0), abs(shift) * axes)
+
+
+def _remarks(
+    measured: Sequence[CamPoints], results: Sequence[PartMade], late: float | None, missing: Sequence[str]
+) -> list[str]:
+    """What holds of all cams once, and what does of some with their names."""
+    of: dict[str, list[str]] = {}
+    for one, result in zip(measured, results, strict=True):
+        for text in result.remarks:
+            of.setdefault(text, []).append(one.cam.name)
+    remarks = [text if len(names) == len(results) else f"{', '.join(names)}: {text}" for text, names in of.items()]
+    if late is not None:
+        turn = f"turned back by {math.degrees(late):.6g} degrees as one"
+        remarks.append(f"{turn} by --align rotation, the shaft shows no phase of its own")
+    if missing:
+        remarks.append(f"no points of {', '.join(missing)}: not judged")
+    return remarks

@@ -1,0 +1,49 @@
+"""What the points of a shaft told, as a section of the report."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from camgeo.measures.units import UNIT_NAMES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.made.shaft import Phase, ShaftMade
+    from camgeo.recipe.recipe import Order
+
+
+def shaft_section(
+    recipe: Order, paths: Sequence[Path], result: ShaftMade, sections: Sequence[dict[str, Any]]
+) -> dict[str, Any]:
+    """Give the section `made` of a shaft out of those of its cams; angles are degrees of the shaft."""
+    entry: dict[str, Any] = {
+        "files": [path.name for path in paths],
+        "unit": UNIT_NAMES[recipe.units],
+        "verdicts": {
+            f"{check}, {one.points.cam.name}": verdict
+            for one, own in zip(result.cams, sections, strict=True)
+            for check, verdict in own["verdicts"].items()
+        },
+        "lobes": [
+            {"name": one.points.cam.name, "phase": _phase(one.phase), **own}
+            for one, own in zip(result.cams, sections, strict=True)
+        ],
+        "datum": result.cams[0].points.cam.name,
+        "missing": list(result.missing),
+    }
+    if result.late is not None:
+        entry["turned_late_deg"] = math.degrees(result.late)
+    entry["remarks"] = list(result.remarks)
+    return entry
+
+
+def _phase(phase: Phase) -> dict[str, float]:
+    return {
+        "late_deg": math.degrees(phase.late),
+        "uncertainty_deg": math.degrees(phase.uncertainty),
+        "against_datum_deg": math.degrees(phase.against),
+        "against_datum_uncertainty_deg": math.degrees(phase.against_uncertainty),
+    }

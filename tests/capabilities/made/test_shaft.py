@@ -1,0 +1,248 @@
+# needs: camshaft
+"""Points of camshafts: each lobe by its own recipe, phases between lobes, and what is no point of a lobe."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from support.measured import bump
+from support.shafts import HEAD, Planted, camshaft, shaft_points, written
+
+import camgeo
+from camgeo.cli.main import main
+from camgeo.common.errors import CallError
+
+NAMES = ["flat", "roller", "arm"]
+LISTED = "lobes are 1 to 3, or flat, roller, arm"
+LIMITS = "made: {profile: 0.03}\nverify: {motion_error: 0.02, angles: 360}\n"
+
+
+def lobes_of(report):
+    return {lobe["name"]: lobe for lobe in report["made"]["lobes"]}
+
+
+@pytest.mark.parametrize("more", ["", "rotation: ccw\n", "units: inch\n"])
+def test_a_clean_shaft_holds_and_shows_no_phase(more, tmp_path):
+    recipe = camshaft(tmp_path, limits=LIMITS, more=more)
+    if "inch" in more:
+        text = (
+            recipe.read_text("utf-8")
+            .replace("diameter: 24, to: 90", "diameter: 24 mm, to: 90 mm")
+            .replace("0.01,", "0.01 mm,")
+        )
+        for z in ("20", "40", "60"):
+            text = text.replace(f"z: {z}}}", f"z: {z} mm}}")
+        recipe.write_text(text, "utf-8")
+    file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.001), "z_mm,x_mm,y_mm")
+    report = camgeo.verify(recipe, file, probe_error="0.001 mm")
+    assert report.ok
+    assert [lobe["name"] for lobe in report["made"]["lobes"]] == NAMES
+    assert set(report["made"]["verdicts"].values()) == {"ok"}
+    for lobe in report["made"]["lobes"]:
+        phase, scale = lobe["phase"], 1.0 if lobe["unit"] == "mm" else 25.4
+        assert abs(phase["late_deg"]) < 2.0 * phase["uncertainty_deg"]
+        assert phase["uncertainty_deg"] < 0.004
+        assert lobe["surfaces"][0]["noise"] * scale == pytest.approx(0.001, rel=0.15)
+
+
+@pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
+def test_planted_faults_are_found_on_their_lobe_alone(more, tmp_path):
+    """A lobe that stands late by 0.1 degrees is told as that; a burr elsewhere is no phase of the others."""
+    recipe = camshaft(tmp_path, limits=LIMITS, more=more)
+    planted = {"roller": Planted(late=0.1), "arm": Planted(deviation=bump(0.03))}
+    file = written(tmp_path / "points.csv", shaft_points(recipe, planted, noise=0.001), "z_mm,x_mm,y_mm")
+    report = camgeo.verify(recipe, file, probe_error=0.001)
+    assert not report.ok
+    lobes = lobes_of(report)
+    late = lobes["roller"]["phase"]
+    assert late["late_deg"] == pytest.approx(0.1, abs=2.0 * late["uncertainty_deg"])
+    assert late["against_datum_deg"] == pytest.approx(0.1, abs=2.0 * late["against_datum_uncertainty_deg"])
+    assert [cause["cause"] for cause in lobes["roller"]["discs"][0]["causes"]] == ["turned"]
+    assert lobes["roller"]["discs"][0]["profile"] < 0.012  # a turn is no fault of form about the shaft's axis
+    assert abs(lobes["flat"]["phase"]["late_deg"]) < 0.002
+    failed = {(check.name, check.surface) for check in report.checks if not check.ok}
+    assert failed == {("made-motion", "roller"), ("made-profile", "arm"), ("made-motion", "arm")}
+    assert report["made"]["verdicts"]["made-profile, arm"] == "failed"
+
+
+def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
+    recipe = camshaft(tmp_path)
+    planted = {"arm": Planted(late=0.2)}
+    file = written(tmp_path / "points.csv", shaft_points(recipe, planted, late=77.0, count=180), "z_mm,x_mm,y_mm")
+    assert main(["verify", str(recipe), str(file)]) == 2
+    assert "they look turned by 77 degrees: `--align rotation`" in capsys.readouterr().err
+    made = camgeo.verify(recipe, file, align="rotation", spans=36)["made"]
+    assert made["turned_late_deg"] == pytest.approx(77.0, abs=0.2)
+    phases = [lobe["phase"] for lobe in made["lobes"]]
+    assert [phase["against_datum_deg"] for phase in phases] == pytest.approx([0.0, 0.0, 0.2], abs=1e-3)
+    assert sum(phase["late_deg"] for phase in phases) != pytest.approx(0.2, abs=1e-3)  # shared, by least squares
+    with pytest.raises(CallError, match="axis of its bearings, which is not shifted: give --align rotation, or none"):
+        camgeo.verify(recipe, file, align="best-fit")
+
+
+@pytest.mark.parametrize("rotation", ["cw", "ccw"])
+def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
+    """Its table of lifts over the shaft's angle is made without points, angles and metal: followers stand anywhere."""
+    recipe = camshaft(tmp_path, more=f"rotation: {rotation}\n", files="[{csv: {as: motion}}]")
+    table = np.genfromtxt(camgeo.export(recipe, tmp_path / "out").path / "shaft.csv", delimiter=",", names=True)[:-1]
+    for number, (name, unit) in enumerate(zip(NAMES, ("mm", "mm", "deg"), strict=True), 1):
+        rows = [(f"{number}", a, s) for a, s in zip(table["shaft_deg"], table[f"{name}_{unit}"], strict=True)]
+        for turned, options in ((0.0, {}), (40.0, {"align": "rotation"})):
+            cells = [f"{lobe},{a + turned:.9g},{s + 3.0:.10g}" for lobe, a, s in rows]
+            file = tmp_path / "lift.csv"
+            file.write_text("\n".join([f"lobe,angle_deg,lift_{unit}", *cells]), "utf-8")
+            (lobe,) = camgeo.verify(recipe, file, **options)["made"]["lobes"]
+            assert lobe["name"] == name
+            assert abs(lobe["phase"]["late_deg"]) < 1e-5
+            assert abs(lobe["motion"]["error"]["max"]) < 1e-5
+
+
+def test_lifts_of_all_lobes_turn_as_one(tmp_path):
+    recipe = camshaft(tmp_path)
+    angle, rows = np.arange(0.0, 360.0, 1.0), []
+    design = camgeo.design(recipe)
+    for late, number, row in ((0.3, 1, 0), (0.0, 2, 1)):
+        lift = design.motion(np.radians(angle - late - 25.0))[row]
+        rows += [f"{number},{a},{s:.9f}" for a, s in zip(angle, lift, strict=True)]
+    file = tmp_path / "lift.csv"
+    file.write_text("\n".join(["lobe,angle_deg,lift_mm", *rows]), "utf-8")
+    made = camgeo.verify(recipe, file, align="rotation")["made"]
+    assert made["turned_late_deg"] == pytest.approx(25.15, abs=0.15)
+    assert made["lobes"][1]["phase"]["against_datum_deg"] == pytest.approx(-0.3, abs=2e-3)
+    assert made["missing"] == ["arm"]
+
+
+@pytest.mark.parametrize("label", ["number", "name", "2.0"])
+def test_lobes_by_a_column(label, tmp_path):
+    recipe = camshaft(tmp_path)
+    rows = [row for row in shaft_points(recipe) if label != "2.0" or row[0] == "roller"]
+    if label == "number":
+        rows = [(f"{NAMES.index(row[0]) + 1}", *row[1:]) for row in rows]
+    elif label == "2.0":
+        rows = [("2.0", *row[1:]) for row in rows]
+    order = np.random.default_rng(1).permutation(len(rows))
+    file = written(tmp_path / "points.csv", [rows[k] for k in order], "lobe,x_mm,y_mm")
+    made = camgeo.verify(recipe, file)["made"]
+    assert [lobe["name"] for lobe in made["lobes"]] == (NAMES if label != "2.0" else ["roller"])
+    assert all(lobe["discs"][0]["profile"] < 1e-7 for lobe in made["lobes"])
+
+
+def test_a_file_for_each_lobe_and_lobes_that_are_missing_are_said(tmp_path, capsys):
+    recipe = camshaft(tmp_path)
+    rows = shaft_points(recipe, noise=0.001)
+    files = [
+        written(tmp_path / f"{name}.csv", [row for row in rows if row[0] == name], "z_mm,x_mm,y_mm")
+        for name in ("arm", "flat")
+    ]
+    assert main(["verify", str(recipe), *map(str, files)]) == 0
+    out = capsys.readouterr().out
+    assert "  remark: no points of roller: not judged" in out.splitlines()
+    made = camgeo.verify(recipe, *files)["made"]
+    assert [(lobe["name"], lobe["files"]) for lobe in made["lobes"]] == [("flat", ["flat.csv"]), ("arm", ["arm.csv"])]
+    assert (made["datum"], made["missing"]) == ("flat", ["roller"])
+
+
+@pytest.mark.parametrize(
+    ("columns", "change", "message"),
+    [
+        (
+            "x_mm,y_mm",
+            lambda row: row,
+            f"points.csv: a column z or lobe has to tell which lobe each point is on; {LISTED}",
+        ),
+        (
+            "z_mm,x_mm,y_mm",
+            lambda row: (row[0], row[1] + 8.0, *row[2:]),
+            "points.csv: line 2: z is 35 mm, which is on no lobe; the nearest is flat, 20 to 34 mm",
+        ),
+        (
+            HEAD,
+            lambda row: ("roller", *row[1:]),
+            "points.csv: line 2: z is 27 mm, which is not on roller, 40 to 50 mm, that its column names",
+        ),
+        (
+            "lobe,x_mm,y_mm",
+            lambda row: ("intake", *row[1:]),
+            f"points.csv: line 2: 'intake' is no lobe; {LISTED}",
+        ),
+        (
+            "lobe,x_mm,y_mm",
+            lambda row: ("4", *row[1:]),
+            f"points.csv: line 2: '4' is no lobe; {LISTED}",
+        ),
+    ],
+)
+def test_points_of_no_lobe(columns, change, message, tmp_path, capsys):
+    recipe = camshaft(tmp_path)
+    file = written(tmp_path / "points.csv", [change(row) for row in shaft_points(recipe, count=60)], columns)
+    assert main(["verify", str(recipe), str(file)]) == 2
+    assert capsys.readouterr().err.splitlines() == [f"camgeo: {tmp_path}/{message}"]
+
+
+def test_too_few_points_of_one_lobe(tmp_path):
+    recipe = camshaft(tmp_path)
+    rows = [row for i, row in enumerate(shaft_points(recipe, count=60)) if row[0] != "arm" or i % 2]
+    with pytest.raises(CallError, match=r"arm has 30 points, and at least 36 are needed, all round it"):
+        camgeo.verify(recipe, written(tmp_path / "points.csv", rows, "lobe,x_mm,y_mm"))
+
+
+def test_lobes_that_meet_need_a_column(tmp_path):
+    recipe = camshaft(tmp_path)
+    recipe.write_text(recipe.read_text("utf-8").replace("z: 40", "z: 34"), "utf-8")
+    rows = [(name, 34.0 if name != "arm" else z, x, y) for name, z, x, y in shaft_points(recipe, count=60)]
+    with pytest.raises(CallError, match="z is 34 mm, where flat and roller meet: give a column lobe too"):
+        camgeo.verify(recipe, written(tmp_path / "points.csv", rows, "z_mm,x_mm,y_mm"))
+    assert camgeo.verify(recipe, written(tmp_path / "points.csv", rows), spans=12).ok
+
+
+def test_a_folder_of_the_shaft_and_each_lobe(tmp_path, capsys):
+    recipe = camshaft(tmp_path)
+    file = written(tmp_path / "points.csv", shaft_points(recipe, {"arm": Planted(late=0.1)}, noise=0.001))
+    assert main(["verify", str(recipe), str(file), "--out", str(tmp_path / "made"), "-v"]) == 0
+    out = capsys.readouterr().out
+    assert "smoothed over" in out
+    assert "phase                       late by 0.1" in out
+    names = sorted(path.name for path in (tmp_path / "made").iterdir())
+    each = [f"shaft-{name}-made.{suffix}" for name in sorted(NAMES) for suffix in ("csv", "html", "svg")]
+    assert names == sorted([*each, "shaft-made.html"])
+    page = (tmp_path / "made" / "shaft-made.html").read_text("utf-8")
+    assert '<a href="shaft-arm-made.html">arm</a>' in page
+    assert "late by 0.1" in page
+
+
+@pytest.mark.slow
+def test_the_uncertainty_of_axes_counts_as_they_act(tmp_path):
+    """A turn of the axes is common to all lobes and no phase between them; a shift moves lobes by where they stand."""
+    recipe = camshaft(tmp_path)
+    file = written(tmp_path / "points.csv", shaft_points(recipe))
+    turned = lobes_of(camgeo.verify(recipe, file, probe_error=0, axes_error=(0, 0.05)))
+    for name in ("roller", "arm"):
+        assert turned[name]["phase"]["uncertainty_deg"] == pytest.approx(0.05, rel=1e-6)
+        assert turned[name]["phase"]["against_datum_uncertainty_deg"] < 1e-6
+    shift = 0.01
+    shifted = lobes_of(camgeo.verify(recipe, file, probe_error=0, axes_error=(shift, 0)))
+    worst = dict.fromkeys(NAMES, 0.0)
+    for k in range(12):
+        by = shift * np.exp(1j * k * math.pi / 6)
+        rows = [(name, z, x + by.real, y + by.imag) for name, z, x, y in shaft_points(recipe)]
+        lobes = lobes_of(camgeo.verify(recipe, written(tmp_path / "moved.csv", rows)))
+        worst = {name: max(worst[name], abs(lobes[name]["phase"]["late_deg"])) for name in NAMES}
+    for name in NAMES:
+        assert shifted[name]["phase"]["uncertainty_deg"] == pytest.approx(worst[name], rel=0.05)
+
+
+@pytest.mark.slow
+def test_the_phase_scatters_as_its_uncertainty_says(tmp_path, monkeypatch):
+    recipe = camshaft(tmp_path)
+    lates, told = [], []
+    for seed in range(16):
+        rng = np.random.default_rng(seed)
+        monkeypatch.setattr(np.random, "default_rng", lambda _, rng=rng: rng)
+        file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.002))
+        phases = [lobe["phase"] for lobe in camgeo.verify(recipe, file, spans=36)["made"]["lobes"]]
+        lates.append([phase["late_deg"] for phase in phases])
+        told.append([phase["uncertainty_deg"] for phase in phases])
+    ratio = 2.0 * np.std(lates, axis=0) / np.mean(told, axis=0)
+    assert (np.abs(ratio - 1.0) < 0.4).all()
