@@ -73,9 +73,9 @@ def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
     file = written(tmp_path / "points.csv", shaft_points(recipe, planted, late=77.0, count=180), "z_mm,x_mm,y_mm")
     assert main(["verify", str(recipe), str(file)]) == 2
     assert "they look turned by 77 degrees: `--align rotation`" in capsys.readouterr().err
-    made = camgeo.verify(recipe, file, align="rotation", spans=36)["made"]
-    assert made["turned_late_deg"] == pytest.approx(77.0, abs=0.2)
-    phases = [lobe["phase"] for lobe in made["lobes"]]
+    report = camgeo.verify(recipe, file, align="rotation", spans=36)
+    assert report["made"]["turned_late_deg"] == pytest.approx(77.0, abs=0.2)
+    phases = [lobe["phase"] for lobe in lobes_of(report).values()]
     assert [phase["against_datum_deg"] for phase in phases] == pytest.approx([0.0, 0.0, 0.2], abs=1e-3)
     assert sum(phase["late_deg"] for phase in phases) != pytest.approx(0.2, abs=1e-3)  # shared, by least squares
     with pytest.raises(CallError, match="axis of its bearings, which is not shifted: give --align rotation, or none"):
@@ -93,8 +93,7 @@ def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
             cells = [f"{lobe},{a + turned:.9g},{s + 3.0:.10g}" for lobe, a, s in rows]
             file = tmp_path / "lift.csv"
             file.write_text("\n".join([f"lobe,angle_deg,lift_{unit}", *cells]), "utf-8")
-            (lobe,) = camgeo.verify(recipe, file, **options)["made"]["lobes"]
-            assert lobe["name"] == name
+            lobe = lobes_of(camgeo.verify(recipe, file, **options))[name]
             assert abs(lobe["phase"]["late_deg"]) < 1e-5
             assert abs(lobe["motion"]["error"]["max"]) < 1e-5
 
