@@ -209,6 +209,18 @@ def starters() -> list[dict[str, object]]:
     return entries
 
 
+def with_parts() -> list[str]:
+    """Capabilities that have a part of the page in a file of their name, beside its script."""
+    from camgeo.registry import registry
+
+    return [name for name in registry.labels() if (WEB / f"{name}.html").is_file()]
+
+
+def scripts_of(names: list[str]) -> list[str]:
+    """Scripts of the parts of these capabilities."""
+    return [f"{name}.js" for name in names]
+
+
 def first_page(text: str) -> str:
     """The whole page of a recipe as `camgeo report` makes it."""
     import camgeo
@@ -246,6 +258,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     judged = first_page(text)
     scene = dict(camgeo.design(camgeo.load(text)).scene())
     scene["name"] = FIRST
+    here = with_parts()
     style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
     files = {
         "camgeo.zip": packed(),
@@ -253,7 +266,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         "page.js": asset("page.js").encode(),
         "licences.txt": licences().encode(),
         "starters.json": json.dumps(shown, ensure_ascii=False).encode(),
-        **{name: (WEB / name).read_bytes() for name in ("tab.js", "worker.js")},
+        **{name: (WEB / name).read_bytes() for name in ("tab.js", "worker.js", *scripts_of(here))},
     }
     for name, data in files.items():
         (target / name).write_bytes(data)
@@ -261,6 +274,8 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     parts = {
         "policy": policy(judged),
         "stage": between(frame, '<div class="left">', '<section class="checks"'),
+        "parts": "".join((WEB / f"{name}.html").read_text("utf-8") for name in here),
+        "scripts": "".join(f'<script src="{name}?{{{{stamp:{name}}}}}" defer></script>\n' for name in scripts_of(here)),
         "note": "",
         "drawing": str(scene["drawing"]),
         "recipe": escaped(text),
@@ -313,7 +328,7 @@ def between(text: str, start: str, end: str) -> str:
 
 def filled(text: str, parts: dict[str, str]) -> str:
     """A text with its {{parts}} in their places, those within parts too."""
-    once = re.sub(r"\{\{stage\}\}", lambda _: parts["stage"], text)
+    once = re.sub(r"\{\{(stage|parts|scripts)\}\}", lambda mark: parts[mark[1]], text)
     return re.sub(r"\{\{([\w.:-]+)\}\}", lambda mark: parts[mark[1]], once)
 
 

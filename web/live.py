@@ -8,6 +8,7 @@ import shutil
 import tempfile
 import traceback
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -20,18 +21,22 @@ from camgeo.api.report import explained
 from camgeo.capabilities.follow.command import summary  # needs: follow
 from camgeo.capabilities.follow.library import shown  # needs: follow
 from camgeo.checks.declared import declaration
+from camgeo.files.errors import MissingExtraError
+from camgeo.output.dispatch import foresee
+from camgeo.output.job import Job
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.recipe import of_source
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 from camgeo.report.page import tables
 from camgeo.schema.change import changed
 from camgeo.schema.edit import spelled
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
-from camgeo.schema.quantity import parted, units_for
+from camgeo.schema.quantity import parted, read_quantity, units_for
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
@@ -53,6 +58,7 @@ FOLDER = tempfile.mkdtemp()  # for the recipe, its tables, a file to judge; in t
 OUT = f"{FOLDER}/out"
 PAGE = FileRequest("html")
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
+LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading")  # of a follower
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
 _WORDS: dict[Form[Any], list[str]] = {}  # of forms of their own, whose schemas are large
 
@@ -375,6 +381,22 @@ def make(name: str, text: str) -> dict[str, Any]:
     return {**output, "files": [{"name": path.name, "path": str(path)} for path in (*kept, bundle)]}
 
 
+def absent(name: str, text: str) -> dict[str, Any]:
+    """Formats that cannot be made here of a recipe's part, each with the package that is missing."""
+    design = camgeo.design(_recipe(name, text))
+    reasons: dict[str, str] = {}
+    if not design.exact.contours:
+        return {"absent": reasons}
+    job = Job.of(design.recipe, design.exact)
+    for kind in FORMATS:
+        with suppress(camgeo.CamgeoError):  # what else stands in its way is said when it is asked for
+            try:
+                foresee(job, FileRequest(kind))
+            except MissingExtraError as error:
+                reasons[kind] = str(error)
+    return {"absent": reasons}
+
+
 def _judged(report: Report, page: str) -> dict[str, Any]:
     """What the page shows of a report."""
     failed = [check for check in report["checks"] if not check["ok"]]
@@ -402,13 +424,22 @@ def verify(name: str, text: str, file: str, units: str) -> dict[str, Any]:
 
 # needs: follow
 def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
-    """The motion that somebody's file gives a follower: in words, its table, its recipe and the page of that."""
-    arm, at = follower.pop("arm"), follower.pop("at")
+    """The motion that somebody's file gives a follower: in words, its table, its recipe and the page of that.
+
+    Lengths are texts, mm or with their unit; an empty one is none.
+    """
+    mm = {name: _length(name, text) for name in LENGTHS if (text := follower.pop(name))}
     followed = camgeo.follow(
         Path(FOLDER) / file,
+        roller=mm.get("roller"),
+        shoe=mm.get("shoe"),
+        width=mm.get("width"),
+        offset=mm.get("offset", 0.0),
+        arm=tuple(mm[name] for name in ("pivot", "arm") if name in mm) or None,
+        at=(mm.get("x", 0.0), mm.get("y", 0.0)),
+        reading=mm.get("reading", 0.01),
+        units=follower.pop("units") or None,
         **follower,
-        arm=tuple(arm) if arm else None,
-        at=tuple(at),
     )
     stem = re.sub(r"[^A-Za-z0-9_-]", "-", Path(file).stem)
     folder = Path(OUT)
@@ -429,12 +460,22 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     return output
 
 
+# needs: follow
+def _length(name: str, text: str) -> float:
+    """A length as it stands in a box, mm."""
+    try:
+        return read_quantity(text, "mm")
+    except Complaint as error:
+        raise camgeo.CallError(f"{name}: {text} is no length ({error}); give a number such as 12.5 or 1/2 in") from None
+
+
 CALLS: dict[str, Callable[..., dict[str, Any]]] = {
     "design": design,
     "more": more,
     "added": added,
     "converted": converted,
     "make": make,
+    "absent": absent,
     "verify": verify,
     "follow": follow,  # needs: follow
 }

@@ -189,7 +189,7 @@ function told(text) {
   byId("faults").replaceChildren(element("li", {}, element("b", {}, text)));
 }
 
-function showFaults(faults, trace) {
+function faultRows(faults, trace) {
   const rows = faults.map((fault) => {
     const place = fault.line ? `line ${fault.line}: ` : "";
     const button = element("button", { type: "button" }, `${place}${fault.text}`);
@@ -197,7 +197,11 @@ function showFaults(faults, trace) {
     return element("li", {}, button);
   });
   if (trace) rows.push(element("li", {}, element("pre", {}, trace)));
-  byId("faults").replaceChildren(...rows);
+  return rows;
+}
+
+function showFaults(faults, trace) {
+  byId("faults").replaceChildren(...faultRows(faults, trace));
   numberLines(faults.map((fault) => fault.line));
   const verdict = byId("verdict");
   if (faults.length) {
@@ -329,6 +333,7 @@ function showForm() {
     formOf = shape;
     form.replaceChildren();
     const groups = new Map();
+    showAbsent();
     recipe.fields.forEach((field, index) => {
       const top = field.path.includes(".") ? field.path.split(/[.[]/)[0] : "recipe";
       if (!groups.has(top)) {
@@ -356,6 +361,20 @@ function showForm() {
     slider.value = field.value;
     slider.setAttribute("aria-valuetext", `${field.text} ${field.unit}`);
   });
+}
+
+// files that a browser cannot make of this part say so where they are ticked
+async function showAbsent() {
+  const shape = formOf;
+  const { name, text } = recipe;
+  const answer = await work.ask("absent", { name, text }, encodedTables());
+  if (!answer?.absent || shape !== formOf) return;
+  for (const [word, why] of Object.entries(answer.absent)) {
+    const tick = byId("form").querySelector(`.ticks [value="${CSS.escape(word)}"]`);
+    if (!tick) continue;
+    tick.parentElement.title = why;
+    tick.parentElement.append(" ", element("small", {}, "not in a browser"));
+  }
 }
 
 function row(field, index) {
@@ -403,11 +422,16 @@ function row(field, index) {
   return made;
 }
 
+// a number as it is typed with the decimal point and the sign of YAML
+function pointed(text) {
+  return text.trim().replace(/^−/, "-").replace(/^([+-]?\d*),(\d+)/, "$1.$2");
+}
+
 // what stands in a box: a number with a point or a comma, with or without a unit, or a text
 function entered(field, box) {
   if (!field) return;
   let text = box.value.trim();
-  if (field.kind === "number") text = text.replace(/^([+-]?\d*),(\d+)/, "$1.$2").replace(/^−/, "-");
+  if (field.kind === "number") text = pointed(text);
   else if (!/^[\w(][^:#,[\]{}"'\n]*$/.test(text)) text = JSON.stringify(text);
   box.setAttribute("aria-invalid", String(!text));
   if (!text || text === field.text) return;
@@ -620,7 +644,9 @@ function showJudged(answer, head, rejected = "") {
   judgedText = recipe.text;
   byId("since").textContent = "";
   byId("judged-head").textContent = head;
-  const missing = (answer.missing || []).map(({ what, why }) => `\n${what} is left out: ${why}`).join("");
+  const absent = (answer.missing || []).map(({ what, why }) => `\n${what} cannot be made in a browser: ${why}`);
+  const elsewhere = `\nSave the recipe: camgeo export ${recipe.name}.yaml makes what is left out here, on a machine.`;
+  const missing = absent.join("") + (absent.length ? elsewhere : "");
   byId("outcome").textContent = `${answer.verdict}${rejected && !answer.ok ? `\n${rejected}` : ""}${missing}`;
   downloads(byId("files"), answer.files);
   byId("page").srcdoc = answer.page;
@@ -659,58 +685,26 @@ async function taken(list) {
     } else {
       somebodys = { name, bytes: new Uint8Array(await file.arrayBuffer()) };
       byId("chosen").textContent = name;
-      byId("judge-form").hidden = false;
-      byId("judge-form").scrollIntoView({ behavior: "smooth", block: "nearest" });
+      byId("file-faults").replaceChildren();
+      byId("with-file").hidden = false;
+      byId("with-file").scrollIntoView({ behavior: "smooth", block: "nearest" });
     }
   }
 }
 
 async function onForeign(words, call, input) {
+  byId("file-faults").replaceChildren();
   const answer = await long(words, call, input, { ...encodedTables(), [somebodys.name]: somebodys.bytes.slice() });
-  if (answer && answer.faults) {
-    showFaults(answer.faults, answer.trace);
-    byId("faults").scrollIntoView({ block: "nearest" });
-    return null;
-  }
-  return answer;
+  if (!answer?.faults) return answer;
+  byId("file-faults").replaceChildren(...faultRows(answer.faults, answer.trace));
+  byId("file-faults").scrollIntoView({ block: "nearest" });
+  return null;
 }
 
 byId("verify").addEventListener("click", async () => {
   const { name, text } = recipe;
   const answer = await onForeign("judging…", "verify", { name, text, file: somebodys.name, units: byId("units").value });
   if (answer) showJudged(answer, `${somebodys.name} by the recipe`);
-});
-
-byId("follow").addEventListener("click", async () => {
-  const number = (id) => Number(byId(id).value.replace(",", ".").replace("−", "-"));
-  const given = (id) => (byId(id).value.trim() ? number(id) : null);
-  const touch = document.querySelector("[name=touch]:checked").value;
-  const follower = {
-    roller: touch === "roller" ? number("radius") : null,
-    shoe: touch === "shoe" ? number("radius") : null,
-    flat: touch === "flat",
-    width: touch === "flat" ? given("width") : null,
-    offset: number("offset"),
-    arm: [given("pivot"), given("arm")].filter((value) => value !== null),
-    track: byId("track").value,
-    leading: byId("leading").checked,
-    yoke: byId("yoke").checked,
-    units: byId("units").value || null,
-    at: [number("at-x"), number("at-y")],
-    rotation: byId("rotation").value,
-  };
-  const answer = await onForeign("following…", "follow", { file: somebodys.name, follower });
-  if (!answer) return;
-  byId("followed").hidden = false;
-  byId("followed-words").textContent = answer.words;
-  const list = byId("followed-files");
-  downloads(list, answer.files);
-  if (answer.recipe) {
-    const button = element("button", { type: "button" }, "Make it the recipe");
-    button.addEventListener("click", () => loaded({ name: answer.name, text: answer.recipe, tables: answer.tables }));
-    list.append(element("li", {}, button));
-  }
-  if (answer.page) showJudged({ ...answer, files: [] }, `${somebodys.name} and the recipe of its motion`);
 });
 
 byId("judge-form").addEventListener("submit", (event) => event.preventDefault());

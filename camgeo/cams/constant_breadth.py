@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
@@ -54,12 +55,13 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
         from kin.law.support_function import lift_constant_breadth
 
-        return lift_constant_breadth(self.base_radius, self.half_turn(), "swing" if self.swings else "motion")
+        return lift_constant_breadth(self.base_radius, self.half_turn, "swing" if self.swings else "motion")
 
+    @cached_property
     def half_turn(self) -> Motion:
         """The lift over the half turn, of a swing over that of the relative angle."""
         swing = self.frame_swing()
-        return super().half_turn() if swing is None else swing.half_turn
+        return super().half_turn if swing is None else swing.half_turn
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn, or of the swing over the shaft angle, rad."""

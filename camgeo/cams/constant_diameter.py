@@ -65,7 +65,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        return preloaded(ExactGuided(self, Displacement.of(opposed(self.half_turn()))), self.preload)
+        return preloaded(ExactGuided(self, Displacement.of(opposed(self.half_turn))), self.preload)
 
     def follower(self, law: Displacement) -> Follower:
         """A frame with two rollers."""

@@ -60,9 +60,10 @@ class DiscCam(GuidedCam):
         """Without the preload."""
         from camgeo.curve.moving_frame import Displacement
 
-        law = Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
+        law = Displacement.of(self._turn.demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
         return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
 
+    @cached_property
     def _turn(self) -> Motion:
         flanks = [flank for flank in self.holding.flanks(self.touch, self.side) if flank.disc == 0]
         within = len(flanks) - 1 if self.side > 0 else -1
@@ -74,11 +75,11 @@ class DiscCam(GuidedCam):
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the turn, or of the part of it that repeats."""
-        return self._turn().joints
+        return self._turn.joints
 
     def kept(self) -> Kept | None:
         """Distances of the turn's motion from the rows of its table."""
-        return self._turn().kept
+        return self._turn.kept
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it
         """One touch, a contact on every flank; where a face's width is given, it must stay on it."""

@@ -6,6 +6,7 @@ Shu and Wu 2012: S(t + 180) = S(180) - S(t), since the contacts are a fixed dist
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from camgeo.motions.motion import MotionAsked, check_filled, motion_field
@@ -32,17 +33,18 @@ class HalfTurnCam:
 
     motion: MotionAsked
 
+    @cached_property
     def half_turn(self) -> Motion:
         """The motion over the half turn, which the other half meets turned round."""
         return self.motion.motion(math.pi, "motion", -1)
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn; the other half has them too, turned round."""
-        return self.half_turn().joints
+        return self.half_turn.joints
 
     def kept(self) -> Kept | None:
         """Distances of the half turn's motion from the rows of its table."""
-        return self.half_turn().kept
+        return self.half_turn.kept
 
 
 def check_half_turn(cam: Values, reader: Reader, holding: str) -> None:

@@ -1,4 +1,4 @@
-"""The repository without a capability: its folder, tests, page, shipped recipes, and what is marked as needing it.
+"""The repository without a capability: its folder, tests, pages, shipped recipes, and what is marked as needing it.
 
 A mark is a comment, `# needs: sweep` in Python and TOML, `<!-- needs: sweep -->` in Markdown. Behind a line it is of
 that line. On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a
@@ -89,7 +89,7 @@ def copy_without(name: str, folder: Path) -> Path:
         check=True,
     )
     gone = {path.name for path in unshipped(name)}
-    own = (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md")
+    own = (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md", f"web/{name}.")
     for place in told.stdout.decode().split("\0"):
         path = ROOT / place
         if not place or place.startswith(own) or not path.is_file():

@@ -81,8 +81,8 @@ class Tab:
         self.browser.wait(condition, PATIENCE)
 
     def settle(self) -> None:
-        """Wait until every change of the recipe is answered."""
-        self.wait("document.body.dataset.answered === String(asked)")
+        """Wait until every change of the recipe is answered, and the worker rests."""
+        self.wait("document.body.dataset.answered === String(asked) && !work.current")
 
     def ask(self, expression: str) -> Any:
         """Value of an expression in the page."""
@@ -106,8 +106,10 @@ class Tab:
         """Press a button that makes or judges files, and wait for the judged page."""
         before = self.ask("Number(document.body.dataset.judged || 0)")
         self.click(name)
-        self.wait(f"Number(document.body.dataset.judged || 0) > {before} || byId('faults').textContent")
-        assert not self.text_of("faults"), self.text_of("faults")
+        faults = "byId('faults').textContent + byId('file-faults').textContent"
+        self.wait(f"Number(document.body.dataset.judged || 0) > {before} || {faults}")
+        told = self.ask(faults)
+        assert not told, told
 
     @property
     def text(self) -> str:

@@ -134,3 +134,65 @@ def test_a_failed_set_gives_no_file_to_make_from() -> None:
     answer = live.make("failed", text)
     assert not answer["ok"]
     assert {file["name"].rpartition(".")[2] for file in answer["files"]} == {"html", "json", "zip"}
+
+
+def test_what_cannot_be_made_for_want_of_a_package_is_named_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("camgeo.files.errors.find_spec", lambda name: None if name == "manifold3d" else name)
+    text = TEXTS["disc-roller"]
+    hub = text.replace("bore: 10 ", "bore: 10\n  hub: {diameter: 24, height: 6} ")
+    assert not {"stl", "dxf", "svg"} & set(live.absent("x", text)["absent"])
+    assert "manifold3d" in live.absent("x", hub)["absent"]["stl"]
+    assert live.absent("x", text.replace("base_radius: 36 ", "base_radius: 1 "))["absent"] == {}
+
+
+# needs: follow
+FOLLOWER = {"roller": "", "shoe": "", "flat": False, "width": "", "offset": "", "pivot": "", "arm": "", "x": "0"}
+FOLLOWER |= {
+    "leading": False,
+    "yoke": False,
+    "track": "external",
+    "y": "",
+    "rotation": "cw",
+    "reading": "",
+    "units": "",
+}
+
+
+# needs: follow
+@pytest.mark.parametrize(
+    ("name", "follower", "words"),
+    [
+        ("disc-roller", {"roller": "9", "offset": "8"}, "roller of radius 9 mm on a stem, offset 8 mm"),
+        ("disc-flat", {"flat": True, "width": "34"}, "a centred face is"),
+        ("disc-shoe", {"shoe": "6 cm", "reading": "0.02"}, "shoe of radius 60 mm"),
+        ("disc-ring", {"roller": "6", "track": "internal"}, "inside a ring"),
+        ("disc-groove", {"roller": "8", "track": "groove"}, "play in the groove"),
+        ("disc-arm", {"roller": "8", "pivot": "80", "arm": "65"}, "on a trailing arm of 65 mm"),
+    ],
+)
+def test_a_file_is_followed_by_what_the_page_offers(name: str, follower: dict[str, Any], words: str) -> None:
+    report = camgeo.export(camgeo.load(TEXTS[name]), live.OUT, only=["dxf"])
+    path = next(report.path.glob("*.dxf"))
+    (Path(live.FOLDER) / "cam.dxf").write_bytes(path.read_bytes())
+    answer = json.loads(live.answer("follow", json.dumps({"file": "cam.dxf", "follower": FOLLOWER | follower})))
+    assert words in answer["words"]
+    assert answer["page"]
+
+
+# needs: follow
+def test_a_length_that_is_none_is_named() -> None:
+    call = {"file": "cam.dxf", "follower": FOLLOWER | {"roller": "9 ell"}}
+    answer = json.loads(live.answer("follow", json.dumps(call)))
+    assert answer["faults"][0]["text"].startswith("roller: 9 ell is no length")
+
+
+def test_a_capability_that_is_gone_takes_its_part_of_the_page_along(monkeypatch: pytest.MonkeyPatch) -> None:
+    build = script("build")
+    parts = build.with_parts()
+    assert "follow" in parts  # needs: follow
+    core = "".join((build.WEB / name).read_text("utf-8") for name in ("index.html", "tab.js", "tab.css"))
+    for name in parts:
+        ids = re.findall(r' id="([\w-]+)"', (build.WEB / f"{name}.html").read_text("utf-8"))
+        assert [one for one in ids if re.search(rf"(id=\"|byId\(\"|#){one}\b", core)] == []
+    monkeypatch.setattr("camgeo.registry.registry.labels", dict)
+    assert build.with_parts() == []

@@ -216,6 +216,42 @@ def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) ->
 
 
 # needs: follow
+SHOWN = "Object.keys(followerBoxes()).filter((id) => !byId(id).labels[0].hidden).join(' ')"
+
+
+# needs: follow
+def test_a_follower_has_the_boxes_that_it_needs(page: tab.Tab, tmp_path: Path) -> None:
+    report = camgeo.export(camgeo.load(TEXTS["disc-flat"]), tmp_path, only=["dxf"])
+    page.load("disc-flat", TEXTS["disc-flat"])
+    page.drop("flat.dxf", (report.path / "recipe.dxf").read_bytes())
+    page.wait("byId('chosen').textContent === 'flat.dxf'")
+    assert page.ask(SHOWN) == "radius offset yoke track"
+    page.choose("led", "arm")
+    assert page.ask(SHOWN) == "radius pivot arm side track"
+    page.choose("led", "stem")
+    page.choose("touch", "flat")
+    assert page.ask(SHOWN) == "width offset yoke"
+    page.ask("byId('width').value = '20,5'; byId('offset').value = '0'")
+    page.click("follow")
+    page.wait("byId('file-faults').textContent")
+    assert "width" in page.text_of("file-faults")  # which one is needed
+    page.ask("byId('width').value = '34'")
+    page.judged("follow")
+    assert "a centred face is" in page.text_of("followed-words")
+    page.choose("touch", "roller")
+
+
+def test_files_that_a_browser_cannot_make_say_so_before_and_after(page: tab.Tab) -> None:
+    page.load("support", TEXTS["support"])
+    ticks = "[...document.querySelectorAll('.ticks label:has(small)')].map((one) => one.textContent).join(', ')"
+    page.wait(f"{ticks} === 'step not in a browser, sheet not in a browser'")  # needs: sheet
+    page.tick("export.files", "step")
+    page.judged("make")
+    assert "support.step cannot be made in a browser: a STEP file needs Open CASCADE" in page.text_of("outcome")
+    assert "camgeo export support.yaml" in page.text_of("outcome")
+
+
+# needs: follow
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
@@ -228,8 +264,9 @@ def test_a_wrong_file_is_told(page: tab.Tab, name: str, data: bytes, words: str)
     page.load("disc-roller", TEXTS["disc-roller"])
     page.drop(name, data)
     page.click("follow")
-    page.wait("byId('faults').textContent")
-    assert words in page.text_of("faults")
+    page.wait("byId('file-faults').textContent")
+    assert words in page.text_of("file-faults")
+    assert page.text_of("verdict") == "every check of the design holds"  # it is no fault of the recipe
     page.slide("cam.base_radius", 40)
     assert page.text_of("verdict") == "every check of the design holds"
 
