@@ -132,12 +132,11 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
+    new.set_defaults(sources=[])
     for folder, label in registry.labels().items():
         for name, text in label.sources.items():
             source = partial(_source, folder)
-            new.add_argument(
-                f"--{name}", dest="sources", type=source, action="append", default=[], metavar="FILE", help=text
-            )
+            new.add_argument(f"--{name}", dest="sources", type=source, action="append", metavar="FILE", help=text)
     of_module("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
     of_module("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")

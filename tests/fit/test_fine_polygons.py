@@ -102,7 +102,15 @@ def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
     assert polygon.count <= 1.01 * least_vertices(curve, tolerance) + len(curve.runs[0].breaks) + 1
 
 
-@pytest.mark.parametrize("name", ["disc-sized", "lobe-roller", "w-rosette", "w-wanted-law"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "disc-sized",  # needs: dynamics
+        "lobe-roller",
+        "w-rosette",
+        "w-wanted-law",
+    ],
+)
 def test_a_root_that_has_settled_stays(name: str) -> None:
     """Each step of Newton's method after the last one that changes anything leaves the root where it is."""
     curve: Curve = load(RECIPES / f"{name}.yaml").cam.exact().surfaces[0].curve
