@@ -143,8 +143,13 @@ class Recipe(Order):
     @property
     def profile(self) -> float | None:
         """Width, mm, of the zone in which the contour is to lie once it is made; None where no capability says it."""
-        widths = (capability.profile(self) for capability in registry.in_order(self.uses))
-        return next((width for width in widths if width is not None), None)
+        return None if self.zone is None else self.zone[1]
+
+    @property
+    def zone(self) -> tuple[str, float] | None:
+        """The field that states the zone in which the contour is to lie, and the zone's width, mm; None without one."""
+        zones = (capability.profile(self) for capability in registry.in_order(self.uses))
+        return next((zone for zone in zones if zone is not None), None)
 
     def of(self, kind: type[T]) -> T | None:
         """Give the value of this class that a capability made of its keys, None where the recipe has none."""

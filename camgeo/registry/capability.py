@@ -175,7 +175,7 @@ def no_speed(_recipe: Recipe, /) -> float | None:
     return None
 
 
-def no_profile(_recipe: Recipe, /) -> float | None:
+def no_profile(_recipe: Recipe, /) -> tuple[str, float] | None:
     """Give no tolerance."""
     return None
 
@@ -276,7 +276,7 @@ class Capability:
     check     notes all faults between its keys and others: `reader.fault_at(path, problem, value, remedy)`
     build     makes of the values in which there is no fault what `recipe.of(Class)` gives; None for nothing
     speed     turns a minute of the shaft, where a recipe gives it
-    profile   width, mm, of the zone in which the contour is to lie once it is made, where a recipe gives it
+    profile   field that says in what zone the contour is to lie once it is made, and its width, mm
     starters  recipes for `camgeo new`, by name
     roots     other kinds of recipes, by the label's keys
 
@@ -311,7 +311,7 @@ class Capability:
     check: Callable[[Values, Reader], None] = no_fault
     build: Callable[[Values], object | None] = no_value
     speed: Callable[[Recipe], float | None] = no_speed
-    profile: Callable[[Recipe], float | None] = no_profile
+    profile: Callable[[Recipe], tuple[str, float] | None] = no_profile
     starters: Callable[[], Mapping[str, Starter]] = no_starters
     roots: Mapping[str, Root[Any]] = EMPTY
     figures: Mapping[str, Figure] = EMPTY

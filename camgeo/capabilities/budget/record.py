@@ -87,11 +87,11 @@ def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     return (Plot("Budget", unit, rows, limits=limits, axis="error", holds=(0.0,)),)
 
 
-def _profile(recipe: Recipe) -> float | None:
-    """Width of the zone of a contour that may be off by as much on either side; None where that is to be found."""
+def _profile(recipe: Recipe) -> tuple[str, float] | None:
+    """Zone of a contour that may be off by as much on either side; None where that is to be found."""
     budget = recipe.of(Budget)
     stated = None if budget is None else dict(budget.tolerances).get(PROFILE)
-    return None if stated is None else 2.0 * stated
+    return None if stated is None else (f"budget.tolerances.{PROFILE}", 2.0 * stated)
 
 
 def _starters() -> Mapping[str, Starter]:

@@ -71,10 +71,10 @@ def _shown(report: dict[str, Any], everything: bool) -> str:
     return shown(report, everything=everything)
 
 
-def _profile(recipe: Recipe) -> float | None:
-    """Width of the profile's zone."""
+def _profile(recipe: Recipe) -> tuple[str, float] | None:
+    """Zone that a measured contour is held to."""
     keys = recipe.of(Made)
-    return None if keys is None else keys.profile
+    return None if keys is None or keys.profile is None else ("made.profile", keys.profile)
 
 
 def _corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:

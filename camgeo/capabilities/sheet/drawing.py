@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from functools import reduce
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -78,14 +79,15 @@ def _made(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet,
 
 def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
     """Give the contour's profile tolerance, which two sections may not state differently, and its datums."""
-    stated, own = recipe.profile, sheet.profile
-    if stated is not None and own is not None and abs(stated - own) > 1e-9 * own:
-        what = f"another section states a profile tolerance of {number(stated / recipe.mm)}"
+    stated, own = recipe.zone, sheet.profile
+    if stated is not None and own is not None and not math.isclose(stated[1], own, rel_tol=1e-9):
+        other, width = stated
+        what = f"{other} in line {recipe.locate(other)[0]} makes it {number(width / recipe.mm)}"
         raise recipe.error(f"{field}.profile", what, number(own / recipe.mm), "leave it out, or make them the same")
     part = recipe.part
     turning = part.keyway is not None or part.flat is not None
     datums = {"A": part.bore is not None, "B": part.bore is not None and turning}
-    return Tolerance(own if stated is None else stated, tuple(letter for letter, there in datums.items() if there))
+    return Tolerance(own if stated is None else stated[1], tuple(letter for letter, there in datums.items() if there))
 
 
 # --- its pages --------------------------------------------------------------------------------------------------------

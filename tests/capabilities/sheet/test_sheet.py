@@ -397,12 +397,11 @@ def test_faults_are_told_with_what_helps(
 
 def test_two_tolerances_that_disagree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     recipe = load_text(CAM, tmp_path / "cam.yaml")
-    monkeypatch.setattr(type(recipe), "profile", 0.05)
-    with pytest.raises(
-        camgeo.RecipeErrors, match=r"sheet\.profile: another section states a profile tolerance of 0\.05"
-    ):
+    monkeypatch.setattr(type(recipe), "zone", ("part.bore", 0.05))
+    match = r"export\.files\[0\]\.sheet\.profile: part\.bore in line 11 makes it 0\.05, given 0\.04"
+    with pytest.raises(camgeo.RecipeErrors, match=match):
         camgeo.export(recipe, tmp_path / "out")
-    monkeypatch.setattr(type(recipe), "profile", 0.04)
+    monkeypatch.setattr(type(recipe), "zone", ("part.bore", 0.04))
     assert camgeo.export(recipe, tmp_path / "out").ok
 
 
