@@ -16,7 +16,8 @@ from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.response import Samples
 from kin.dynamics.separation import float_speed
 from kin.dynamics.train import Steady, Train, steady
-from kin.follower.flat import FlatFace
+from kin.follower.follower import follower_of
+from kin.law.contacts import Contact, Flat, Translating
 from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.support_function import lift_constant_breadth
@@ -42,7 +43,7 @@ def main() -> None:
     """Contact force over a turn, as intended and as cut, and the least force over the speed."""
     segments = (Move(math.radians(120.0), named("modified-sine"), by=20.0), Dwell(math.radians(60.0)))
     lift = lift_constant_breadth(40.0, programme(segments, math.pi, around=-1))
-    follower = FlatFace(lift)
+    follower = follower_of([Contact(Translating(), Flat())], lift.law)
     (intended,) = drives([intended_faces(follower, None).lower])
     t = TURN / 48 * np.arange(48)
     p, slope = lift.derivatives(t, 1)

@@ -127,7 +127,7 @@ def samples(
     """Make the files of a recipe."""
     requests = [FileRequest(kind, as_) for kind, as_ in drawings]
     requests += [FileRequest(kind) for kind in solids]
-    recipe = replace(recipe, export=replace(recipe.export, files=tuple(requests)), dynamics=None, sweep=None)
+    recipe = replace(recipe, export=replace(recipe.export, files=tuple(requests))).without("dynamics", "sweep")
     outcome = pipeline.export(recipe, folder)
     if not outcome.ok or outcome.folder is None:
         raise SystemExit(f"{recipe.name}: a check fails")
@@ -147,7 +147,7 @@ def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
     solid = volume(intent.layers, intent.cross_holes, area, perimeter) if intent.layers else cut * thickness
     x0, y0, x1, y1 = contour.box
     form = f"{path.suffix[1:]}" + (f" ({file['as']})" if file.get("as") else "")
-    return Sample(recipe.name, path, form, int(file["pieces"]), touched, cut, solid, (x1 - x0, y1 - y0))  # type: ignore[call-overload,arg-type] # plain JSON
+    return Sample(recipe.name, path, form, int(file["pieces"]), touched, cut, solid, (x1 - x0, y1 - y0))
 
 
 def run(*command: object, folder: Path | None = None) -> str:
