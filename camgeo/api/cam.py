@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from camgeo.synthesis.expected_checks import Foreseen
 
 
+def _settle(recipe: Recipe) -> Recipe:
+    from camgeo.measures.least_angle import settled
+
+    return settled(recipe)
+
+
 def _design(recipe: Recipe) -> Design:
     from camgeo.api.design import Design
     from camgeo.api.log import staged
@@ -79,6 +85,7 @@ ROOT = Root(
     judge=_judge,
     claimed=_claimed,
     show=_show,
+    settle=_settle,
     explain=_explain,
     foresee=_foresee,
 )

@@ -12,6 +12,7 @@ from camgeo.cams.guided import Holding
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.motions.motion import check_whole_turn, motion_field
+from camgeo.motions.segments import LEAST
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
 from camgeo.schema.readers import form_of_kinds
@@ -121,6 +122,7 @@ def check(cam: Values, reader: Reader) -> None:
     """Note segments that do not fill the turn, and keys that do not go with an arm or a flat face; find a size."""
     if "motion" in cam:
         check_whole_turn(cam["motion"], "cam.motion", reader)
+        _check_open(cam, reader)
     follower = cam.get("follower", {})
     arm = follower.get("arm")
     for key in ("offset", "tilt", "width", "diameter", "axial_offset"):
@@ -144,6 +146,21 @@ def check(cam: Values, reader: Reader) -> None:
         reader.fault_at("cam.preload", what, None, remedy)
     if "sizing" in cam and not reader.errors:
         _size(cam, reader)
+
+
+def _check_open(cam: Values, reader: Reader) -> None:
+    """Note what an angle that is to be found lacks: a size, and something that bounds it."""
+    angles = cam["motion"].open
+    if angles is None:
+        return
+    over = f"cam.motion{'.segments' if 'cam.motion.segments' in reader.marks else ''}[{angles.index(LEAST)}].over"
+    if "sizing" in cam:
+        remedy = "give base_radius in place of sizing, or an angle"
+        reader.fault_at(over, "the size is found for angles that are given", LEAST, remedy)
+    if "limits" not in reader.marks:
+        reader.fault_at(
+            over, "nothing bounds it", LEAST, "give limits, such as limits: {pressure-angle: {at_most: 30}}"
+        )
 
 
 def _size(cam: Values, reader: Reader) -> None:

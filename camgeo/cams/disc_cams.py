@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import MotionAsked
+    from camgeo.motions.motion import MotionAsked, Open
     from kin.law.contacts import Guide, Side, Touch
     from kin.law.joints import Joint
     from kin.law.sources.motion import Kept, Motion
@@ -51,6 +51,15 @@ class DiscCam(GuidedCam):
         """One touch, which a spring, gravity or a groove holds on the cam, or one on each of two discs."""
         discs = self.holding.discs
         return Arrangement(type(self.guide), type(self.touch), discs, discs)
+
+    @property
+    def open(self) -> Open | None:
+        """Those of its motion."""
+        return self.motion.open
+
+    def with_motion(self, motion: MotionAsked) -> DiscCam:
+        """Of the same size under the same follower."""
+        return replace(self, motion=motion)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By the displacement over a whole turn, 0 where it is lowest, with the preload."""

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.curve.extremes import Extreme
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.motions.motion import MotionAsked, Open
     from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
@@ -377,6 +378,15 @@ class Cam(ABC):
     def sizes(self) -> Mapping[str, float]:
         """What was found in place of a size that the recipe leaves open, mm, by the keys below `cam` that take it."""
         return {}
+
+    @property
+    def open(self) -> Open | None:
+        """Angles of its motion that are yet to be found, before there is an exact cam; None where all are given."""
+        return None
+
+    def with_motion(self, motion: MotionAsked) -> Cam:
+        """Give the same cam with another motion; raises TypeError for one that has no angle to be found."""
+        raise TypeError(f"{self.kind}: no {motion}")
 
     def circles(self) -> tuple[Circle, ...]:
         """Circles about the shaft for a drawing to show."""

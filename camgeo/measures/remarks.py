@@ -54,6 +54,7 @@ RemarkName = Literal[
     "dwell-shorter",
     "large-cutter",
     "large-roller",
+    "least-angle",
     "loose-motion-error",
     "loose-output-error",
     "metric-keyway",
@@ -93,7 +94,7 @@ def remarks_of(
 ) -> tuple[Remark, ...]:
     """Make every remark that there is to make on a recipe, its design, and the checks of its files."""
     made: dict[str, Sequence[Remark | None]] = {
-        "sizing": [_size_found(recipe, design)],
+        "sizing": [_size_found(recipe, design), _angle_found(recipe)],
         "pressure-angle": [_pressure(recipe, design)],
         "large-roller": [_roller(recipe, design)],
         "sharp-corner": [_corner(recipe, design)],
@@ -120,6 +121,21 @@ def _size_found(recipe: Recipe, design: Design) -> Remark | None:
     """What `sizing` found, and what bounds it."""
     said = recipe.cam.advice.size_found(design.exact, recipe.mm)
     return Remark("sizing", None, None, "", said) if said else None
+
+
+def _angle_found(recipe: Recipe) -> Remark | None:
+    """The least angle that all limits allow, and what fails below it."""
+    found = recipe.settled
+    if found is None:
+        return None
+    least, rest = found.least.degrees, found.rest.degrees
+    told = f"{found.kind} over {least:.10g} deg, the least that all limits allow"
+    if found.bound:
+        told += f": a hundredth less fails {' and '.join(found.bound)}"
+    told += f"; the dwell takes {rest:.10g}"
+    if found.again:
+        told += f"; not all longer ones are allowed, such as {found.again[0]:.4g} deg"
+    return Remark("least-angle", least, None, "deg", told)
 
 
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
 from camgeo.motions.lobes import lobe_field, sides_of
-from camgeo.motions.segments import read_segments, segment_table, segments_schema
+from camgeo.motions.segments import LEAST, REST, read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, join
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from kin.law.sources.table import Suspects
     from kin.law.sources.tabled import Rest
 
+_PLACES = 9  # decimals of a degree in angles that are left
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
 _ROUNDING = 1e-9  # of a stroke that is just as great as it may be
 _ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
@@ -100,8 +101,37 @@ class MotionAsked(ABC):
         """How often it stands in its angle."""
         return 1
 
+    @property
+    def open(self) -> Open | None:
+        """The angles that are yet to be found; None of a motion of which all are given."""
+        return None
+
     @abstractmethod
     def _made(self, total: float, field: str, around: int | None) -> Motion: ...
+
+
+@dataclass(frozen=True)
+class Open:
+    """Segments of which one is to take the least angle that limits allow, and a dwell what is left of the turn."""
+
+    motion: SegmentsAsked
+
+    def index(self, word: str) -> int:
+        """Place of the segment that has a word in place of its angle."""
+        return next(i for i, segment in enumerate(self.motion.segments) if segment.free == word)
+
+    @property
+    def left(self) -> float:
+        """Angle that the other segments leave for both, degrees."""
+        others = math.fsum(segment.over for segment in self.motion.segments)
+        return round(360.0 / self.motion.repeat - math.degrees(others), _PLACES)
+
+    def filled(self, least: float) -> tuple[SegmentsAsked, float]:
+        """Give the motion with the least angle, degrees, and the angle of the dwell, degrees."""
+        rest = round(self.left - least, _PLACES)
+        angles = {"": 0.0, LEAST: math.radians(least), REST: math.radians(rest)}
+        filled = (replace(s, over=s.over + angles[s.free], free="") for s in self.motion.segments)
+        return replace(self.motion, segments=tuple(filled)), rest
 
 
 @dataclass(frozen=True)
@@ -119,8 +149,13 @@ class SegmentsAsked(MotionAsked):
 
     @property
     def covered(self) -> float | None:
-        """Angle of all the segments, once."""
-        return math.fsum(segment.over for segment in self.segments)
+        """Angle of all the segments, once; None where one takes the rest."""
+        return None if self.open else math.fsum(segment.over for segment in self.segments)
+
+    @property
+    def open(self) -> Open | None:
+        """Itself, where words stand in place of angles."""
+        return Open(self) if any(segment.free for segment in self.segments) else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.sources.programme import programme
@@ -298,12 +333,13 @@ def motion_field(
         lambda field: {"anyOf": [segments_schema(field), table_schema(sources)]},
         instead=sources,
     )
-    return Field(name, Kind.OWN, about, required, table=_segment(stroke, 360 if whole_turn else longest), form=form)
+    table = _segment(stroke, 360 if whole_turn else longest, free=whole_turn)
+    return Field(name, Kind.OWN, about, required, table=table, form=form)
 
 
 @cache
-def _segment(stroke: Kind, longest: int) -> Table:
-    return segment_table(stroke, longest)
+def _segment(stroke: Kind, longest: int, *, free: bool) -> Table:
+    return segment_table(stroke, longest, free=free)
 
 
 def _read_reading(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
@@ -382,7 +418,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     )
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
     form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
-    inner = _segment(stroke, 360)
+    inner = _segment(stroke, 360, free=True)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
     return Table(
         (repeat, segments, *fields, contour, curve), (("segments", ("repeat",)), *alternatives, ("contour", ()))
@@ -510,7 +546,10 @@ def check_filled(motion: MotionAsked, path: str, angle: float, remedy: str, read
 
 
 def check_whole_turn(motion: MotionAsked, path: str, reader: Reader) -> None:
-    """Note segments that do not fill a turn, or their part of one."""
+    """Note segments that do not fill a turn, or their part of one, or leave nothing for angles that are to be found."""
     repeat = motion.repeats
+    if motion.open is not None and motion.open.left <= 0.0:
+        remedy = f"let all the others cover less than {360 / repeat:.10g} degrees"
+        reader.fault_at(path, f"nothing is left for over: {LEAST} and dwell: {REST}", None, remedy)
     part = "the whole turn, 360 degrees" if repeat == 1 else f"360/{repeat} degrees"
     check_filled(motion, path, 2.0 * math.pi / repeat, part, reader, why="the next turn begins there")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
@@ -107,7 +107,8 @@ class MotionSegment:
     `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings: of a rise, a return and a rise_fall
     their height, of `to` the displacement at the end, 0 for a dwell. `law` is a name, the coefficients c0, c1, ... of
     a polynomial in u, or shares. `formula` is a displacement in u, its values times `scale`. `at_end` holds v and a at
-    the end of a matched segment, per rad.
+    the end of a matched segment, per rad. `free` is the word that stands in place of its angle, which is 0 until it is
+    found: the least that the recipe's limits allow, or the rest of the turn.
     """
 
     kind: Literal["rise", "return", "to", "rise_fall", "displacement", "dwell"]
@@ -118,6 +119,7 @@ class MotionSegment:
     at_end: tuple[float, float] | None = None
     formula: str = ""
     scale: float = 1.0
+    free: Literal["", "least", "rest"] = ""
 
     def step(self, field: str = "motion") -> Step:
         """Give the segment with its law looked up, as `kin.law.sources.programme` takes it.
@@ -159,7 +161,26 @@ class MotionSegment:
         return self.law.made(self.over, f"{field}.law")
 
 
+LEAST: Literal["least"] = "least"  # in place of the angle of a segment: the least that the recipe's limits allow
+REST: Literal["rest"] = "rest"  # in place of that of a dwell: what the others leave
 _ANGLE = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
+
+
+def _angle_or(word: str, about: str, field: Field) -> Field:
+    """Make of an angle's field one that takes a word, too."""
+
+    def read(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
+        if isinstance(node, Scalar) and node.text == word:
+            return word
+        value: float | None = reader.field(replace(field, form=None), node, path)
+        return value
+
+    wanted = f"{field.wanted()}, or {word} for {about}"
+    return replace(field, form=Form(f"an angle, or {word}", wanted, read, partial(_angle_or_schema, word)))
+
+
+def _angle_or_schema(word: str, field: Field) -> Schema:
+    return {"anyOf": [*number_schema(replace(field, form=None))["anyOf"], {"const": word}]}
 
 
 def _read_blend(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
@@ -333,7 +354,22 @@ def read_segments(
         for key in ("split", "at_end"):
             if key in value and "law" not in value:
                 reader.fault_at(f"{path}[{i}].{key}", "needs a law", None, "leave it out")
-    return tuple(_segment(value, reader.scale(stroke)) for value in values)
+    _check_free(reader, values, path)
+    return None if len(reader.errors) > found else tuple(_segment(value, reader.scale(stroke)) for value in values)
+
+
+def _check_free(reader: Reader, values: list[Values], path: str) -> None:
+    """Note words in place of angles that do not stand once each."""
+    least = [f"{path}[{i}].over" for i, value in enumerate(values) if value.get("over") == LEAST]
+    rest = [f"{path}[{i}].dwell" for i, value in enumerate(values) if value.get("dwell") == REST]
+    for first, *others in filter(None, (least, rest)):
+        for other in others:
+            reader.fault_at(other, f"{first} is found already", None, "give an angle")
+    if least and not rest:
+        reader.fault_at(least[0], "no dwell takes the rest of the turn", LEAST, "write one dwell as {dwell: rest}")
+    if rest and not least:
+        remedy = "give its angle, or one segment with over: least"
+        reader.fault_at(rest[0], "every other angle is given", REST, remedy)
 
 
 def _law_schema(field: Field) -> Schema:
@@ -350,11 +386,18 @@ def segments_schema(field: Field) -> Schema:
 LAW = Form("a motion law", "a motion law", read_law, _law_schema)
 
 
-def segment_table(stroke: Kind, over: int = 180) -> Table:
-    """Make the table of a segment whose stroke is a length or an angle; `over` degrees are the longest."""
+def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Table:
+    """Make the table of a segment whose stroke is a length or an angle; `over` degrees are the longest.
+
+    Of a `free` one a word may leave the angle open.
+    """
     most = 180 if stroke is Kind.ANGLE else MOST
     strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
     angle = Field("over", Kind.ANGLE, "shaft angle of the segment", above=0, at_most=over)
+    dwell = replace(angle, name="dwell", about="shaft angle of a rest")
+    if free:
+        angle = _angle_or(LEAST, "the quickest that all limits allow", angle)
+        dwell = _angle_or(REST, "what the others leave of the turn", dwell)
     return Table(
         (
             *strokes,
@@ -367,7 +410,7 @@ def segment_table(stroke: Kind, over: int = 180) -> Table:
                 variable="u",
                 unit=stroke,
             ),
-            replace(angle, name="dwell", about="shaft angle of a rest"),
+            dwell,
             angle,
             Field(
                 "law",
@@ -401,12 +444,15 @@ def segment_table(stroke: Kind, over: int = 180) -> Table:
 
 
 def _segment(segment: Values, scale: float) -> MotionSegment:
+    angle = segment["dwell" if "dwell" in segment else "over"]
+    free: Literal["", "least", "rest"] = angle if angle in {LEAST, REST} else ""
+    over = 0.0 if free else angle
     if "dwell" in segment:
-        return MotionSegment("dwell", segment["dwell"])
+        return MotionSegment("dwell", over, free=free)
     if "displacement" in segment:
-        return MotionSegment("displacement", segment["over"], formula=segment["displacement"], scale=scale)
+        return MotionSegment("displacement", over, formula=segment["displacement"], scale=scale, free=free)
     kinds: tuple[Literal["rise", "return", "to", "rise_fall"], ...] = ("rise", "return", "to", "rise_fall")
     kind = next(kind for kind in kinds if kind in segment)
     end = segment.get("at_end")
     state = None if end is None else (end.get("v", 0.0), end.get("a", 0.0))
-    return MotionSegment(kind, segment["over"], segment[kind], segment.get("law"), segment.get("split"), state)
+    return MotionSegment(kind, over, segment[kind], segment.get("law"), segment.get("split"), state, free=free)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import collections.abc
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeVar, overload
 
 from camgeo.common.arguments import is_a
 from camgeo.common.errors import CallError
@@ -62,6 +62,28 @@ class Verify:
     angles: int
     motion_error: float | None = None
     output_error: float | None = None
+
+
+class Angle(NamedTuple):
+    """An angle in place of a word: the path of its field, and degrees."""
+
+    path: str
+    degrees: float
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Angles of a motion that were found for `over: least` and `dwell: rest`.
+
+    `kind` is the key of the segment with the least. `bound` are the checks that fail at the next shorter angle,
+    `again` the longer angles that were tried and fail too, degrees.
+    """
+
+    kind: str
+    least: Angle
+    rest: Angle
+    bound: tuple[str, ...]
+    again: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -116,7 +138,8 @@ class Recipe(Order):
     """A recipe of a cam, checked as far as no geometry is needed.
 
     `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` are those that it uses by
-    name, each with the value that it makes of its keys, or None.
+    name, each with the value that it makes of its keys, or None. `settled` is what was found of a motion that the
+    recipe leaves open, None of one that it gives.
     """
 
     root = CAM
@@ -128,6 +151,7 @@ class Recipe(Order):
     wheel: float | None = None
     limits: tuple[Limit, ...] = ()
     capabilities: tuple[tuple[str, object], ...] = ()
+    settled: Settled | None = None
 
     @property
     def uses(self) -> tuple[str, ...]:
@@ -192,10 +216,11 @@ class Recipe(Order):
         return load_text(text, self.path, f"{self.path} (replaced)")
 
     def sized(self) -> Recipe:
-        """Give the recipe with the sizes that its cam found in the place of `sizing`; itself where there are none."""
+        """Give the recipe with what was found in the place of `sizing`, of `least` and `rest`; itself without them."""
         from camgeo.schema.change import changed, exchanged
 
-        document: Document = self
+        angles = {} if self.settled is None else dict((self.settled.least, self.settled.rest))
+        document = Document(path=self.path, text=self.changed(angles))
         for path, size in self.cam.sizes.items():
             source, value = document.source(), size / self.mm
             if path == "base_radius":
@@ -203,7 +228,7 @@ class Recipe(Order):
             else:
                 text = changed(source, f"cam.{path}", value)
             document = Document(path=self.path, text=text)
-        return load_text(document.text, self.path, f"{self.path} (sized)") if self.cam.sizes else self
+        return load_text(document.text, self.path, f"{self.path} (sized)") if self.cam.sizes or angles else self
 
     def told_in(self, units: Length) -> Recipe:
         """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
@@ -293,7 +318,8 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         marks=reader.marks,
         kinds=reader.kinds,
     )
-    return _built(values, document, words_of(source.root))
+    recipe = _built(values, document, words_of(source.root))
+    return recipe if recipe.cam.open is None else roots.settled(recipe)
 
 
 def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values]:

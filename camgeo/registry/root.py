@@ -48,6 +48,7 @@ class Root(Generic[R]):
     check    makes and judges all files, and keeps none: (recipe, what hears of stages)
     judge    reports on files of any origin: (recipe, paths, tolerance, unit of files that state none, gap)
     claimed  reports on files that a capability judges: (recipe, name of the capability, what `verify` is given)
+    settle   finds what a recipe leaves open of its motion, when all else is read; None where nothing may be
     show     reports likewise, and gives the page that shows the files; None where there is none
     explain  tells a failed check of a report over several lines: (check, report, recipe, name of the recipe's file)
     foresee  checks to come
@@ -64,6 +65,7 @@ class Root(Generic[R]):
     explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
     foresee: Callable[[R], Sequence[Foreseen]]
     show: Callable[[R, list[Path], float | None, float | None, float | None], tuple[dict[str, Any], str]] | None = None
+    settle: Callable[[R], R] | None = None
     instead: str = ""
 
 
@@ -83,3 +85,9 @@ def root(key: str) -> Root[Any]:
 def root_of(recipe: R) -> Root[R]:
     """Record of the kind that a recipe is of."""
     return root(recipe.root)
+
+
+def settled(recipe: R) -> R:
+    """Give the recipe with what it leaves open found, itself where its kind leaves nothing; raises RecipeErrors."""
+    settle = root_of(recipe).settle
+    return recipe if settle is None else settle(recipe)

@@ -36,6 +36,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     files.altered,
     calls.called,
     wider.searched,
+    wider.dropped,
     wider.budgeted,  # needs: budget
     wider.on_a_shaft,
     shafts.flush,

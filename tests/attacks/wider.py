@@ -40,6 +40,32 @@ def sized(rng: Random, number: int) -> Attack:
     )
 
 
+def dropped(rng: Random, number: int) -> Attack:
+    """A cam whose quickest stroke is found, by limits of any kind; some leave nothing, or contradict one another."""
+    cam = drawn(rng)
+    law, stroke = rng.choice(["cycloidal", "modified-sine", "harmonic", "cubic", "parabolic"]), rng.uniform(0.5, 30)
+    words = [rng.choice(["least"] * 12 + ["rest", "40"]), rng.choice(["rest"] * 12 + ["least", "60"])]
+    rise = f"{{rise: {stroke:.3f}, over: {rng.uniform(20, 340):.2f}, law: {law}}}"
+    back = f"{{return: {stroke:.3f}, over: {words[0]}, law: {law}}}"
+    motion = [rise, back, f"{{dwell: {words[1]}}}"]
+    rng.shuffle(motion)
+    bounds = [
+        f"pressure-angle: {{at_most: {rng.uniform(5, 80):.2f}}}",
+        f"peak-acceleration: {{at_most: {10 ** rng.uniform(0, 4):.4g}}}",
+        f"pitch-radius: {{at_least: {rng.uniform(0, 40):.2f}}}",
+        f"size: {{at_most: {rng.uniform(10, 100):.2f}}}",
+        f"duration: {{at_most: {rng.uniform(100, 700):.1f}, at_lift: {rng.uniform(0, 3):.2f}}}",
+        "pieces: {at_most: 40}",
+        "contact-force-least: {at_least: 5}",
+    ]
+    text = with_motion(cam.text(rng.choice(["dxf", "stl"])), f"[{', '.join(motion)}]")
+    text += f"limits: {{{', '.join(rng.sample(bounds, rng.randrange(1, 3)))}}}\n"
+    if "contact-force" in text:
+        text += f"dynamics: {{mass: 0.3, preload: 80, rpm: {rng.uniform(10, 900):.1f}}}\n"
+    call = rng.choice(["export", "check", "report"])
+    return Attack(f"dropped {number}", (call, "cam.yaml"), {"cam.yaml": text.encode()}, (0, 1, 2), seconds=15.0)
+
+
 FEATURES = [
     "bolts: {count: 3, circle: 24, hole: 3}",
     "hub: {diameter: 14, height: 8}",

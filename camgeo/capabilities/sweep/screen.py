@@ -218,6 +218,8 @@ class Screen:
             return f"{unknown[0]} is not sampled"
         if recipe.cam.undercut == "trim":
             return "undercut is trimmed"
+        if recipe.settled is not None:
+            return "an angle of its motion is found for each design"
 
         def shoot(values: Array, counts: tuple[int, ...]) -> Shot | None:
             given = {path: float(value) for path, value in zip(paths, values, strict=True)}

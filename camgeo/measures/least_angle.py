@@ -1,0 +1,154 @@
+"""The least angle of a segment that all limits of a recipe allow, in place of `over: least`.
+
+Whatever a recipe limits is held here by the checks that a run makes of a design, so no figure need be monotone in the
+angle. Angles are tried on a ladder that reaches up to all that the other segments leave; between the first that holds
+and the one below it they are halved to a step of 1/`STEPS` degrees. So the angle found holds, one step less does not,
+and every shorter angle of the ladder fails. What may pass unnoticed is a stretch of shorter angles that holds and lies
+between two of the ladder, a ratio `RATIO` apart.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.checks.declared import PRESSURE
+from camgeo.common.clock import Clock
+from camgeo.measures.figures import ORDERS
+from camgeo.measures.limits import limit_checks
+from camgeo.motions.segments import LEAST, REST
+from camgeo.recipe.figures import FIGURES, ON_RETURN, ON_RISE
+from camgeo.recipe.recipe import Angle, Settled
+from camgeo.registry import registry
+from camgeo.schema.errors import RecipeErrors
+from camgeo.synthesis.checks import motion_checks
+from camgeo.synthesis.design import Design, designed
+from kin.law.programme import IntentError
+from kin.numeric.records import dataclass, field, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.measures.measured import Measured
+    from camgeo.motions.motion import Open
+    from camgeo.recipe.recipe import Recipe
+    from kin.judge.check import Check
+
+STEPS = 100  # of a degree: every angle that is tried is a whole number of them
+RATIO = 1.2  # of neighbours on the ladder, whose lowest rung is above a degree
+OF_MOTION = frozenset({*ORDERS, PRESSURE.name, ON_RISE, ON_RETURN})
+"""Figures of the exact cam before its undercut is known, which takes ten times as long to find."""
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Angles in steps, and what fails at those that were tried."""
+
+    recipe: Recipe
+    open: Open
+    failing: dict[int, tuple[Check, ...]] = field(default_factory=dict)
+    errors: dict[int, RecipeErrors] = field(default_factory=dict)
+
+    def at(self, steps: int) -> Recipe:
+        """Give the recipe with an angle."""
+        motion, _ = self.open.filled(steps / STEPS)
+        return replace(self.recipe, cam=self.recipe.cam.with_motion(motion))
+
+    def holds(self, steps: int) -> bool:
+        """Whether every check of a design holds at an angle."""
+        if steps not in self.failing and steps not in self.errors:
+            try:
+                self.failing[steps] = tuple(check for check in _checks(self.at(steps)) if not check.ok)
+            except RecipeErrors as errors:
+                self.errors[steps] = errors
+        return steps not in self.errors and not self.failing[steps]
+
+    def reasons(self, steps: int) -> tuple[str, ...]:
+        """Say what fails at an angle that was tried: checks by their names, or why there is no cam."""
+        if steps in self.errors:
+            return tuple(error.problem for error in self.errors[steps].errors)
+        return tuple(dict.fromkeys(check.name for check in self.failing.get(steps, ())))
+
+
+def settled(recipe: Recipe) -> Recipe:
+    """Give the recipe with the least angle that its limits allow.
+
+    Raises RecipeErrors where none was found, and for a limit of files, of which none is made here.
+    """
+    angles = recipe.cam.open
+    if angles is None:
+        return recipe
+    for limit in recipe.limits:
+        if FIGURES[limit.figure].of == "file":
+            problem = f"of files, and none is made of the angles that are tried for over: {LEAST}"
+            raise recipe.error(f"limits.{limit.figure}", problem, None, "leave it out, or give the angle")
+    search = _Search(recipe, angles)
+    least, rest = angles.index(LEAST), angles.index(REST)
+    path = f"cam.motion{'.segments' if 'cam.motion.segments' in recipe.marks else ''}"
+    longest = math.ceil(angles.left * STEPS - 1e-6) - 1  # the dwell takes the last step
+    rungs = _ladder(longest)
+    held = [rung for rung in rungs if search.holds(rung)]
+    if not held:
+        raise _refused(search, longest, f"{path}[{least}].over")
+    high = held[0]
+    low = max((rung for rung in rungs if rung < high), default=0)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if search.holds(middle) else (middle, high)
+    motion, dwell = angles.filled(high / STEPS)
+    found = Settled(
+        angles.motion.segments[least].kind,
+        Angle(f"{path}[{least}].over", high / STEPS),
+        Angle(f"{path}[{rest}].dwell", dwell),
+        search.reasons(low),
+        tuple(rung / STEPS for rung in rungs if rung > high and not search.holds(rung)),
+    )
+    return replace(recipe, cam=recipe.cam.with_motion(motion), settled=found)
+
+
+def _ladder(longest: int) -> list[int]:
+    """Rungs, rising to the longest."""
+    rungs = [longest]
+    while (shorter := int(rungs[-1] / RATIO)) >= STEPS:
+        rungs.append(shorter)
+    return rungs[::-1]
+
+
+def _refused(search: _Search, longest: int, path: str) -> RecipeErrors:
+    """The error of angles none of which holds: what fails at the longest."""
+    if longest in search.errors:
+        return search.errors[longest]
+    check, angle = search.failing[longest][0], f"{longest / STEPS:.10g} degrees"
+    recipe = search.recipe
+    factor = recipe.mm if check.unit == "mm" else 1.0
+    unit = recipe.units if check.unit == "mm" else check.unit
+    sense = "at least" if check.sense == "at_least" else "at most"
+    reached = "cannot be had" if check.value is None else f"is {check.value / factor:.6g} {unit}".rstrip()
+    bound = "" if check.limit is None else f", {sense} {check.limit / factor:.6g}"
+    return recipe.error(
+        path, f"even over {angle} {check.name} {reached}{bound}", LEAST, check.detail or "let the limit be wider"
+    )
+
+
+def _checks(recipe: Recipe) -> Sequence[Check]:
+    """All checks of a design that need no file; of one that fails a limit of its motion those limits alone."""
+    limits = tuple(limit for limit in recipe.limits if limit.figure in OF_MOTION)
+    if limits:
+        try:
+            exact = recipe.cam.exact()
+            design = Design(exact, (), tuple(motion_checks(exact)))
+        except IntentError as error:
+            raise recipe.error(f"cam.{error.field}", error.message) from error
+        checks = limit_checks(replace(recipe, limits=limits), design, design.checks, (), {})
+        if not all(check.ok for check in checks):
+            return checks
+    design = designed(recipe)
+    checks = list(design.checks)
+    runs: dict[str, Mapping[str | None, Measured]] = {}
+    if all(check.ok for check in checks):  # which take the most
+        owners = {FIGURES.owner(limit.figure) for limit in recipe.limits if FIGURES[limit.figure].of == "run"}
+        for capability in registry.in_order(filter(None, owners)):
+            results = capability.examine(recipe, design, (), Clock())
+            checks += results.checks
+            runs |= results.runs
+    return [*checks, *limit_checks(recipe, design, checks, (), runs)]
