@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
-from camgeo.motions.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
+from camgeo.motions.half_turn import BY_MOTION, MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.motions.motion import FormulaAsked
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
@@ -143,4 +143,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     return ConstantBreadthCam(cam["base_radius"], motion, undercut, "swing" in cam, preload=build_preload(cam))
 
 
-FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check)
+FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, by_motion=BY_MOTION)

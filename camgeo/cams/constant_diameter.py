@@ -14,7 +14,7 @@ from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, GrownError, Prel
 from camgeo.cams.follower import Follower
 from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.preload import PRELOAD, build_preload, preloaded
-from camgeo.motions.half_turn import MOTION, HalfTurnCam, check_half_turn
+from camgeo.motions.half_turn import BY_MOTION, MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
@@ -113,4 +113,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 
 
-FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check)
+FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check, by_motion=BY_MOTION)

@@ -11,7 +11,7 @@ from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.guided import Holding
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
-from camgeo.motions.motion import check_whole_turn, motion_field
+from camgeo.motions.motion import ByMotion, check_whole_turn, motion_field
 from camgeo.motions.segments import LEAST
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
@@ -33,6 +33,7 @@ from kin.law.contacts import (
 )
 
 if TYPE_CHECKING:
+    from camgeo.schema.change import Value
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
@@ -241,4 +242,6 @@ def _touch(follower: Values, arm: Values) -> Touch:
     return Roller(follower["radius"])
 
 
-FAMILY = Family(DiscCam.kind, Arrangement(Translating, Roller), TABLE, build, check, variant)
+_STILL: list[Value] = [{kind: 0.01, "over": 180.0, "law": "cycloidal"} for kind in ("rise", "return")]
+BY_MOTION = ByMotion(motion="motion", base="base_radius", still=("motion", _STILL))
+FAMILY = Family(DiscCam.kind, Arrangement(Translating, Roller), TABLE, build, check, variant, BY_MOTION)

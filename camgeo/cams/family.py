@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import Field, Kind
+from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, field, replace
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.curve.extremes import Extreme
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import MotionAsked, Open
+    from camgeo.motions.motion import ByMotion, MotionAsked, Open
     from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
@@ -357,6 +358,11 @@ class Cam(ABC):
         return None
 
     @property
+    def motion_span(self) -> float:
+        """Shaft angle, rad, over which a recipe gives the motion; that of the rest of the turn follows from it."""
+        return TURN
+
+    @property
     def linear(self) -> Linear | None:
         """The harmonics that the cam is linear in, None where it is given otherwise."""
         return None
@@ -403,6 +409,7 @@ class Family:
 
     `table` has its keys; `check` notes the faults between them, `build` makes the cam of values without fault and the
     unit of length in mm. `variant` looks, where that decides, at the cam as written for the arrangement of it.
+    `by_motion` are the keys by which it is given by a motion, None where it is not.
     """
 
     kind: str
@@ -411,6 +418,7 @@ class Family:
     build: Callable[[Values, float], Cam]
     check: Callable[[Values, Reader], None]
     variant: Callable[[Node], Arrangement] | None = None
+    by_motion: ByMotion | None = None
 
     def of(self, node: Node | None) -> Arrangement:
         """Give the arrangement of a cam as written, which says its units and what figures may be taken of it."""

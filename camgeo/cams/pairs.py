@@ -160,6 +160,11 @@ class PairCam(Cam):
         """The same pair farther away; raises GrownError where a roller would be nothing."""
 
     @property
+    def motion_span(self) -> float:
+        """A section of the turn, pi/lambda, rad."""
+        return math.pi / self.lam
+
+    @property
     def mean_distance(self) -> float:
         """Mean distance R = 2 l cos(alpha/2) of the arms' ends, mm: an arc about the shaft at it has no swing."""
         return 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)

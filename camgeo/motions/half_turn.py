@@ -9,7 +9,7 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from camgeo.motions.motion import MotionAsked, check_filled, motion_field
+from camgeo.motions.motion import ByMotion, MotionAsked, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:
@@ -26,12 +26,25 @@ SWING = motion_field(
     "swing of the frame over the shaft angle, in its sense, under a linkage of kind inverted-slider-crank",
     longest=360,
 )
+BY_MOTION = ByMotion(
+    motion="motion",
+    base="base_radius",
+    instead=("swing",),
+    still=("motion", [{"rise": 0.01, "over": 180.0, "law": "cycloidal"}]),
+    opposed=True,
+)
+"""A motion over the half turn."""
 
 
 class HalfTurnCam:
     """A cam whose motion is given over one half turn."""
 
     motion: MotionAsked
+
+    @property
+    def motion_span(self) -> float:
+        """Half a turn, rad."""
+        return math.pi
 
     @cached_property
     def half_turn(self) -> Motion:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.motions.contour_motion import Drawn
     from camgeo.motions.lobes import SideShape
     from camgeo.motions.segments import MotionSegment
+    from camgeo.schema.change import Value
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -313,6 +314,24 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
         raise IntentError(
             f"{where}the motion begins at {value / scale:.9g}; S(0) must be 0: make every displacement {less}", field
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByMotion:
+    """How recipes of a family give a cam by its motion: keys below `cam`.
+
+    motion    key of the motion
+    base      key of the base circle's radius, where displacements are 0; empty where other lengths fix the size
+    instead   keys that give the motion otherwise
+    still     an entry that gives hardly any motion
+    opposed   whether size and motion fix how far two opposite contacts are apart
+    """
+
+    motion: str
+    base: str = ""
+    instead: tuple[str, ...] = ()
+    still: tuple[str, Value]
+    opposed: bool = False
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------

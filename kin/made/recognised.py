@@ -1,9 +1,10 @@
 """The motion of a measured cam as a programme: dwells, and strokes each by the law that fits it best.
 
-The follower runs on the smoothed metal (`measured_motion`). Dwells are stretches that rest within a reading; between
-them, and between turning points, are strokes. Boundaries and levels are fitted together by least squares: first each
-stroke alone, by every law of the catalogue, then all at once by the best ones. What is left is form rather than noise,
-with as many independent values as it changes its sign: its scatter gives the uncertainties.
+The follower runs on the smoothed metal (`kin.made.point_motion`). Dwells are stretches that rest within a reading;
+between them, and between turning points, are strokes. Boundaries and levels are fitted together by least squares: first
+each stroke alone, by every law of the catalogue, then all at once by the best ones. What is left is form rather than
+noise, with as many independent values as it changes its sign: its scatter gives the uncertainties. Long waves of the
+metal's form are in part taken for motion, which no scatter tells: `Hidden` says how much of them.
 """
 
 from __future__ import annotations
@@ -13,15 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.follower.follower import follower_of
 from kin.follower.measured import MeasuredMotion
-from kin.law.piecewise import Piecewise
-from kin.law.segment import Constant
 from kin.law.sources.laws import NAMES, named
-from kin.made.metal import Metal
-from kin.made.motion import COVERAGE, contact_errors
-from kin.made.points import SurfacePoints
-from kin.made.smooth import fit
+from kin.made.motion import COVERAGE
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -29,78 +24,17 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.follower.base import Follower
-    from kin.law.contacts import Contact, Guide, Side, Touch, Unit
+    from kin.law.contacts import Unit
     from kin.law.programme import Law
-    from kin.made.smooth import Smooth
+    from kin.made.point_motion import PointMotion
     from kin.numeric.arrays import Array, Indices
 
-STEPS = 1440  # shaft angles of a turn
+MOST_WAVES = 4  # a turn, of forms that are held against the motion: shorter ones stand out of it
 ROUNDS = 25  # of Gauss and Newton
 SETTLED = 1e-9  # of a turn, and of the stroke: a step that changes nothing
 DIFFERENCE = 1e-6  # rad, and of the stroke: of numerical derivatives
 NEARLY = 1.5  # times the least residual: a law that fits no worse may be the one
 LEAST_STROKE = 4.0  # readings: less is no stroke
-SECANT_STEPS = 20
-ROUNDING = 1e-11  # mm or rad of a position
-
-
-@dataclass(frozen=True, eq=False)
-class PointMotion:
-    """The motion that the metal of points gives a follower, over STEPS equal shaft angles; mm or rad.
-
-    gauge         the follower meant to stand still, on a circle
-    curve         smoothed distance of the metal from that circle, mm
-    position (n,) where the gauge stands on the metal, from its zero
-    sd            standard deviation of that, greatest over the turn
-    outliers      points that were left out
-    """
-
-    gauge: Follower
-    side: Side
-    curve: Smooth
-    position: Array
-    sd: float
-    outliers: int
-
-    @property
-    def shaft(self) -> Array:
-        """Shaft angles (n,)."""
-        return equal_steps(len(self.position))
-
-    def lifted_circle(self, level: float) -> float:
-        """How much larger than the gauge's circle one is, mm, on which it stands at a level."""
-
-        def stands(height: float) -> float:
-            metal = Metal.of(self.gauge, self.side, lambda t: np.stack([np.full_like(t, height), np.zeros_like(t)]))
-            return float(metal.positions(np.zeros(1))[0][0, 0] - self.gauge.intended(np.zeros(1))[0]) - level
-
-        before, here = 0.0, 0.1 * self.side
-        low, off = stands(before), stands(here)
-        for _ in range(SECANT_STEPS):
-            if abs(off) < ROUNDING or off == low:
-                break
-            before, here, low = here, here - off * (here - before) / (off - low), off
-            off = stands(here)
-        return self.side * here
-
-
-def measured_motion(
-    contact: Contact[Guide, Touch], side: Side, points: tuple[Array, Array | None, float], spans: int | None = None
-) -> PointMotion:
-    """Let a follower of one contact run on the metal of points, their normals or None, and the radius of their ball.
-
-    Raises ContactError where it finds no metal, GapError for a gap, ValueError as `fit` does.
-    """
-    still = Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN)
-    gauge = follower_of([contact], still, side)
-    places, directions, ball = points
-    deviations = SurfacePoints(gauge, side, places, ball, directions).deviations
-    smooth = fit(deviations.parameter, deviations.e, spans)
-    (errors,) = contact_errors(gauge, side, smooth.curve, equal_steps(STEPS))
-    return PointMotion(
-        gauge, side, smooth.curve, errors.rows[0], float(errors.sds[0].max()), int(smooth.outliers.sum())
-    )
 
 
 class Stroke(NamedTuple):
@@ -118,6 +52,21 @@ class Stroke(NamedTuple):
     residual: float
 
 
+class Hidden(NamedTuple):
+    """What a programme takes of a form deviation for motion, of the number of waves a turn that hides the most.
+
+    waves       of that form
+    share       of it that the programme takes for motion, at the phase that hides the most; the rest is left over
+    boundaries  (m,), rad, how far a form of height 1 (mm or rad) moves each, at its worst phase
+    levels      (k,), the same of levels
+    """
+
+    waves: int
+    share: float
+    boundaries: Array
+    levels: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Programme:
     """A motion as strokes with dwells between; mm or rad, angles rad.
@@ -125,7 +74,8 @@ class Programme:
     boundaries (m,)   shaft angles at which strokes begin and end, in the order of the turn
     levels (k,)       positions at which they do
     strokes           in order
-    uncertainty       expanded (k = 2), of boundaries and of levels
+    uncertainty       expanded (k = 2), of boundaries and of levels, by what is left over
+    hidden            what a form deviation adds to that, which is not left over
     residual (n,)     what the motion is off
     """
 
@@ -133,6 +83,7 @@ class Programme:
     levels: Array
     strokes: tuple[Stroke, ...]
     uncertainty: tuple[Array, Array]
+    hidden: Hidden
     residual: Array
 
     @property
@@ -148,17 +99,13 @@ class Programme:
 
 def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | None:
     """The programme of a motion whose dwells rest within a reading, mm or rad; None where there is no stroke."""
-    position, nothing = motion.position, np.zeros(len(motion.position))
-    rows = np.stack([position, nothing, nothing])
-    least, most = (float(position.min()), 0.0), (float(position.max()), 0.0)
-    rests = MeasuredMotion(unit, motion.shaft, rows, nothing, nothing, least, most).dwells(reading)
-    places = _places(position, [(rest.begin, rest.end, rest.level) for rest in rests], LEAST_STROKE * reading)
+    places = _places(motion, reading, unit)
     if len(places) < 2:  # a turn of one level
         return None
     boundaries = np.array([end for begin, end, _ in places for end in ((begin, end) if end > begin else (begin,))])
     levels = np.array([level for _, _, level in places])
     strokes, at = [], 0
-    for k, (begin, end, _) in enumerate(places):
+    for k, (begin, end, _) in enumerate(places if motion.closed else places[:-1]):
         at += int(end > begin)
         strokes.append(Stroke(at, (at + 1) % len(boundaries), k, (k + 1) % len(places), "", (), 0.0))
         at += 1
@@ -168,22 +115,47 @@ def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | N
     return _fitted(motion, rough.boundaries, rough.levels, laws)
 
 
-def _places(
-    position: Array, rests: Sequence[tuple[float, float, float]], least: float
-) -> list[tuple[float, float, float]]:
-    """Dwells, and turning points between them as dwells of no length: begin, end, level; in the order of the turn."""
-    shaft = equal_steps(len(position))
-    if not rests:
-        lowest = int(np.argmin(position))
-        rests = [(float(shaft[lowest]), float(shaft[lowest]), float(position[lowest]))]
-    places = list(rests)
-    for k, (_, end, level) in enumerate(rests):
-        following = rests[(k + 1) % len(rests)][0]
+def _places(motion: PointMotion, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
+    """Dwells, and turning points between them as dwells of no length: begin, end, level; in order.
+
+    A part of a turn has its ends among them.
+    """
+    position, shaft, least = motion.position, motion.shaft, LEAST_STROKE * reading
+    places = _rests(motion, reading, unit)
+    if motion.closed:
+        if not places:
+            lowest = int(np.argmin(position))
+            places = [(float(shaft[lowest]), float(shaft[lowest]), float(position[lowest]))]
+    else:
+        if not places or places[0][0] > 0.0:
+            places.insert(0, (0.0, 0.0, float(position[0])))
+        if places[-1][1] < motion.span:
+            places.append((motion.span, motion.span, motion.last))
+    turns = []
+    for k, (_, end, level) in enumerate(places if motion.closed else places[:-1]):
+        following = places[(k + 1) % len(places)][0]
         length = (following - end) % TURN or TURN
         inside = np.flatnonzero((np.mod(shaft - end, TURN) > 0.0) & (np.mod(shaft - end, TURN) < length))
         inside = inside[np.argsort(np.mod(shaft[inside] - end, TURN))]
-        places += _turns(position, shaft, inside, level, least)
-    return sorted(places, key=lambda place: place[0] % TURN)
+        turns += _turns(position, shaft, inside, level, least)
+    return sorted(places + turns, key=lambda place: place[0] % TURN)
+
+
+def _rests(motion: PointMotion, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
+    """Stretches that rest within a reading: begin, end, level, those that lie in the span of the motion."""
+    whole, nothing = motion.turn, np.zeros(len(motion.turn))
+    rows = np.stack([whole, nothing, nothing])
+    least, most = (float(whole.min()), 0.0), (float(whole.max()), 0.0)
+    dwells = MeasuredMotion(unit, equal_steps(len(whole)), rows, nothing, nothing, least, most).dwells(reading)
+    rests = [(rest.begin, rest.end, rest.level) for rest in dwells]
+    if motion.closed:
+        return rests
+    parts = [
+        (max(begin - turn, 0.0), min(end - turn, motion.span), level)
+        for begin, end, level in rests
+        for turn in (0.0, TURN)
+    ]
+    return sorted(part for part in parts if part[1] - part[0] > TURN / len(whole))
 
 
 def _turns(
@@ -227,6 +199,8 @@ def _model(shaft: Array, boundaries: Array, levels: Array, strokes: Sequence[Str
         low, high = levels[stroke.low], levels[stroke.high]
         moved = _law_of(stroke.law, away[own] / length, falls=bool(high < low))
         position[own] = low + (high - low) * moved
+    if strokes[0].low != strokes[-1].high:  # a part of a turn, at whose end it is not where it began
+        position[shaft < boundaries[strokes[0].first]] = levels[strokes[0].low]
     return position
 
 
@@ -281,10 +255,16 @@ def _by_law(
 
 
 def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tuple[Stroke, ...]) -> Programme:
-    """Fit boundaries and levels all at once, by Gauss and Newton."""
+    """Fit boundaries and levels all at once, by Gauss and Newton; the ends of a part of a turn stay where they are."""
     m, stroke_height = len(boundaries), float(np.ptp(levels))
     values = np.concatenate([boundaries, levels])
     scale = np.concatenate([np.ones(m), np.full(len(levels), stroke_height)])
+    held = np.zeros(len(values), dtype=bool)
+    if not motion.closed:
+        held[:m] = (boundaries == 0.0) | (boundaries == motion.span)
+        held[[m, -1]] = motion.zero_ends
+        values[held & (scale != 1.0)] = 0.0
+    free = np.flatnonzero(~held)
 
     def off(at: Array) -> Array:
         residual: Array = motion.position - _model(motion.shaft, at[:m], at[m:], strokes)
@@ -292,7 +272,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
     def slopes(at: Array) -> Array:
         columns = []
-        for k in range(len(at)):
+        for k in free:
             step = np.zeros(len(at))
             step[k] = DIFFERENCE * scale[k]
             columns.append((off(at + step) - off(at - step)) / (2.0 * DIFFERENCE))
@@ -300,7 +280,8 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
     here = off(values)
     for _ in range(ROUNDS):
-        change = np.linalg.lstsq(slopes(values), -here, rcond=None)[0]
+        change = np.zeros(len(values))
+        change[free] = np.linalg.lstsq(slopes(values), -here, rcond=None)[0]
         share = 1.0
         while share > SETTLED:
             new = off(values + share * change * scale)
@@ -314,7 +295,24 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
             break
     columns = slopes(values)
     independent = int(np.count_nonzero(np.sign(here) != np.sign(np.roll(here, 1))))  # waves count by their half waves
-    free = max(min(independent, motion.curve.spans) - len(values), 1)
-    covariance = float(here @ here) / free * np.linalg.pinv(columns.T @ columns)
-    expanded = COVERAGE * np.sqrt(np.diag(covariance)) * scale
-    return Programme(values[:m], values[m:], strokes, (expanded[:m], expanded[m:]), here)
+    beyond = max(min(independent, motion.spans) - len(free), 1)
+    expanded = np.zeros(len(values))
+    covariance = float(here @ here) / beyond * np.linalg.pinv(columns.T @ columns)
+    expanded[free] = COVERAGE * np.sqrt(np.diag(covariance)) * scale[free]
+    hidden = _hidden(motion, columns, free, scale, m)
+    return Programme(values[:m], values[m:], strokes, (expanded[:m], expanded[m:]), hidden, here)
+
+
+def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
+    """What the unknowns, whose columns (n, f) these are, take of the waves of a form."""
+    base, _ = np.linalg.qr(columns)
+    most: Hidden | None = None
+    for waves in motion.alike(MOST_WAVES):
+        form = np.column_stack([np.cos(waves * motion.shaft), np.sin(waves * motion.shaft)])
+        share = float(np.linalg.norm(base.T @ np.linalg.qr(form)[0], 2))
+        if most is None or share > most.share:
+            moved = np.zeros(len(scale))
+            moved[free] = np.linalg.norm(np.linalg.lstsq(columns, form, rcond=None)[0], axis=1) * scale[free]
+            most = Hidden(waves, share, moved[:boundaries], moved[boundaries:])
+    assert most is not None
+    return most

@@ -89,8 +89,9 @@ def points_of_tables(
     if probing.face is not None:
         raise CallError("a face is of an indicator, and these are places: leave it out; a ball has a radius")
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
+    names = [[surface.name for surface in part.surfaces] for part in parts]
     for place, (path, table) in enumerate(files):
-        for disc, rows in _by_disc(parts, table, path, first + place):
+        for disc, rows in by_disc(names, table, path, first + place):
             pieces[disc].append((place, rows, scale))
     discs = [
         _disc(recipe, part, sorted_out(part, piece, probing), probing.align) if piece else DiscPoints(part)
@@ -99,14 +100,14 @@ def points_of_tables(
     return Points(tuple(discs), None, tuple(remarks), scale)
 
 
-def _by_disc(parts: Sequence[PartIntent], table: PointTable, path: Path, place: int) -> list[tuple[int, PointTable]]:
-    """Which disc a file is of; of one that names the surfaces of several, the rows of each."""
-    owners = {label_of(surface.name): rank for rank, part in enumerate(parts) for surface in part.surfaces}
+def by_disc(names: Sequence[Sequence[str]], table: PointTable, path: Path, place: int) -> list[tuple[int, PointTable]]:
+    """Which disc a file is of, by the names of each disc's surfaces; of one that names those of several, the rows."""
+    owners = {label_of(name): rank for rank, own in enumerate(names) for name in own}
     labels = [label_of(label) for label in table.labels]
-    if len(parts) == 1:
+    if len(names) == 1:
         return [(0, table)]
     if not labels or not all(labels) or not set(labels) <= set(owners):
-        return [(disc_of(path, place, len(parts)), table)]
+        return [(disc_of(path, place, len(names)), table)]
     rank = np.array([owners[label] for label in labels])
     return [(disc, table.rows(rank == disc)) for disc in sorted(set(rank.tolist()))]
 
@@ -118,9 +119,13 @@ def name_of(part: PartIntent) -> str:
 
 def demand_discs(missing: Sequence[DiscPoints]) -> None:
     """Raise CallError where there are discs without points."""
+    demand_points([name_of(disc.part) for disc in missing])
+
+
+def demand_points(missing: Sequence[str]) -> None:
+    """Raise CallError where there are surfaces, by their names, without points."""
     if missing:
-        names = " and ".join(name_of(disc.part) for disc in missing)
-        raise CallError(f"points of {names} are missing: give a file for each disc")
+        raise CallError(f"points of {' and '.join(missing)} are missing: give a file for each disc")
 
 
 def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align: str) -> DiscPoints:

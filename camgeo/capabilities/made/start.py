@@ -1,7 +1,8 @@
 """A recipe of a cam that was measured: its base radius and its motion, as its points have them.
 
 The recipe that is given says follower, guide, units and part; what it says of base radius and motion gives way. Strokes
-are told by the law that fits them best; where none does, or the turn begins within one, the motion is a table.
+are told by the law that fits them best; where none does, or the turn begins within one, the motion is a table. By which
+keys a kind of cam has size and motion, and over which part of the turn, its family says (`ByMotion`).
 """
 
 from __future__ import annotations
@@ -13,22 +14,24 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.cams.families import FAMILIES
 from camgeo.capabilities.made.judge import made_part
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import scale_of
-from camgeo.capabilities.made.reading import Call, places_of, tables_of
+from camgeo.capabilities.made.placed import by_disc, demand_points, scale_of
+from camgeo.capabilities.made.reading import Call, label_of, places_of, tables_of
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.recipe import load_text
-from camgeo.schema.change import changed
+from camgeo.schema.change import changed, exchanged
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.yaml_source import Mapping, Source, entries
+from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries
 from camgeo.synthesis.design import designed
 from kin.follower.motion_error import ContactError
 from kin.law.programme import IntentError
 from kin.made.motion import COVERAGE
-from kin.made.recognised import measured_motion, recognised
+from kin.made.point_motion import SurfaceRun, measured_motion
+from kin.made.recognised import recognised
 from kin.made.smooth import GapError
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
@@ -37,17 +40,22 @@ if TYPE_CHECKING:
     import collections.abc
     from collections.abc import Sequence
 
+    from camgeo.cams.family import ExactCam
+    from camgeo.motions.motion import ByMotion
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.change import Value
-    from kin.law.contacts import Contact, Guide, Side, Touch
-    from kin.made.recognised import PointMotion, Programme
-    from kin.numeric.arrays import Array
+    from camgeo.schema.yaml_source import Node
+    from kin.made.point_motion import PointMotion
+    from kin.made.recognised import Programme
+    from kin.numeric.arrays import Array, Indices
+    from kin.read.points import PointTable
 
 READING = 0.02  # mm within which dwells rest and laws fit, where the recipe gives no zone of its profile
 MOST_LEFT = 2.0  # readings that laws may leave: beyond, the motion is a table
 ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # what numbers are written to
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
-BASE, MOTION = "cam.base_radius", "cam.motion"
+NO_MOTION = "a recipe is made of points of a cam that is given by a motion: kind "
+BESIDE = 8  # points about one by their polar angle, among which the flanks of a groove are told apart
 
 
 class Started(NamedTuple):
@@ -60,12 +68,17 @@ class Started(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _MeasuredCam:
-    """What points say of a motion: base radius and its uncertainty (k = 2), mm, and strokes where there are such."""
+    """What points say of a motion: base radius and its uncertainty (k = 2), mm, and strokes where there are such.
+
+    `base` is None where other lengths fix the size, `wave` what the form that hides the most adds to it, of height 1.
+    """
 
     recipe: Recipe
+    keys: ByMotion
     motion: PointMotion
-    base: float
+    base: float | None
     unsure: float
+    wave: float
     reading: float
     programme: Programme | None
 
@@ -78,29 +91,34 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
     names = ", ".join(escaped(str(path)) for path in paths)
     rough = _placeholders(recipe, paths)
     try:
-        measured, source = _measured_cam(rough, recipe), Source.of(rough.text, str(recipe))
+        measured, source = _measured_cam(rough), Source.of(rough.text, str(recipe))
     except (GapError, UnsettledError, ContactError) as error:
         raise CallError(f"{names}: {error}") from error
     except IntentError as error:
         raise CallError(f"{names}: these points give the follower no motion: {error.message}") from error
-    base = _number(measured.base / measured.recipe.mm, measured.unsure / measured.recipe.mm)
-    made = _with(source, BASE, base)
+    keys, made, lines = measured.keys, source, [*rough.remarks]
+    if measured.base is not None:
+        mm, unit = measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
+        base = _number(measured.base / mm, measured.unsure / mm)
+        made = _with(made, f"cam.{keys.base}", base)
+        lines.append(
+            f"base radius {measured.base / mm:.6g} +- {measured.unsure / mm:.2g} {unit}; {base:.9g} is written"
+        )
     segments, why = None, "there are no strokes between dwells or turning points"
     if measured.programme is not None:
         segments, why = _segments(measured, measured.programme)
     beside: dict[str, str] = {}
-    unit = UNIT_NAMES[measured.recipe.units]
-    told = f"base radius {measured.base / measured.recipe.mm:.6g} +- {measured.unsure / measured.recipe.mm:.2g} {unit}"
-    lines = [*rough.remarks, f"{told}; {base:.9g} is written"]
     if segments is None or measured.programme is None:
         table = f"{Path(name).stem}-lift.csv"
         beside[table] = _lifts(measured)
-        made = _with(made, MOTION, {"table": table, "angle": "cam", "reading": _in_unit(measured, measured.reading)})
+        rows: Value = {"table": table, "angle": "cam", "reading": _in_unit(measured, measured.reading)}
+        made = _with_motion(made, keys, keys.motion, rows)
         reading = f"{_in_unit(measured, measured.reading):.3g} {_unit(measured)}"
-        lines.append(f"the motion is a table, {table}, within {reading}: {why}")
+        lines.append(f"the motion is a table, {table}, within {reading}: {why}; every deviation of form is part of it")
     else:
-        made = _with(made, MOTION, segments)
+        made = _with_motion(made, keys, keys.motion, segments)
         lines += _told(measured, measured.programme)
+    lines += _play(measured)
     lines += _verified(made.text, beside, name, paths)
     return Started(made.text, beside, tuple(lines))
 
@@ -109,64 +127,139 @@ def _with(source: Source, path: str, value: Value) -> Source:
     return Source.of(changed(source, path, value), source.file)
 
 
-class _Rough(NamedTuple):
-    """Text of a recipe with a base radius, mm, and a motion to begin with; the points, mm, their normals; remarks."""
+def _with_motion(source: Source, keys: ByMotion, key: str, value: Value) -> Source:
+    """Give a motion by a key, in the place of what stands for one."""
+    for other in {keys.motion, *keys.instead} - {key}:
+        if other in _cam_keys(source):
+            return Source.of(exchanged(source, f"cam.{other}", key, value), source.file)
+    return _with(source, f"cam.{key}", value)
 
+
+def _cam_keys(source: Source) -> collections.abc.Mapping[str, Node]:
+    cam = entries(source.root).get("cam") if isinstance(source.root, Mapping) else None
+    return entries(cam) if isinstance(cam, Mapping) else {}
+
+
+class _Rough(NamedTuple):
+    """Text of a recipe with a base radius, mm, and hardly any motion; how it has these; the points; remarks.
+
+    `points` are each surface's places (n, 2), mm, and their normals or None, by its name.
+    """
+
+    recipe: Recipe
     text: str
+    keys: ByMotion
     base: float
-    points: tuple[Array, Array | None]
+    points: collections.abc.Mapping[str, tuple[Array, Array | None]]
     remarks: list[str]
 
 
-def _placeholders(recipe: Path, paths: Sequence[Path]) -> _Rough:
+def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
     """Give the recipe what it need not say, by the size of the points."""
-    source = Source.of(recipe.read_text("utf-8"), str(recipe))
-    cam = entries(source.root).get("cam") if isinstance(source.root, Mapping) else None
-    given = entries(cam) if isinstance(cam, Mapping) else {}
-    for path, value in ((BASE, 40.0), (MOTION, _strokes(1.0))):
-        if path.partition(".")[2] not in given:
-            source = _with(source, path, value)
-    rough = load_text(source.text, recipe)
+    source = Source.of(path.read_text("utf-8"), str(path))
+    keys = _keys(source)
+    if keys.base:
+        source = _with(source, f"cam.{keys.base}", 40.0)
+    source = _with_motion(source, keys, *keys.still)
+    rough = load_text(source.text, path)
+    if rough.linkage is not None:
+        raise CallError(f"{escaped(str(path))}: a recipe is made of points of a cam without a linkage: leave it out")
     tables = tables_of(paths)
     if any(table.measured == "lift" for table in tables):
         raise CallError("lifts tell no base radius: a recipe is made of points x,y")
     scale, remarks = scale_of(rough, tables, None)
-    pieces = [places_of(table, scale, mirrored=rough.rotation == "ccw") for table in tables]
-    places = np.concatenate([piece[0] for piece in pieces])
+    exact = rough.cam.exact()
+    points = _by_surface(rough, exact, tables, paths, scale)
+    base = 0.0
+    if keys.base:
+        places, _ = points[exact.surfaces[0].name]
+        base = float(f"{np.hypot(places[:, 0], places[:, 1]).min() / rough.mm:.6g}")
+        source = _with(source, f"cam.{keys.base}", base)
+        rough = load_text(source.text, path)
+    return _Rough(rough, source.text, keys, base * rough.mm, points, remarks)
+
+
+def _keys(source: Source) -> ByMotion:
+    """Keys by which a recipe's kind of cam has its motion; raises CallError for a kind that has none."""
+    kind = _cam_keys(source).get("kind")
+    word = kind.text if isinstance(kind, Scalar) else ""
+    family = FAMILIES[word if word in FAMILIES else "disc"]  # of a faulty kind it is said as the recipe is read
+    if family.by_motion is None:
+        kinds = [name for name in FAMILIES if FAMILIES[name].by_motion is not None]
+        raise CallError(f"{escaped(source.file)}: {NO_MOTION}{', '.join(kinds)}; not {word}")
+    return family.by_motion
+
+
+def _by_surface(
+    recipe: Recipe, exact: ExactCam, tables: Sequence[PointTable], paths: Sequence[Path], scale: float
+) -> dict[str, tuple[Array, Array | None]]:
+    """Points of each surface, mm, and their normals; raises CallError where one has none."""
+    discs: dict[int, list[str]] = {}
+    for surface in exact.surfaces:
+        discs.setdefault(surface.disc, []).append(surface.name)
+    names = list(discs.values())
+    rows: dict[str, list[tuple[Array, Array | None]]] = {surface.name: [] for surface in exact.surfaces}
+    for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
+        for disc, own in by_disc(names, table, path, place):
+            places, normals = places_of(own, scale, mirrored=recipe.rotation == "ccw")
+            owner = _flanks(own, names[disc], places)
+            for rank, name in enumerate(names[disc]):
+                if (chosen := owner == rank).any():
+                    rows[name].append((places[chosen], None if normals is None else normals[chosen]))
+    demand_points([name for name in rows if not rows[name]])
+    return {name: _joined(pieces) for name, pieces in rows.items()}
+
+
+def _joined(pieces: Sequence[tuple[Array, Array | None]]) -> tuple[Array, Array | None]:
     normals = [piece[1] for piece in pieces if piece[1] is not None]
-    directions = np.concatenate(normals) if len(normals) == len(pieces) else None
-    base = float(f"{np.hypot(places[:, 0], places[:, 1]).min() / rough.mm:.6g}")
-    swing = 1.0 if rough.cam.arrangement.unit == "deg" else float(f"{0.01 * base:.3g}")
-    source = _with(_with(source, BASE, base), MOTION, _strokes(swing))
-    return _Rough(source.text, base * rough.mm, (places, directions), remarks)
+    joined = np.concatenate(normals) if len(normals) == len(pieces) else None
+    return np.concatenate([piece[0] for piece in pieces]), joined
 
 
-def _strokes(height: float) -> list[Value]:
-    """A motion that any follower makes, to begin with."""
-    return [{kind: height, "over": 180.0, "law": "cycloidal"} for kind in ("rise", "return")]
+def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
+    """Which of a disc's surfaces, from the shaft outwards, each point is on (n,): as it says, or by the gap between."""
+    if len(names) == 1:
+        return np.zeros(len(places), dtype=np.intp)
+    own = [label_of(name) for name in names]
+    labels = [label_of(label) for label in table.labels]
+    if labels and set(labels) <= set(own):
+        return np.array([own.index(label) for label in labels], dtype=np.intp)
+    radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
+    order = np.argsort(angle)
+    about = np.sort(np.stack([np.roll(radius[order], k) for k in range(-BESIDE, BESIDE + 1)]), axis=0)
+    gap = np.argmax(np.diff(about, axis=0), axis=0)
+    middle = 0.5 * (about[gap, np.arange(len(order))] + about[gap + 1, np.arange(len(order))])
+    owner = np.empty(len(places), dtype=np.intp)
+    owner[order] = radius[order] > middle
+    return owner
 
 
-def _measured_cam(rough: _Rough, path: Path) -> _MeasuredCam:
+def _measured_cam(rough: _Rough) -> _MeasuredCam:
     """Base radius, motion, and its programme if there is one."""
-    recipe = load_text(rough.text, path)
-    exact = recipe.cam.exact(framed=recipe.linkage is not None)
-    if len(exact.follower.contacts) != 1 or recipe.linkage is not None:
-        raise CallError(f"{escaped(str(path))}: a recipe is made of points of a cam with one contact, and no linkage")
-    contact: Contact[Guide, Touch] = exact.follower.contacts[0]
-    side: Side = exact.surfaces[0].side
-    motion = measured_motion(contact, side, (*rough.points, 0.0))
+    recipe, keys = rough.recipe, rough.keys
+    exact = recipe.cam.exact()
+    runs = [
+        SurfaceRun(exact.gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces
+    ]
+    motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed)
     made = recipe.of(Made)
     zone = None if made is None else made.profile
     reading = READING if zone is None else 0.5 * zone
     unit = motion.gauge.unit
     reading = motion.gauge.moved_by(reading) if unit == "deg" else reading
     programme = recognised(motion, reading, unit)
-    lowest, unsure = float(motion.position.min()), COVERAGE * motion.sd
+    lowest = float(motion.position.min() if motion.closed else motion.position[0])
+    unsure, wave = COVERAGE * motion.sd, 1.0
     if programme is not None:
-        at = int(np.argmin(programme.levels))
+        at = int(np.argmin(programme.levels)) if motion.closed else 0
         lowest, unsure = float(programme.levels[at]), float(programme.uncertainty[1][at])
-    circle, more = (motion.lifted_circle(level) for level in (lowest, lowest + unsure))
-    return _MeasuredCam(recipe, motion, rough.base + circle, abs(more - circle), reading, programme)
+        wave = float(programme.hidden.levels[at])
+    if not keys.base:
+        return _MeasuredCam(recipe, keys, motion, None, 0.0, 0.0, reading, programme)
+    circle, more, high = (motion.lifted_circle(level) for level in (lowest, lowest + unsure, lowest + wave * reading))
+    return _MeasuredCam(
+        recipe, keys, motion, rough.base + circle, abs(more - circle), abs(high - circle), reading, programme
+    )
 
 
 def _in_unit(measured: _MeasuredCam, value: float) -> float:
@@ -189,42 +282,52 @@ def _number(value: float, uncertainty: float) -> float:
 
 def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value] | None, str]:
     """Segments of the motion from angle 0 on, in the recipe's units and degrees; None with the reason why not."""
+    motion, whole = measured.motion, math.degrees(measured.motion.span)
     angles = [
-        _angle(float(k), float(off)) for k, off in zip(programme.boundaries, programme.uncertainty[0], strict=True)
+        _angle(measured, float(k), float(off))
+        for k, off in zip(programme.boundaries, programme.uncertainty[0], strict=True)
     ]
     order = sorted(programme.strokes, key=lambda stroke: angles[stroke.first])
     if any(0.0 < angles[stroke.last] < angles[stroke.first] for stroke in order):
         return None, "the turn begins within a stroke: turn the points so that it begins in a dwell"
     heights = _heights(measured, programme)
-    unit = math.radians(1.0) if measured.motion.gauge.unit == "deg" else measured.recipe.mm
-    levels = programme.levels.min() + unit * np.array(heights)
-    left = programme.written(measured.motion, np.radians(angles), levels).greatest
+    unit = math.radians(1.0) if motion.gauge.unit == "deg" else measured.recipe.mm
+    levels = _zero(measured, programme) + unit * np.array(heights)
+    left = programme.written(motion, np.radians(angles), levels).greatest
     if left > MOST_LEFT * measured.reading:
         return None, f"the laws that fit best leave {_in_unit(measured, left):.3g} {_unit(measured)}"
     segments: list[Value] = []
     at = 0.0
     for stroke in order:
-        begin, end = angles[stroke.first], angles[stroke.last] or 360.0
+        begin, end = angles[stroke.first], angles[stroke.last] or whole
         if begin > at:
             segments.append({"dwell": float(f"{begin - at:.9g}")})
         height = float(f"{heights[stroke.high] - heights[stroke.low]:.9g}")
         kind = "rise" if height > 0.0 else "return"
         segments.append({kind: abs(height), "over": float(f"{end - begin:.9g}"), "law": stroke.law})
         at = end
-    if at < 360.0:
-        segments.append({"dwell": float(f"{360.0 - at:.9g}")})
+    if at < whole:
+        segments.append({"dwell": float(f"{whole - at:.9g}")})
     return segments, ""
 
 
-def _angle(boundary: float, uncertainty: float) -> float:
-    """A boundary in degrees, from 0 to less than 360, as round as its uncertainty lets it be."""
+def _angle(measured: _MeasuredCam, boundary: float, uncertainty: float) -> float:
+    """A boundary in degrees, from 0 to less than the turn's part, as round as its uncertainty lets it be."""
+    motion = measured.motion
+    if not motion.closed and abs(math.degrees(boundary - motion.span)) <= AT_ZERO:
+        return math.degrees(motion.span)
     near = _number(math.degrees(math.remainder(boundary, 2.0 * math.pi)), math.degrees(uncertainty))
     return 0.0 if abs(near) <= AT_ZERO else near % 360.0
 
 
+def _zero(measured: _MeasuredCam, programme: Programme) -> float:
+    """Position at which a recipe's displacement is 0: the least over a turn, the first over a part of one."""
+    return float(programme.levels.min() if measured.motion.closed else programme.levels[0])
+
+
 def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
-    """Levels above the lowest, in the recipe's unit or degrees, as round as their uncertainties let them be."""
-    above = programme.levels - programme.levels.min()
+    """Levels from where displacements are 0, in the recipe's unit or degrees, as round as they are certain."""
+    above = programme.levels - _zero(measured, programme)
     pairs = zip(above.tolist(), programme.uncertainty[1].tolist(), strict=True)
     return [_number(_in_unit(measured, height), _in_unit(measured, unsure)) for height, unsure in pairs]
 
@@ -232,7 +335,9 @@ def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
 def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
     """What was recognised of each stroke, and how sure that is."""
     unsure, lines = programme.uncertainty[0], []
-    order = sorted(programme.strokes, key=lambda one: _angle(programme.boundaries[one.first], unsure[one.first]))
+    order = sorted(
+        programme.strokes, key=lambda one: _angle(measured, programme.boundaries[one.first], unsure[one.first])
+    )
     for number, stroke in enumerate(order, start=1):
         begin, end = (math.degrees(programme.boundaries[k]) for k in (stroke.first, stroke.last))
         begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
@@ -248,15 +353,45 @@ def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
             f"from {begin:.5g} to {end:.5g} +- {widest:.2g} degrees; {law}"
         )
     lines.append(f"the motion is within {_in_unit(measured, programme.greatest):.3g} {_unit(measured)} of the points'")
-    return lines
+    return [*lines, _hidden(measured, programme)]
+
+
+def _hidden(measured: _MeasuredCam, programme: Programme) -> str:
+    """What of the part's form cannot be told from its motion."""
+    waves, share, boundaries, levels = programme.hidden
+    high, unit = _in_unit(measured, measured.reading), _unit(measured)
+    moved = [f"heights by {levels.max() * high:.2g} {unit}"]
+    moved.append(f"ends of strokes by {math.degrees(boundaries.max() * measured.reading):.2g} degrees")
+    all_round = ""
+    if measured.base is not None:
+        length, name = measured.wave / measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
+        moved.insert(0, f"the base radius by {length:.2g} {name}")
+        all_round = "a deviation that is the same all round is all taken for base radius; "
+    form = f"a form of {waves} wave{'s' * (waves > 1)} a turn, {high:.3g} {unit} high"
+    taken = f"is taken for motion by {100.0 * share:.0f} % and moves {', '.join(moved)}"
+    return f"what points cannot tell apart: {all_round}{form}, {taken}"
+
+
+def _play(measured: _MeasuredCam) -> list[str]:
+    """What both contacts of a follower leave beside what the recipe says."""
+    if measured.motion.play is None:
+        return []
+    least, mean, most = (_in_unit(measured, value) for value in measured.motion.play)
+    unit = _unit(measured)
+    if measured.keys.opposed:
+        return [f"between the contacts the part is {-most:+.2g} to {-least:+.2g} {unit} off a constant distance"]
+    return [f"the contacts have {mean:+.3g} {unit} more play than the recipe says, from {least:+.2g} to {most:+.2g}"]
 
 
 def _lifts(measured: _MeasuredCam) -> str:
-    """Lifts over the shaft angle, a row each half degree and one for the whole turn."""
+    """Lifts over the shaft angle, a row about each half degree, and the end of the turn or of the part of it."""
     motion = measured.motion
-    step = len(motion.position) // 720
-    lift = [_in_unit(measured, float(value)) for value in (motion.position - motion.position.min())[::step]]
-    rows = [f"{0.5 * k:.12g},{value:.9f}\n" for k, value in enumerate([*lift, lift[0]])]
+    span = math.degrees(motion.span)
+    step = max(int(0.5 * len(motion.position) / span), 1)
+    zero = float(motion.position.min() if motion.closed else motion.position[0])
+    lift = [_in_unit(measured, float(value) - zero) for value in (*motion.position[::step], motion.last)]
+    angles = [*np.degrees(motion.shaft[::step]).tolist(), span]
+    rows = [f"{angle:.12g},{value:.9f}\n" for angle, value in zip(angles, lift, strict=True)]
     return "".join(["angle,lift\n", *rows])
 
 

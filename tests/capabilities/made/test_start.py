@@ -6,10 +6,11 @@ import re
 
 import numpy as np
 import pytest
-from support.measured import RECIPES, bump, disc, nothing, points, surfaces, table
+from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table
 
 import camgeo
 from camgeo.cli.main import main
+from kin.law.sources.laws import NAMES
 
 KINDS = [
     "roller on a stem",
@@ -24,9 +25,50 @@ KINDS = [
 ]
 
 
+def framed(kind, more=""):
+    motion = "[{rise: 8, over: 120, law: cycloidal}, {dwell: 60}]"
+    cam = f"kind: {kind}, base_radius: 40, {more}motion: {motion}"
+    return f"part: {{bore: 12}}\nverify: {{angles: 360}}\ncam: {{{cam}}}"
+
+
+def two_rollers(ratio, arm, law):
+    cam = f"kind: double-roller, ratio: {ratio}, arm: {arm}, roller_radius: 8, law: {law}"
+    return f"part: {{bore: 12}}\nverify: {{angles: 360}}\ncam: {{{cam}}}"
+
+
+BELL_CRANK = "conjugate: {radius: 12, length: 70, angle: 70}, "
+TWO_CONTACTS = {
+    "groove": RECIPES["groove"],
+    "groove on an arm": disc(f"kind: roller, radius: 10, {ARM}", SWING, "track: {groove: {clearance: 0.03}}, "),
+    "conjugate rollers": RECIPES["conjugate discs"],
+    "conjugate faces": disc("kind: flat", MOTION, "conjugate: {distance: 100}, "),
+    "bell crank": disc(f"kind: roller, radius: 10, {ARM}", SWING, BELL_CRANK),
+    "yoke": framed("constant-breadth"),
+    "roller yoke": framed("constant-diameter", "roller_radius: 10, "),
+    "double roller": two_rollers(
+        2, 40, "[{rise: 8, over: 35, law: cycloidal}, {dwell: 15}, {return: 8, over: 40, law: cycloidal}]"
+    ),
+    "double roller of ratio 3": two_rollers(
+        3, 60, "[{rise: 4, over: 25, law: cycloidal}, {dwell: 10}, {return: 4, over: 25, law: cycloidal}]"
+    ),
+}
+
+
 def bare(text):
     """A recipe that says neither base radius nor motion."""
-    return re.sub(r", motion: \[.*\]", "", text.replace("base_radius: 40, ", ""))
+    return re.sub(r", (motion|law): \[.*\]", "", text.replace("base_radius: 40, ", ""))
+
+
+def new_from(folder, files):
+    words = [word for file in files for word in ("--from", str(file))]
+    return main(["new", *words, str(folder / "bare.yaml"), str(folder / "new.yaml")])
+
+
+def start_all(folder, text, deviation=nothing, noise=0.0005, count=720):
+    """Measure all surfaces of a recipe, the first with a deviation, and make a recipe of the points."""
+    _, files = measured(folder, text, deviation, noise, count)
+    (folder / "bare.yaml").write_text(bare(text), "utf-8")
+    return new_from(folder, files)
 
 
 def start(folder, text, deviation=nothing, noise=0.0005, recipe=None):
@@ -53,6 +95,75 @@ def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
     assert surface.gauge.envelope.points(t) == pytest.approx(meant.gauge.envelope.points(t), abs=0.002)
     assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
     assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.007
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("kind", TWO_CONTACTS)
+def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, capsys):
+    text = TWO_CONTACTS[kind]
+    assert start_all(tmp_path, text) == 0
+    lines = capsys.readouterr().out
+    assert "verified against the points: profile 0.00" in lines
+    new = (tmp_path / "new.yaml").read_text("utf-8")
+    assert new.count("law: cycloidal") == text.count("law: cycloidal")
+    if "base_radius" in text:
+        (base,) = re.findall(r"base_radius: ([0-9.]+)", new)
+        assert float(base) == pytest.approx(40.0, abs=0.001)
+    t = np.linspace(0.0, 2.0 * np.pi, 500)
+    for (_, _, meant), (_, _, surface) in zip(surfaces(text), surfaces(new), strict=True):
+        assert surface.gauge.envelope.points(t) == pytest.approx(meant.gauge.envelope.points(t), abs=0.002)
+    assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["groove", "conjugate rollers", "yoke", "roller yoke", "double roller"])
+@pytest.mark.parametrize("law", sorted(set(NAMES) - {"constant-velocity"}))  # of which alone no motion is made
+def test_each_law_of_two_contacts_is_told(kind, law, tmp_path):
+    text = TWO_CONTACTS[kind].replace("cycloidal", law)
+    assert start_all(tmp_path, text) == 0
+    new = (tmp_path / "new.yaml").read_text("utf-8")
+    assert new.count(f"law: {law}") == text.count(f"law: {law}")
+
+
+def test_play_is_told_and_halved_between_both_sides(tmp_path, capsys):
+    """Both discs 0.01 mm too small: the motion is the one midway, and the contacts have 0.02 mm of play."""
+    text = RECIPES["conjugate discs"]
+    files = []
+    for number, (_, part, surface) in enumerate(surfaces(text), start=1):
+        files.append(tmp_path / f"points-{number}.csv")
+        files[-1].write_text(table(points(part, surface, lambda t: np.full_like(t, -0.01))), "utf-8")
+    (tmp_path / "bare.yaml").write_text(bare(text), "utf-8")
+    assert new_from(tmp_path, files) == 0
+    assert "base_radius: 40," in (tmp_path / "new.yaml").read_text("utf-8")
+    assert "the contacts have +0.02 mm more play than the recipe says, from +0.02 to +0.02" in capsys.readouterr().out
+
+
+def test_the_breadth_of_a_yoke_is_that_of_its_points(tmp_path, capsys):
+    """A cam 0.03 mm too large all round has a larger base circle; a bump on one side shows in the breadth."""
+    text = TWO_CONTACTS["yoke"]
+    assert start_all(tmp_path, text, lambda t: 0.03 + bump(0.01, 10.0)(t), noise=0.0) == 0
+    told = capsys.readouterr().out
+    (base,) = re.findall(r"base radius ([0-9.]+) ", told)
+    assert float(base) == pytest.approx(40.03, abs=0.003)
+    assert re.search(r"the part is -0\.001\d* to \+0\.008\d* mm off a constant distance", told)
+
+
+def test_a_long_wave_moves_what_is_found_as_far_as_is_told(tmp_path, capsys):
+    """A cosine of one wave a turn, 0.02 mm high, is eccentricity as much as motion."""
+    text = RECIPES["roller on a stem"]
+    moves = []
+    for phase in np.radians([0.0, 60.0, 120.0]):
+        folder = tmp_path / f"{phase:.2f}"
+        folder.mkdir()
+        assert start(folder, text, lambda t, phase=phase: 0.02 * np.cos(t - phase)) == 0
+        told = capsys.readouterr().out
+        (base,) = re.findall(r"base radius ([0-9.]+) ", told)
+        wave = "a form of 1 wave a turn, 0.02 mm high, is taken for motion by "
+        ((share, most),) = re.findall(rf"{wave}(\d+) % and moves the base radius by ([0-9.]+)", told)
+        moves.append(abs(float(base) - 40.0))
+        assert int(share) >= 95
+        assert moves[-1] <= 1.1 * float(most)
+    assert max(moves) > 0.8 * float(most)
 
 
 def test_round_numbers_are_written_where_the_points_let_them_be(tmp_path):
@@ -130,8 +241,18 @@ def test_laws_that_fit_alike_are_named(tmp_path, capsys):
 
 
 BAD = {
-    "a yoke": (RECIPES["yoke"], None, "cam.base_radius: unknown key; it belongs under cam of kind "),
-    "a groove": (RECIPES["groove"], None, "a recipe is made of points of a cam with one contact"),
+    "a support function": (
+        RECIPES["yoke"],
+        None,
+        "given by a motion: kind constant-breadth, constant-diameter, disc, double-roller; not support",
+    ),
+    "a linkage": (
+        framed("constant-breadth") + "\nlinkage: {kind: inverted-slider-crank, ground: 90, rocker: 0}",
+        None,
+        "of a cam without a linkage",
+    ),
+    "one of two discs": (RECIPES["conjugate discs"], None, "points of disc 2 are missing: give a file for each disc"),
+    "an unknown kind": (bare(RECIPES["flat"]).replace("kind: disc", "kind: dics"), None, "cam.kind: "),
     "lifts": (
         bare(RECIPES["flat"]),
         "angle,lift\n" + "\n".join(f"{k},{k % 7}" for k in range(360)),

@@ -1,0 +1,174 @@
+"""The motion that the metal of points gives a follower, of which nothing is known but its contacts.
+
+Each contact runs on its own surface, against a follower that is meant to hardly move. Where two hold the follower the
+motion is the one midway, and what they leave is play. What a cam's symmetry says of the rest of the turn is used:
+two opposite contacts of a frame, S(phi + pi) = S(0) + S(pi) - S(phi) (Shu and Wu 2012); two rollers on one arm, psi
+changes its sign as phi - psi/2 grows by pi/lambda (Wunderlich 1984, 4.9). So all round the turn tells of the part of it
+by which a recipe gives the motion, and what keeps from that symmetry is form.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.made.metal import Metal
+from kin.made.motion import contact_errors
+from kin.made.points import SurfacePoints
+from kin.made.smooth import fit
+from kin.numeric.angles import TURN
+from kin.numeric.feet import equal_steps
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.follower.base import Follower
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array
+
+STEPS = 1440  # shaft angles of a turn
+SECANT_STEPS = 20
+ROUNDING = 1e-11  # mm or rad of a position
+BESIDE = 0.1  # of a section, by which it is looked at beyond its ends
+FINER = 8  # times STEPS, at which rows are interpolated
+
+
+class SurfaceRun(NamedTuple):
+    """A follower that hardly moves, the side of its contour on which the metal lies, and points of that (n, 2), mm.
+
+    `directions` are normals as measured (n, 2), None without.
+    """
+
+    gauge: Follower
+    side: Side
+    places: Array
+    directions: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class PointMotion:
+    """The motion that the metal of points gives a follower; mm or rad, angles rad.
+
+    gauge         the follower on the first surface, meant to hardly move, on a circle
+    side          of its contour on which the metal lies
+    turn (n,)     where it stands, from its zero, over equal shaft angles of a turn
+    position (k,) the same over equal shaft angles of the span by which a recipe gives it
+    span          of that, from angle 0 on
+    last          position at its end
+    spans         of the smoothed points in it
+    sd            standard deviation of the position, greatest over the turn
+    outliers      points that were left out
+    play          least, mean and greatest play that two contacts leave beyond the recipe's; None of one
+    zero_ends     whether a part of a turn begins and ends at 0
+    """
+
+    gauge: Follower
+    side: Side
+    turn: Array
+    position: Array
+    span: float
+    last: float
+    spans: int
+    sd: float
+    outliers: int
+    play: tuple[float, float, float] | None = None
+    zero_ends: bool = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is that of a whole turn."""
+        return self.span == TURN
+
+    @property
+    def shaft(self) -> Array:
+        """Shaft angles (k,)."""
+        shaft: Array = self.span / len(self.position) * np.arange(len(self.position), dtype=np.float64)
+        return shaft
+
+    def alike(self, most: int) -> tuple[int, ...]:
+        """Waves a turn, up to `most` or the least that there is, that a motion may have as well as a form."""
+        if self.closed:
+            return tuple(range(1, most + 1))
+        first = round(0.5 * TURN / self.span)
+        return tuple(k for k in (first, 3 * first) if k <= max(most, first))
+
+    def lifted_circle(self, level: float) -> float:
+        """How much larger than the gauge's circle one is, mm, on which it stands at a level."""
+
+        def stands(height: float) -> float:
+            metal = Metal.of(self.gauge, self.side, lambda t: np.stack([np.full_like(t, height), np.zeros_like(t)]))
+            return float(metal.positions(np.zeros(1))[0][0, 0] - self.gauge.intended(np.zeros(1))[0]) - level
+
+        before, here = 0.0, 0.1 * self.side
+        low, off = stands(before), stands(here)
+        for _ in range(SECANT_STEPS):
+            if abs(off) < ROUNDING or off == low:
+                break
+            before, here, low = here, here - off * (here - before) / (off - low), off
+            off = stands(here)
+        return self.side * here
+
+
+def measured_motion(
+    runs: Sequence[SurfaceRun],
+    span: float = TURN,
+    *,
+    opposed: bool = False,
+    spans: int | None = None,
+) -> PointMotion:
+    """Let a follower run on the metal of each of its surfaces, and give its motion over a span from angle 0.
+
+    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by.
+
+    Raises ContactError where a contact finds no metal, GapError for a gap, ValueError as `fit` does.
+    """
+    shaft = equal_steps(STEPS)
+    curves, outliers = [], 0
+    each: list[tuple[int, Array, Array]] = []  # sense, position, standard deviation
+    for gauge, side, places, directions in runs:
+        deviations = SurfacePoints(gauge, side, places, 0.0, directions).deviations
+        smooth = fit(deviations.parameter, deviations.e, spans)
+        still = gauge.intended(shaft) - gauge.intended(np.zeros(1))
+        for contact, errors in zip(gauge.contacts, contact_errors(gauge, side, smooth.curve, shaft), strict=True):
+            each.append((contact.sense, errors.rows[0] + still, errors.sds[0]))
+        curves.append(smooth.curve)
+        outliers += int(smooth.outliers.sum())
+    turn = np.mean([position for _, position, _ in each], axis=0)
+    sd = float(np.sqrt(sum(own**2 for _, _, own in each)).max()) / len(each)
+    play = None
+    if len(each) > 1:
+        gap = -np.sum([sense * position for sense, position, _ in each], axis=0)
+        play = (float(gap.min()), float(gap.mean()), float(gap.max()))
+        if opposed:
+            turn = turn - 0.5 * play[1]
+            play = (play[0] - play[1], 0.0, play[2] - play[1])
+    sections = span != TURN and not opposed
+    if sections:
+        position, last = _sections(turn, span), 0.0
+    else:
+        count = round(len(turn) * span / TURN)
+        position, last = turn[:count], float(turn[count % len(turn)])
+    own = max(round(min(curve.spans for curve in curves) * span / TURN), 1)
+    return PointMotion(runs[0].gauge, runs[0].side, turn, position, span, last, own, sd, outliers, play, sections)
+
+
+def _sections(psi: Array, span: float) -> Array:
+    """Swing over equal shaft angles of the first of equal sections, as all of them tell it; see the module."""
+    phi = equal_steps(FINER * len(psi))
+    fine = _finer(psi)
+    count = round(TURN / span)
+    lead = phi - 0.5 * fine
+    u = np.linspace(-BESIDE * span, (1.0 + BESIDE) * span, len(phi) // count)
+    mean = sum((-1) ** k * np.interp(u + k * span, lead, fine, period=TURN) for k in range(count)) / count
+    shaft = span / (len(psi) // 2) * np.arange(len(psi) // 2)
+    swing: Array = np.interp(shaft, u + 0.5 * mean, mean)
+    return swing
+
+
+def _finer(rows: Array) -> Array:
+    """Values of a period at FINER times as many places, by its harmonics."""
+    n = len(rows)
+    waves = np.fft.rfft(rows)
+    return np.fft.irfft(waves, FINER * n) * FINER
