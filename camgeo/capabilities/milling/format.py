@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.milling.keys import check_milling, check_slight
+from camgeo.capabilities.milling.keys import check_hub, check_milling, check_slight
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Table
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 def _check(file: Values, values: Values, reader: Reader) -> None:
     check_slight(values, reader)
+    check_hub(values, reader)
     check_milling(file["path"], reader)
 
 

@@ -42,3 +42,14 @@ def check_slight(values: Values, reader: Reader) -> None:
             if value is not None and value < least * mm:
                 remedy = f"give at least {least:.6g} {unit}"
                 reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
+
+
+def check_hub(values: Values, reader: Reader) -> None:
+    """Note a safe height at which rapid moves would run into a hub on the upper side."""
+    hub, safe = values.get("part", {}).get("hub", {}), values.get("manufacture", {}).get("safe_height")
+    height = hub.get("height")
+    if height is None or safe is None or hub.get("side") == "bottom" or safe > height:
+        return
+    remedy = f"give more than {height / reader.mm:.6g} {reader.units}"
+    given = f"{safe / reader.mm:.6g} {reader.units}"
+    reader.fault_at("manufacture.safe_height", "not above the hub's top", given, remedy)

@@ -32,18 +32,6 @@ def pocket_of(design: Design) -> float | None:
     return next((disc.body.pocket for disc in design.discs if disc.body is not None), None)
 
 
-def clear_of_hub(recipe: Recipe) -> None:
-    """Raise RecipeErrors where rapid moves at the safe height would run into a hub on the upper side."""
-    hub, asked = recipe.part.hub, recipe.manufacture
-    if hub is None or hub.side == "bottom" or asked is None or asked.safe_height is None:
-        return
-    if asked.safe_height <= hub.height:
-        mm, unit = recipe.mm, recipe.units
-        given = f"{asked.safe_height / mm:.6g} {unit}"
-        what, remedy = "not above the hub's top", f"give more than {hub.height / mm:.6g} {unit}"
-        raise recipe.error("manufacture.safe_height", what, given, remedy)
-
-
 def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
     """Raise RecipeErrors for a depth of cut so slight that a program of so many paths would not come to an end."""
     asked = recipe.manufacture

@@ -7,7 +7,7 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.milling.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.capabilities.milling.milling import clear_of_hub, few_passes, milled_holes, pocket_of, unmilled
+from camgeo.capabilities.milling.milling import few_passes, milled_holes, pocket_of, unmilled
 from camgeo.capabilities.milling.toolpath import (
     begun_at,
     bend_at_begin,
@@ -51,7 +51,6 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     recipe, asked = job.recipe, job.recipe.manufacture
     if asked is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
-    clear_of_hub(recipe)
     few_passes(recipe, recipe.part.thickness)
     with job.refusals(request), job.clock.stage("cutter path"):
         checks = tuple(about(check, path.name) for check, _ in reach_checks(recipe, job.design))
