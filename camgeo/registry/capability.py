@@ -67,6 +67,36 @@ class Moved(Protocol):
         """Lift of the follower at which it is at a lift."""
 
 
+class MadeMotion(NamedTuple):
+    """The motion of a follower on a made part, beside the intended one: shaft angles (n,), rad; mm or rad.
+
+    `errors` are what position, velocity and acceleration, by the shaft angle, are off (3, n), without the offset that
+    is set on assembly; nan where acceleration jumps. `sds` are their standard deviations (3, n).
+    """
+
+    shaft: Array
+    errors: Array
+    sds: Array
+
+
+class MadeFigure(NamedTuple):
+    """A figure of a made motion: as intended and as made, its expanded uncertainty (k = 2), and where, degrees."""
+
+    name: str
+    unit: str
+    intended: float
+    made: float
+    uncertainty: float
+    at_deg: float
+
+
+class MadeFigures(NamedTuple):
+    """What a capability says of a made motion: figures, and sentences on what it does not find."""
+
+    figures: Sequence[MadeFigure] = ()
+    remarks: Sequence[str] = ()
+
+
 class SampledCams(Protocol):
     """Cams of m designs, each sampled at n places, of which a sweep estimates figures (m,) in mm and degrees."""
 
@@ -230,6 +260,11 @@ def nothing_moved(_recipe: Recipe, _design: Design, /) -> Moved | None:
     return None
 
 
+def no_made_figures(_recipe: Recipe, _design: Design, _motion: MadeMotion, /) -> MadeFigures:
+    """Say nothing of a made motion."""
+    return MadeFigures()
+
+
 def no_remedy(_recipe: Recipe, _figure: str, _value: float, _bound: float, /) -> str:
     """Know no remedy."""
     return ""
@@ -286,6 +321,7 @@ class Capability:
     measure   figures `of` the design: (recipe, design, names, speeds of limits, turns a minute, by figure)
     measure_at figures that have a lift: (recipe, design, name, lift in mm)
     moved     what the follower moves besides itself, of which events may be told; None for nothing
+    on_metal  figures of the motion that a made part gives: (recipe, design, motion); raises RecipeErrors
     estimates figures of many cams at once for a sweep, by name
     checks    declarations of all its checks; every check that it makes is one of them
     exact     checks that need no file: (recipe, exact cam, each surface with its contour)
@@ -318,6 +354,7 @@ class Capability:
     measure: Callable[[Recipe, Design, Sequence[str], Mapping[str, float]], Mapping[str, Measured]] = no_figures
     measure_at: Callable[[Recipe, Design, str, float], Measured] = no_figure_at
     moved: Callable[[Recipe, Design], Moved | None] = nothing_moved
+    on_metal: Callable[[Recipe, Design, MadeMotion], MadeFigures] = no_made_figures
     estimates: Callable[[], Mapping[str, Estimate]] = no_estimates
     checks: Callable[[], Sequence[Declared]] = no_declarations
     exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = no_exact_checks

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.measures.measured import Measured
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import Estimate, Results
+    from camgeo.registry.capability import Estimate, MadeFigures, MadeMotion, Results
     from camgeo.registry.formats import Form
     from camgeo.report.page.curves import Plot
     from camgeo.synthesis.design import Design
@@ -38,6 +38,12 @@ def _measure(
     from camgeo.capabilities.dynamics.measure import measure
 
     return measure(recipe, design, names, speeds)
+
+
+def _on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> MadeFigures:
+    from camgeo.capabilities.dynamics.on_metal import figures_on_metal
+
+    return figures_on_metal(recipe, design, motion)
 
 
 def _estimates() -> Mapping[str, Estimate]:
@@ -101,6 +107,7 @@ CAPABILITY = Capability(
     speed=_speed,
     figures=FIGURES,
     measure=_measure,
+    on_metal=_on_metal,
     estimates=_estimates,
     checks=_checks,
     exact=_exact,

@@ -69,7 +69,10 @@ class FollowerRunning(Running):
 
     def at(self, t: Array) -> State:
         """All of it at shaft angles (n,)."""
-        rows = self.turn.rows(t)
+        return self.in_motion(t, self.turn.rows(t))
+
+    def in_motion(self, t: Array, rows: Array) -> State:
+        """All of it at shaft angles (n,) where position and two derivatives are these, mm or rad (3, n)."""
         lines = self.turn.lines(rows)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
@@ -262,6 +265,11 @@ def running_of(recipe: Recipe, design: Design) -> Running | None:
         return None
     if design.driven is not None:
         return frame_running(recipe, design, design.driven, train)
+    return follower_running(recipe, design, train)
+
+
+def follower_running(recipe: Recipe, design: Design, train: Dynamics) -> FollowerRunning:
+    """Forces of a follower without a linkage; raises RecipeErrors for one contact that nothing holds on the cam."""
     held = train.preload is not None or train.least_force is not None
     if not held and len(design.follower.contacts) == 1:
         why = f"a single {design.follower.name} is held on the cam by a spring"

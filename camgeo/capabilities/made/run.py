@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.made.judge import checks_of, made_part
 from camgeo.capabilities.made.reading import Call
 from camgeo.capabilities.made.refusal import as_call_errors
-from camgeo.capabilities.made.section import section
+from camgeo.capabilities.made.section import add_figures, section
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.registry.capability import Results
@@ -35,6 +35,7 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
         result = made_part(recipe, design, paths, call)
     checks, verdicts = checks_of(recipe, result, call)
     report = section(recipe, paths, result, call, verdicts)
+    add_figures(report, recipe, design, result)
     if call.out is not None:
         from camgeo.capabilities.made.output import write  # most calls write nothing
 
@@ -56,6 +57,7 @@ def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock:
         own, verdicts = checks_of(one.points.cam.recipe, one.result, call)
         checks += [replace(check, surface=one.points.cam.name) for check in own]
         entries.append(section(one.points.cam.recipe, one.points.paths, one.result, call, verdicts))
+        add_figures(entries[-1], one.points.cam.recipe, one.points.cam.design, one.result)
     report = shaft_section(recipe, paths, result, entries)
     if call.out is not None:
         from camgeo.capabilities.made.shaft_output import write_shaft

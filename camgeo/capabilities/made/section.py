@@ -11,6 +11,8 @@ from camgeo.capabilities.made.judge import motion_uncertainty, systematic
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import name_of
 from camgeo.measures.units import UNIT_NAMES
+from camgeo.registry import registry
+from camgeo.registry.capability import MadeMotion
 from kin.made.causes import causes
 from kin.made.motion import COVERAGE, least_fault
 from kin.numeric.angles import degrees
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.judge import DiscMade, PartMade, SurfaceMade
     from camgeo.capabilities.made.reading import Call
     from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
     from kin.made.points import Placing
     from kin.numeric.arrays import Array
 
@@ -67,6 +70,17 @@ def section(
         entry["lifts"] = {"zero": scale * result.lifts[0], "turned_deg": math.degrees(result.lifts[1])}
     entry["remarks"] = list(result.remarks)
     return entry
+
+
+def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: PartMade) -> None:
+    """Add to a section what other capabilities make of the part's motion; raises RecipeErrors as they do."""
+    errors = result.motion
+    rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
+    motion = MadeMotion(errors.shaft, rows, errors.sds)
+    made = [capability.on_metal(recipe, design, motion) for capability in registry.in_order(recipe.uses)]
+    if figures := [figure._asdict() for one in made for figure in one.figures]:
+        entry["figures"] = figures
+    entry["remarks"] += [remark for one in made for remark in one.remarks]
 
 
 def scale_of(recipe: Recipe, result: PartMade) -> tuple[float, str]:

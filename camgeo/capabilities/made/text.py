@@ -82,6 +82,11 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
     )
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
+    for figure in section.get("figures", ()):
+        told = (
+            f"{figure['made']:.4g} +- {figure['uncertainty']:.2g}, intended {figure['intended']:.4g} {figure['unit']}"
+        )
+        rows.append((f"  {figure['name']}", f"{told}, at {figure['at_deg']:.2f} degrees"))
     if "play" in section:
         play = section["play"]
         least, most = (f"{play[key]:+.4g} at {play[f'{key}_at_deg']:.2f}" for key in ("least", "most"))
