@@ -155,6 +155,7 @@ class ShaftCam(NamedTuple):
     at         angle by which its metal is turned, counter-clockwise as drawn for `cw`
     zero       shaft angle at which its motion begins
     low, high  its ends along the shaft
+    events     lift of its follower, mm, at which events are told; None where none are
     """
 
     name: str
@@ -164,6 +165,7 @@ class ShaftCam(NamedTuple):
     zero: float
     low: float
     high: float
+    events: float | None
 
 
 class FileJudge(NamedTuple):

@@ -52,12 +52,12 @@ class Influence(NamedTuple):
     """What adds to a weighted sum of a motion's errors, in its unit.
 
     sd            standard deviation by the noise of the points
-    raised        what a mm more of metal all round adds
+    worst         what a mm of metal adds, of either sign at every place, where it adds the most
     shifted (2,)  what a mm of shift of the metal adds, along x and y
     """
 
     sd: float
-    raised: float
+    worst: float
     shifted: Array
 
 
@@ -111,7 +111,7 @@ class Errors:
         each = [(one, weights * one.gain) for one in self.felt]
         sd = math.sqrt(sum(one.curve.deviation_of_sum(one.places, share) ** 2 for one, share in each))
         shifted: Array = np.sum([share @ one.normals for one, share in each], axis=0)
-        return Influence(sd, float(sum(share.sum() for _, share in each)), shifted)
+        return Influence(sd, float(sum(np.abs(share).sum() for _, share in each)), shifted)
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
         """Expanded uncertainty of the error (n,), k = 2; `systematic` is that of the metal, k = 2, mm, (n,) or one."""

@@ -143,7 +143,10 @@ def _mark(lines: Sequence[str]) -> str:
     if all(re.search(r",\s", line) for line in lines):
         return ","
     blanks = sum(bool(re.search(r"\S\s+\S", line)) for line in lines)
-    return " " if blanks * 2 > len(lines) else ","
+    if blanks * 2 <= len(lines):
+        return ","
+    by_blanks, by_commas = (sum(_numbers(_cells(line, mark)) for line in lines) for mark in (" ", ","))
+    return " " if by_blanks >= by_commas else ","  # names beside numbers may have blanks in them
 
 
 def _cells(line: str, mark: str) -> list[str]:

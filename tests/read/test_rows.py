@@ -39,6 +39,13 @@ def test_a_label_before_numbers_is_no_heading_and_a_word_among_the_rows_is_told(
     assert caught.value.line == 3
 
 
+def test_names_with_blanks_beside_numbers_part_no_columns():
+    rows = read_rows("lobe,x,y\ncylinder 1 intake,1.5,2\ncylinder 2 intake,3,4\n")
+    assert rows.values([1, 2]).tolist() == [[1.5, 2.0], [3.0, 4.0]]
+    assert rows.texts(0) == ["cylinder 1 intake", "cylinder 2 intake"]
+    assert read_rows("x y z\n1,5 2,5 3,5\n").values([0, 2]).tolist() == [[1.5, 3.5]]
+
+
 def test_an_empty_cell_is_nan_where_it_may_be():
     rows = read_rows("a,b\n0,\n1,2\n")
     assert np.isnan(rows.values([0, 1], blanks=True)).tolist() == [[False, True], [False, False]]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.camshaft.keys import CamshaftRecipe
 from camgeo.capabilities.camshaft.lobes import placed
 from camgeo.common.clock import Clock
 from camgeo.recipe.loading import load_order
@@ -79,10 +80,11 @@ def shaft_points(
 ) -> list[tuple[str, float, float, float]]:
     """Rows of lobe, z, x and y, mm, as the shaft is drawn; all is late by `late` degrees."""
     order = load_order(recipe)
+    assert isinstance(order, CamshaftRecipe)
     rng, rows = np.random.default_rng(1), []
     mirrored = -1.0 if order.rotation == "ccw" else 1.0
     for lobe in placed(order, Clock()):
-        cam = lobe.on_shaft
+        cam = lobe.on_shaft(order.engine)
         fault = (planted or {}).get(cam.name, Planted())
         (surface,) = intended(cam.recipe, cam.design).surfaces
         t = np.arange(count) * (2.0 * np.pi / count)

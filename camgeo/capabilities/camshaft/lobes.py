@@ -51,11 +51,12 @@ class PlacedLobe:
         """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k."""
         return self.at - self.lobe.direction
 
-    @property
-    def on_shaft(self) -> ShaftCam:
+    def on_shaft(self, engine: Engine | None) -> ShaftCam:
         """The lobe as capabilities that judge files are given it."""
         lobe = self.lobe
-        return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high)
+        told = engine is not None and lobe.recipe.cam.arrangement.unit == "mm"
+        events = self.event_lift(engine) if told and engine is not None else None
+        return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high, events)
 
     @property
     def contour(self) -> Curve | None:

@@ -125,7 +125,8 @@ def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, An
     clock = Clock()
     lobes = placed(recipe, clock)
     with clock.stage(name):
-        results = registry.judges()[name].judge_shaft(recipe, [lobe.on_shaft for lobe in lobes], call, clock)
+        cams = [lobe.on_shaft(recipe.engine) for lobe in lobes]
+        results = registry.judges()[name].judge_shaft(recipe, cams, call, clock)
     findings = _findings(recipe, lobes, [*lobe_checks(recipe, lobes), *results.checks], [], clock)
     return _report(recipe, replace(findings, sections=results.sections), lobes)
 

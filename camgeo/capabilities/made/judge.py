@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
+    from kin.made.motion import Influence
     from kin.made.points import Datum, Placing, Profile
     from kin.numeric.arrays import Array
 
@@ -157,6 +158,13 @@ def _output(parts: Sequence[PartIntent], discs: Sequence[DiscMade]) -> OutputErr
 def systematic(call: Call) -> float:
     """Expanded uncertainty of the metal that does not average out, mm: of the probe and of the axes' shift."""
     return math.hypot(call.error or 0.0, 0.0 if call.axes is None else call.axes[0])
+
+
+def expanded(call: Call, influence: Influence) -> float:
+    """Expanded uncertainty of a sum of errors: of noise, of the probe as it acts at worst, of a shift of the axes."""
+    shift = 0.0 if call.axes is None else call.axes[0]
+    shifted = math.hypot(*influence.shifted.tolist())
+    return math.hypot(COVERAGE * influence.sd, influence.worst * (call.error or 0.0), shifted * shift)
 
 
 def motion_uncertainty(result: PartMade, call: Call) -> Array:

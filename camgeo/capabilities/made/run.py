@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.made.events import events_section
 from camgeo.capabilities.made.judge import checks_of, made_part
 from camgeo.capabilities.made.reading import Call
 from camgeo.capabilities.made.refusal import as_call_errors
@@ -34,7 +35,7 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
     with as_call_errors(paths):
         result = made_part(recipe, design, paths, call)
     checks, verdicts = checks_of(recipe, result, call)
-    report = section(recipe, paths, result, call, verdicts)
+    report = section(recipe, paths, result, call, verdicts) | events_section(recipe, design, result, call)
     add_figures(report, recipe, design, result)
     if call.out is not None:
         from camgeo.capabilities.made.output import write  # most calls write nothing
@@ -54,10 +55,12 @@ def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock:
     result = made_shaft(cams, paths, call)
     checks, entries = [], []
     for one in result.cams:
-        own, verdicts = checks_of(one.points.cam.recipe, one.result, call)
-        checks += [replace(check, surface=one.points.cam.name) for check in own]
-        entries.append(section(one.points.cam.recipe, one.points.paths, one.result, call, verdicts))
-        add_figures(entries[-1], one.points.cam.recipe, one.points.cam.design, one.result)
+        cam = one.points.cam
+        own, verdicts = checks_of(cam.recipe, one.result, call)
+        checks += [replace(check, surface=cam.name) for check in own]
+        events = events_section(cam.recipe, cam.design, one.result, call, (cam.events, cam.zero))
+        entries.append(section(cam.recipe, one.points.paths, one.result, call, verdicts) | events)
+        add_figures(entries[-1], cam.recipe, cam.design, one.result)
     report = shaft_section(recipe, paths, result, entries)
     if call.out is not None:
         from camgeo.capabilities.made.shaft_output import write_shaft

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import motion_uncertainty, systematic
+from camgeo.capabilities.made.judge import expanded, motion_uncertainty, systematic
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import name_of
 from camgeo.measures.units import UNIT_NAMES
@@ -223,7 +223,10 @@ def motion_section(recipe: Recipe, result: PartMade, call: Call) -> dict[str, An
             "unit": unit + ("", "/rad", "/rad^2")[k],
         }
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
+    turning = 0.0 if call.axes is None else call.axes[1]
+    own = math.hypot(expanded(call, errors.influence(errors.phase_weights)), turning)
     entry["phase_deg"] = sign * math.degrees(phase)
+    entry["phase_uncertainty_deg"] = math.degrees(own)
     entry["without_phase"] = scale * float(np.abs(remaining).max())
     made_peak, meant_peak = errors.peak_acceleration
     entry["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * meant_peak, "unit": f"{unit}/rad^2"}

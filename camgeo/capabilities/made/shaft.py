@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import part_of_points
+from camgeo.capabilities.made.judge import expanded, part_of_points
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
 from camgeo.capabilities.made.reading import label_of, sorted_out, tables_of
@@ -21,7 +21,7 @@ from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
-from kin.made.motion import COVERAGE
+from kin.made.motion import Influence
 from kin.made.points import turned_at
 from kin.numeric.records import dataclass, replace
 from kin.read.points import LEAST_POINTS
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.judge import PartMade
     from camgeo.capabilities.made.reading import Call
     from camgeo.registry.capability import ShaftCam
-    from kin.made.motion import Errors, Influence
+    from kin.made.motion import Errors
     from kin.numeric.arrays import Indices
     from kin.read.points import PointTable
 
@@ -258,26 +258,23 @@ def _common(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
 def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call) -> list[Phase]:
     """Phase of each cam, by the turn that explains most of its motion's error; the first is the datum of the others."""
     lates = [errors.phase[0] for errors in motions]
-    parts = [errors.influence(errors.phase_weights) for errors in motions]
-    shifts = [_on_shaft(part, one.cam.at) for part, one in zip(parts, measured, strict=True)]
-    turning = 0.0 if call.axes is None else call.axes[1]
+    parts = [
+        _on_shaft(errors.influence(errors.phase_weights), one.cam.at)
+        for errors, one in zip(motions, measured, strict=True)
+    ]
+    turning, datum = 0.0 if call.axes is None else call.axes[1], parts[0]
     phases = []
-    for late, part, shift in zip(lates, parts, shifts, strict=True):
-        own = _expanded(call, part.sd, part.raised, shift)
-        against = _expanded(call, math.hypot(part.sd, parts[0].sd), part.raised - parts[0].raised, shift - shifts[0])
-        phases.append(Phase(late, math.hypot(own, turning), late - lates[0], against))
+    for late, part in zip(lates, parts, strict=True):
+        between = Influence(math.hypot(part.sd, datum.sd), part.worst + datum.worst, part.shifted - datum.shifted)
+        own = math.hypot(expanded(call, part), turning)
+        phases.append(Phase(late, own, late - lates[0], expanded(call, between)))
     return [replace(phases[0], against_uncertainty=0.0), *phases[1:]]
 
 
-def _on_shaft(part: Influence, at: float) -> complex:
-    """What a shift of the shaft's axis by a mm adds, as a vector in its own axes."""
-    return complex(*part.shifted) * complex(math.cos(at), math.sin(at))
-
-
-def _expanded(call: Call, sd: float, raised: float, shift: complex) -> float:
-    """Expanded uncertainty of noise, a common error of the probe, and a shift of the axis."""
-    axes = 0.0 if call.axes is None else call.axes[0]
-    return math.hypot(COVERAGE * sd, raised * (call.error or 0.0), abs(shift) * axes)
+def _on_shaft(part: Influence, at: float) -> Influence:
+    """What adds to a cam's phase, its axes turned by an angle, in those of the shaft."""
+    c, s = math.cos(at), math.sin(at)
+    return part._replace(shifted=np.array([[c, -s], [s, c]]) @ part.shifted)
 
 
 def _remarks(

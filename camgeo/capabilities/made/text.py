@@ -74,12 +74,8 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             (label, f"{own['max']:+.4g} +- {own['uncertainty']:.2g} {own['unit']} at {own['at_deg']:.2f} degrees")
         )
     rows.append(("  constant offset", f"{motion['offset']:+.4g} {motion['unit']}, set on assembly"))
-    rows.append(
-        (
-            "  phase",
-            f"{motion['phase_deg']:+.4g} degrees; {motion['without_phase']:.4g} {motion['unit']} remain without it",
-        )
-    )
+    phase = f"{motion['phase_deg']:+.4g} +- {motion['phase_uncertainty_deg']:.2g} degrees"
+    rows.append(("  phase", f"{phase}; {motion['without_phase']:.4g} {motion['unit']} remain without it"))
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
     for figure in section.get("figures", ()):
@@ -87,6 +83,7 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             f"{figure['made']:.4g} +- {figure['uncertainty']:.2g}, intended {figure['intended']:.4g} {figure['unit']}"
         )
         rows.append((f"  {figure['name']}", f"{told}, at {figure['at_deg']:.2f} degrees"))
+    rows += _events(section.get("events", {}))
     if "play" in section:
         play = section["play"]
         least, most = (f"{play[key]:+.4g} at {play[f'{key}_at_deg']:.2f}" for key in ("least", "most"))
@@ -98,6 +95,28 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
     if "lifts" in section:
         rows.append(("zero of the readings", f"{section['lifts']['zero']:+.6g} {motion['unit']}"))
     return rows
+
+
+def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
+    """Lift, velocity and durations, each as made, its uncertainty, and as intended."""
+    rows = []
+    for name, of in events.items():
+        if name != "above":
+            rows += [(f"{name}, greatest {figure}", _against(own, own["unit"])) for figure, own in of.items()]
+    for above in events.get("above", ()):
+        label = f"{above['of']} above {above['lift']:.6g} {above['unit']}"
+        if above["duration_crank_deg"] is None:
+            rows.append((label, "not crossed once upwards and once down"))
+            continue
+        rows.append((label, _against(above["duration_crank_deg"], "crank degrees")))
+        for key in ("opens", "closes", "centre"):
+            rows.append((f"  {key}", _against(above[f"{key}_deg"], "cam degrees")))
+    return rows
+
+
+def _against(own: dict[str, Any], unit: str) -> str:
+    made, off = f"{own['made']:.6g} +- {own['uncertainty']:.2g} {unit}", own["made"] - own["intended"]
+    return f"{made}, intended {own['intended']:.6g}: {off:+.2g}"
 
 
 def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
@@ -114,7 +133,7 @@ def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             against = f"{_late(phase['against_datum_deg'])} +- {phase['against_datum_uncertainty_deg']:.2g}"
             rows[-1] = rows[-1][0], f"{rows[-1][1]}; against {section['datum']} {against}"
         own = table_rows(lobe, everything=everything)
-        rows += [(f"  {label}", value) for label, value in own if everything or "cause: " in label]
+        rows += [(f"  {label}", value) for label, value in own if everything or "cause: " in label or "above " in label]
     return rows
 
 

@@ -1,0 +1,135 @@
+"""What engine people ask of a made cam: lift, velocity and durations at stated lifts, made against intended.
+
+The lifts are those of the recipe's limits that have one, of the follower or of what it moves, such as a valve; where
+something is moved, those at which its own figures are usually taken; on a shaft that of its events. Limits of a figure
+that a capability has are of what that capability moves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.made.judge import expanded
+from camgeo.capabilities.made.section import scale_of
+from camgeo.measures.lobe import CRANK, EventError, event_of, monotone
+from camgeo.recipe.figures import FIGURES
+from camgeo.registry import registry
+from kin.made.events import MadeMotion
+from kin.made.motion import COVERAGE
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.made.judge import PartMade
+    from camgeo.capabilities.made.reading import Call
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.registry.capability import Moved
+    from camgeo.synthesis.design import Design
+    from kin.made.events import Estimate
+    from kin.numeric.arrays import Array
+
+
+ANGLES, DURATION = ("opens_deg", "closes_deg", "centre_deg"), "duration_crank_deg"
+
+
+class StatedLift(NamedTuple):
+    """A lift at which events are told, mm or rad: of what is moved, or of the follower (None), and the follower's."""
+
+    moved: Moved | None
+    lift: float
+    follower: float
+
+
+def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) -> list[StatedLift]:
+    """Lifts at which a recipe has figures, and that of a shaft's events; each once, above 0."""
+    moved = {name: registry.capability(name).moved(recipe, design) for name in recipe.uses}
+    lifts: list[tuple[Moved | None, float]] = []
+    for limit in recipe.limits:
+        if FIGURES[limit.figure].at_lift is not None:
+            owner = FIGURES.owner(limit.figure)
+            lifts.append((moved.get(owner) if owner else None, limit.lift))
+    for name, own in moved.items():
+        if own is not None:
+            usual = (figure.at_lift for figure in registry.capability(name).figures.values())
+            lifts += [(own, lift) for lift in usual if lift is not None]
+    lifts += [] if events is None else [(None, events)]
+    rows = [StatedLift(own, lift, lift if own is None else own.follower_lift(lift)) for own, lift in lifts]
+    return sorted({row for row in rows if row.follower > 0.0}, key=lambda row: (row.moved is not None, row.lift))
+
+
+def events_section(
+    recipe: Recipe, design: Design, result: PartMade, call: Call, shaft: tuple[float | None, float] = (None, 0.0)
+) -> dict[str, Any]:
+    """Section `events`: lift, velocity and what is above each stated lift; nothing where no lift is stated.
+
+    `shaft` has the lift of a shaft's events and the shaft angle, rad, at which the motion begins.
+    """
+    events, zero = shaft
+    lifts = stated_lifts(recipe, design, events)
+    if not lifts:
+        return {}
+    made = MadeMotion(result.surfaces[0].on.surface.gauge.motion, result.motion)
+    highest = made.highest(monotone(design.exact).greatest()[1])
+    scale, unit = scale_of(recipe, result)
+    entry: dict[str, Any] = {}
+    for moved in dict.fromkeys([None, *(row.moved for row in lifts)]):
+        entry[_name(moved)] = {
+            "lift": _greatest_lift(moved, highest, call, scale) | {"unit": unit},
+            "velocity": _greatest_velocity(moved, made, scale) | {"unit": f"{unit}/rad"},
+        }
+    entry["above"] = [
+        {"of": _name(row.moved), "lift": scale * row.lift, "unit": unit, **_above(row, made, design, call, zero)}
+        for row in lifts
+    ]
+    return {"events": entry}
+
+
+def _name(moved: Moved | None) -> str:
+    return "follower" if moved is None else moved.name
+
+
+def _row(scale: float, made: float, intended: float, uncertainty: float) -> dict[str, Any]:
+    return {"made": scale * made, "intended": scale * intended, "uncertainty": scale * uncertainty}
+
+
+def _greatest_lift(moved: Moved | None, highest: Estimate, call: Call, scale: float) -> dict[str, Any]:
+    made, intended = (_moving(moved, np.array([[lift], [1.0], [0.0]])) for lift in highest[:2])
+    ratio = float(made[1, 0])  # velocity of what is moved, by that of the follower
+    return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * expanded(call, highest.influence))
+
+
+def _greatest_velocity(moved: Moved | None, made: MadeMotion, scale: float) -> dict[str, Any]:
+    rows, intended = made.lifts
+    velocity = np.abs(_moving(moved, rows)[1])
+    at = int(np.argmax(velocity))
+    ratio = float(_moving(moved, np.array([[rows[0, at]], [1.0], [0.0]]))[1, 0])
+    uncertain = COVERAGE * ratio * float(made.errors.sds[1, at])
+    return _row(scale, float(velocity[at]), float(np.abs(_moving(moved, intended)[1]).max()), uncertain)
+
+
+def _moving(moved: Moved | None, rows: Array) -> Array:
+    """Lift, velocity and acceleration (3, n) by those of the follower."""
+    return rows if moved is None else moved.rows(rows)
+
+
+def _above(row: StatedLift, made: MadeMotion, design: Design, call: Call, zero: float) -> dict[str, Any]:
+    """Crossings of a lift, degrees of the shaft, and the crank's between; None where there are not just two."""
+    try:
+        event = event_of(design.exact, row.follower)
+    except EventError:
+        above = None
+    else:
+        above = made.above(event.opening, event.closing)
+    if above is None:
+        return dict.fromkeys((*ANGLES, DURATION))
+    turning = 0.0 if call.axes is None else call.axes[1]
+    entry: dict[str, Any] = {}
+    for name, one in zip(ANGLES, (above.opening, above.closing, above.centre), strict=True):
+        intended = math.degrees(one.intended + zero) % 360.0
+        uncertain = math.degrees(math.hypot(expanded(call, one.influence), turning))
+        entry[name] = _row(1.0, intended + math.degrees(one.made - one.intended), intended, uncertain)
+    crank = math.degrees(CRANK)
+    duration = above.duration
+    entry[DURATION] = _row(crank, duration.made, duration.intended, expanded(call, duration.influence))
+    return entry

@@ -1,0 +1,133 @@
+"""Events of a made motion: where it passes a lift, how long it is above it, how high and fast it goes.
+
+Lifts are counted from where the follower rests at its lowest on the metal as it was made, as an indicator or the lash
+is set there. An error E of the motion moves a crossing by -E/S', so that every event is, about where it is, a weighted
+sum of errors: its uncertainty is that of the sum, whose parts go together (`Errors.influence`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.follower.base import IntendedMotion
+    from kin.made.motion import Errors, Influence
+    from kin.numeric.arrays import Array
+
+STEPS = 40  # of Newton's method
+STILL = 1e-12  # rad
+FAR = 0.5  # rad: a crossing that is farther from where it is meant is another one
+RESTS = 1e-9  # of the stroke: so near to the lowest position the follower rests
+NEIGHBOURS = np.arange(-1, 3)  # places of the errors between which they are interpolated
+
+
+class Estimate(NamedTuple):
+    """A figure of the made motion and of the intended one, and what adds to the former."""
+
+    made: float
+    intended: float
+    influence: Influence
+
+
+class Above(NamedTuple):
+    """A made motion above a lift: shaft angles, rad, at which it opens and closes, their difference and middle."""
+
+    opening: Estimate
+    closing: Estimate
+    duration: Estimate
+    centre: Estimate
+
+
+@dataclass(frozen=True, eq=False)
+class MadeMotion:
+    """An intended motion, mm or rad over the shaft angle, and the errors of the made one, which are at equal steps."""
+
+    motion: IntendedMotion
+    errors: Errors
+
+    @property
+    def _resting(self) -> Array:
+        """Weights (n,) of the mean error where the follower is at its lowest."""
+        position = self.errors.intended[0]
+        rests = position - position.min() <= RESTS * max(float(np.ptp(position)), np.finfo(float).tiny)
+        weights: Array = rests / rests.sum()
+        return weights
+
+    def _weights(self, angle: float) -> tuple[Array, float]:
+        """Weights (n,) of the error at a shaft angle less that at rest, and the error's derivative there, by rad."""
+        count = len(self.errors.shaft)
+        step = TURN / count
+        place = (angle - self.errors.shaft[0]) / step
+        first = int(np.floor(place))
+        u = place - first
+        a, b, c, d = u + 1.0, u, u - 1.0, u - 2.0  # Lagrange's cubic through four neighbours
+        values = np.array([-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
+        index = (first + NEIGHBOURS) % count
+        weights = -self._resting
+        np.add.at(weights, index, values)
+        rate = float(self.errors.rows[1][index] @ values)
+        return weights, rate
+
+    def _intended(self, angle: float) -> tuple[float, float]:
+        """Intended position and velocity at a shaft angle."""
+        position, velocity, *_ = self.motion.derivatives(np.array([np.mod(angle, TURN)]), 1)[:, 0].tolist()
+        return position, velocity
+
+    def above(self, opening: float, closing: float) -> Above | None:
+        """The made motion above the lift that the intended one passes at two shaft angles, rad; None where it does not.
+
+        `closing` is greater than `opening`.
+        """
+        places, sums = [], []
+        for angle in (opening, closing):
+            crossed = self._crossing(angle)
+            if crossed is None:
+                return None
+            places.append(crossed[0])
+            sums.append(crossed[1])
+        (made_o, made_c), (first, last) = places, sums
+        influence = self.errors.influence
+        return Above(
+            Estimate(made_o, opening, influence(first)),
+            Estimate(made_c, closing, influence(last)),
+            Estimate(made_c - made_o, closing - opening, influence(last - first)),
+            Estimate(0.5 * (made_o + made_c), 0.5 * (opening + closing), influence(0.5 * (first + last))),
+        )
+
+    def _crossing(self, meant: float) -> tuple[float, Array] | None:
+        """Where the made motion is as high as the intended one is at a shaft angle, and weights of errors in it."""
+        level, _ = self._intended(meant)
+        angle = meant
+        for _ in range(STEPS):
+            position, velocity = self._intended(angle)
+            weights, rate = self._weights(angle)
+            slope = velocity + rate
+            if not abs(slope) > 0.0:
+                return None
+            step = (position + float(weights @ self.errors.rows[0]) - level) / slope
+            angle -= step
+            if not abs(angle - meant) < FAR:
+                return None
+            if abs(step) < STILL:
+                return angle, -weights / slope
+        return None
+
+    def highest(self, place: float) -> Estimate:
+        """Greatest lift; the intended one is reached at a shaft angle."""
+        weights, _ = self._weights(place)
+        intended = self._intended(place)[0] - float(self.errors.intended[0].min())
+        return Estimate(intended + float(weights @ self.errors.rows[0]), intended, self.errors.influence(weights))
+
+    @property
+    def lifts(self) -> tuple[Array, Array]:
+        """Lift, velocity and acceleration at the shaft angles of the errors, as made and as intended, (3, n) each."""
+        intended = self.errors.intended.copy()
+        intended[0] -= intended[0].min()
+        made = intended + self.errors.rows
+        made[0] -= float(self._resting @ self.errors.rows[0])
+        return made, intended
