@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from camgeo.files.precision import Precision
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.registry.capability import ShaftCam
     from camgeo.report.document import Findings
     from camgeo.schema.fields import Field
     from camgeo.schema.reader import Reader, Values
@@ -199,6 +200,8 @@ class Format:
     unmade    what of the part its files leave out, with the reason
     numbers   gives the numbers that a mesh holds
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
+    shaft     writes a file of several cams on one shaft, which nothing judges: (recipe of the shaft, its cams, request,
+              path); None where it has none
     """
 
     name: str
@@ -224,6 +227,7 @@ class Format:
     unmade: Callable[[Recipe, Design], Sequence[tuple[str, str]]] = nothing_left
     numbers: Callable[[], Precision] | None = None
     write: Callable[[Path, Sequence[Item], str, float, str], None] | None = None
+    shaft: Callable[[Order, Sequence[ShaftCam], FileRequest, Path], None] | None = None
 
     @property
     def ending(self) -> str:

@@ -7,10 +7,12 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.lift_table import read_path
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, export_of
 from camgeo.recipe.keys import CORE, UNITS, recipe_table
+from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.recipe.part import LEAST_SIZE
 from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
 from camgeo.registry.formats import FORMATS
@@ -238,12 +240,13 @@ def _only(item: Field, *names: str) -> Field:
     return replace(item, table=Table(tuple(each for each in fields if each.name in names)))
 
 
+INSPECTION = "inspection"
 DIAGRAMS = ("timing", "bars", "cam-wheel", "crank-wheel", "shaft")
 OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
 
 
-def _own(name: str, *words: str) -> Format:
-    """Give the record of a format whose forms are a camshaft's own."""
+def _own(name: str, *words: str, more: tuple[Field, ...] = ()) -> Format:
+    """Give the record of a format whose forms are a camshaft's own, with more options."""
     fields = (
         Field(
             "as",
@@ -253,16 +256,25 @@ def _own(name: str, *words: str) -> Format:
             choices=words,
         ),
     )
-    return replace(FORMATS[name], options=Table(fields if words else ()))
+    return replace(FORMATS[name], options=Table((*fields, *more) if words else ()))
 
 
 DRAWN = "svg"
+STEP = Field(
+    "step",
+    Kind.ANGLE,
+    "of inspection, of the shaft between points; 360 degrees are a whole number of it",
+    default="by verify.angles",
+    at_least=FINEST,
+    at_most=COARSEST,
+)
 OF_A_LOBE = tuple(  # listed to say what to do instead
     name for name, record in FORMATS.items() if record.contour and not record.solid and name != DRAWN
 )
 SHAFT_FILES = {
     **{name: _plain(name) for name in FORMATS if FORMATS[name].solid},
-    "csv": _own("csv", "motion", "events"),
+    "csv": _own("csv", "motion", "events", INSPECTION, more=(STEP,)),
+    **{name: record for name, record in FORMATS.items() if record.shaft is not None},
     DRAWN: _own(DRAWN, *DIAGRAMS),
     **{name: replace(FORMATS[name], options=Table(())) for name in ("html", *OF_A_LOBE)},
 }
@@ -314,9 +326,12 @@ def _check(values: Values, reader: Reader) -> None:
     for file in values.get("export", {}).get("files", []):
         if file["kind"] in OF_A_LOBE:
             reader.fault_at(file["path"], f"a camshaft has no {file['kind']}", None, "export the lobe's own recipe")
+        elif "step" in file and file["kind"] == "csv" and file.get("as") != INSPECTION:
+            reader.fault_at(f"{file['path']}.csv.step", "belongs to a table as inspection", None, "leave it out")
         elif file.get("as") in OF_AN_ENGINE and "engine" not in camshaft:
             remedy = "give camshaft.engine, or {svg: {as: bars}}"
             reader.fault_at(f"{file['path']}.svg.as", "needs the engine's data", f"'{file['as']}'", remedy)
+        check_step(file, reader)
     engine = camshaft.get("engine")
     if engine is not None:
         order, firing, path = engine["order"], engine.get("firing"), "camshaft.engine"

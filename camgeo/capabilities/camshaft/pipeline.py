@@ -188,10 +188,10 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
     recipe = job.recipe
     match request.kind:
         case "csv":
-            from camgeo.capabilities.camshaft.tables import write_events, write_motion
+            from camgeo.capabilities.camshaft.tables import write_csv
 
             with job.clock.stage("table"):
-                (write_events if request.as_ == "events" else write_motion)(path, recipe, job.lobes)
+                write_csv(path, recipe, job.lobes, request)
             return FileResult(path, request, units=recipe.mm), ()
         case "svg":
             from camgeo.capabilities.camshaft.diagrams import diagram
@@ -199,6 +199,10 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
             with job.clock.stage("timing"):
                 path.write_text(diagram(recipe, job.lobes, request.as_), encoding="utf-8", newline="\n")
             return FileResult(path, request), ()
+        case _ if request.format.shaft is not None:
+            with job.clock.stage(request.kind):
+                request.format.shaft(recipe, [lobe.on_shaft(recipe.engine) for lobe in job.lobes], request, path)
+            return FileResult(path, request, units=UNIT_MM[request.told_in(recipe.units)]), ()
         case _:
             return _solid(job, request, path)
 

@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.camshaft import keys
 from camgeo.capabilities.camshaft.events import CRANK
 from camgeo.capabilities.camshaft.lobes import lifts, valves
 from camgeo.files.table import write_table
+from camgeo.measures.contact_points import contact_points
+from kin.numeric.angles import TURN
+from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +21,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
     from camgeo.capabilities.camshaft.lobes import PlacedLobe
+    from camgeo.recipe.export import FileRequest
 
 STEP = 1.0  # degree of the shaft
 
@@ -24,6 +29,17 @@ STEP = 1.0  # degree of the shaft
 def column(name: str) -> str:
     """A lobe's name as a column has it."""
     return "".join(letter if letter.isalnum() and letter.isascii() else "_" for letter in name)
+
+
+def write_csv(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], request: FileRequest) -> None:
+    """Write the table that a file is to be."""
+    match request.as_:
+        case "events":
+            write_events(path, recipe, lobes)
+        case keys.INSPECTION:
+            write_inspection(path, recipe, lobes, request.own.get("step"))
+        case _:
+            write_motion(path, recipe, lobes)
 
 
 def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
@@ -70,6 +86,30 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
             row += [math.nan if cylinder is None else cylinder, *crank, *([math.nan] * 6 if own is None else own)]
         rows.append(row)
     write_table(path, heads, np.array(rows, dtype=np.float64), gaps=True)
+
+
+def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], step: float | None) -> None:
+    """Write places on every lobe to be measured, as the shaft is drawn, with their normals and limits.
+
+    `lobe` is a number, from 1 as they are listed, and z the middle of its length; `step`, rad, is that of the shaft,
+    None for that of `verify.angles`. Cells of limits are empty for a lobe whose recipe gives none.
+    """
+    shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
+    rows, limited = [], any(lobe.lobe.recipe.profile is not None for lobe in lobes)
+    for number, lobe in enumerate(lobes, 1):
+        zone, z = lobe.lobe.recipe.profile, 0.5 * (lobe.lobe.low + lobe.lobe.high)
+        half = math.nan if zone is None else 0.5 * zone / recipe.mm
+        for points in contact_points(lobe.design, shaft, lobe.design.contours):
+            drawn = points.drawn(lobe.at, recipe.rotation)
+            columns = [np.full(len(drawn.angles), number), np.full(len(drawn.angles), z / recipe.mm)]
+            columns += [np.mod(np.degrees(drawn.angles + lobe.zero), 360.0), *(drawn.places / recipe.mm).T]
+            columns += list(drawn.normals.T)
+            columns += [np.full(len(drawn.angles), sign * half) for sign in ((-1.0, 1.0) if limited else ())]
+            rows.append(np.column_stack(columns))
+    unit = "in" if recipe.units == "inch" else "mm"
+    heads = ["lobe", f"z_{unit}", "shaft_deg", f"x_{unit}", f"y_{unit}", "nx", "ny"]
+    heads += [f"lower_{unit}", f"upper_{unit}"] if limited else []
+    write_table(path, heads, np.concatenate(rows), gaps=True)
 
 
 def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:

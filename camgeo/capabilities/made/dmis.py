@@ -7,7 +7,7 @@ part; a MEAS with the same as PTMEAS has it approached along its normal, and OUT
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from camgeo.common.terminal import escaped
 from camgeo.files.markup import one_line
 from camgeo.formats.options import RECIPE_UNITS
 from camgeo.formats.tables.tabled import check_step
+from camgeo.measures.contact_points import contact_points
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Field, Kind, Table
@@ -22,16 +23,20 @@ from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
+    from camgeo.cams.surface import Surface
+    from camgeo.curve.curve import Curve
     from camgeo.output.job import Job, Made
-    from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.export import FileRequest, Length
+    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.registry.capability import ShaftCam
     from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
 
-WORDS = {"mm": "MM", "inch": "INCH"}
+WORDS, MM = {"mm": "MM", "inch": "INCH"}, {"mm": 1.0, "inch": 25.4}
 SAME = 1e-9  # mm: places that two contacts have in common are measured once
 
 
@@ -49,53 +54,76 @@ def _make(job: Job, request: FileRequest, path: Path) -> Made:
     return looked_at(path, request, recipe.mm)
 
 
+class _Disc(NamedTuple):
+    """What is measured of a disc: its profile's zone and half its height, mm, its contours, and its turn, rad."""
+
+    zone: float | None
+    height: float
+    design: Design
+    contours: Sequence[tuple[Surface, Curve]]
+    turned: float = 0.0
+
+
 def program(recipe: Recipe, design: Design, step: float | None = None) -> Iterator[str]:
     """Lines of the program, by a step of the shaft, rad, or that of `verify.angles`."""
-    name = one_line(escaped(recipe.name)).replace("'", " ")
-    yield f"DMISMN/'{name}'"
-    yield f"UNITS/{WORDS[recipe.units]},ANGDEC"
-    zone = recipe.profile
-    if zone is not None:
-        half = f"{0.5 * zone / recipe.mm:.12g}"
-        yield f"T(ZONE)=TOL/PROFP,-{half},{half}"
     z = 0.5 * (recipe.part.thickness or 0.0)
+    return _program(
+        recipe, [_Disc(recipe.profile, disc.z + z, design, disc.contours) for disc in design.discs], step, recipe.units
+    )
+
+
+def shaft_program(
+    recipe: Order, cams: Sequence[ShaftCam], step: float | None = None, units: Length | None = None
+) -> Iterator[str]:
+    """Lines of the program for all cams of a shaft, each turned to its angle, half as high as it is long."""
+    discs = [
+        _Disc(cam.recipe.profile, 0.5 * (cam.low + cam.high), cam.design, cam.design.contours, cam.at) for cam in cams
+    ]
+    return _program(recipe, discs, step, units or recipe.units)
+
+
+def _write_shaft(recipe: Order, cams: Sequence[ShaftCam], request: FileRequest, path: Path) -> None:
+    text = "\n".join(shaft_program(recipe, cams, request.own.get("step"), request.units)) + "\n"
+    path.write_bytes(text.encode("ascii", "replace"))
+
+
+def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: Length) -> Iterator[str]:
+    name, mm = one_line(escaped(recipe.name)).replace("'", " "), MM[units]
+    yield f"DMISMN/'{name}'"
+    yield f"UNITS/{WORDS[units]},ANGDEC"
+    discs = list(discs)
+    widths = dict.fromkeys(disc.zone for disc in discs if disc.zone is not None)
+    zones = {zone: "ZONE" if rank == 1 else f"ZONE{rank}" for rank, zone in enumerate(widths, 1)}
+    for zone, label in zones.items():
+        half = f"{0.5 * zone / mm:.12g}"
+        yield f"T({label})=TOL/PROFP,-{half},{half}"
+    shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
     rank = 0
-    for disc in design.discs:
-        height = f"{(disc.z + z) / recipe.mm:.12g}"
-        for place, normal in _places(recipe, design, disc.name, step):
+    for disc in discs:
+        height, own = f"{disc.height / mm:.12g}", f",TA({zones[disc.zone]})" if disc.zone is not None else ""
+        for place, normal in _places(recipe, disc, shaft):
             rank += 1
-            numbers = [*(f"{value / recipe.mm + 0.0:.12g}" for value in place), height]
+            numbers = [*(f"{value / mm + 0.0:.12g}" for value in place), height]
             numbers += [f"{value + 0.0:.12g}" for value in normal] + ["0"]
             cells = ",".join(numbers)
             yield f"F(P{rank})=FEAT/POINT,CART,{cells}"
             yield f"MEAS/POINT,F(P{rank}),1"
             yield f"PTMEAS/CART,{cells}"
             yield "ENDMES"
-            yield f"OUTPUT/FA(P{rank})" + (",TA(ZONE)" if zone is not None else "")
+            yield f"OUTPUT/FA(P{rank}){own}"
     yield "ENDFIL"
 
 
-def _places(recipe: Recipe, design: Design, disc: str, step: float | None) -> Iterator[tuple[list[float], list[float]]]:
+def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[float], list[float]]]:
     """Places, mm, and outward normals of what is touched on a disc over a turn, as the part is drawn; each once."""
-    from camgeo.curve.measures import touched
-
-    count = recipe.verify.angles if step is None else round(TURN / step)
-    shaft = equal_steps(count)
-    relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
-    drawn = np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
     seen: set[tuple[float, ...]] = set()
-    (own,) = [one for one in design.discs if one.name == disc]
-    for parameter in design.motion.parameters(shaft, relative).values():
-        for surface, contour in own.contours:
-            frame = contour.sample(parameter)
-            there = touched(contour, parameter)
-            for place, normal in zip(
-                (frame.point * drawn)[there], (surface.side * frame.normal * drawn)[there], strict=True
-            ):
-                key = tuple(np.round(place / SAME).tolist())
-                if key not in seen:
-                    seen.add(key)
-                    yield place.tolist(), normal.tolist()
+    for points in contact_points(disc.design, shaft, disc.contours):
+        drawn = points.drawn(disc.turned, recipe.rotation)
+        for place, normal in zip(drawn.places, drawn.normals, strict=True):
+            key = tuple(np.round(place / SAME).tolist())
+            if key not in seen:
+                seen.add(key)
+                yield place.tolist(), normal.tolist()
 
 
 FORMAT = Format(
@@ -119,4 +147,5 @@ FORMAT = Format(
     part=False,
     turning=True,
     make=_make,
+    shaft=_write_shaft,
 )
