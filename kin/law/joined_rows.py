@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.monotone import between, cells, extremes
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -74,6 +74,5 @@ class JoinedRows:
         def difference(angle: Array) -> Array:
             return (position(angle) - self.position(angle))[None]
 
-        followed = pieces(cells(difference, places, _SHARE * size))
-        (least, low), (greatest, high) = followed.least(), followed.greatest()
+        (least, low), (greatest, high) = extremes(cells(difference, places, _SHARE * size))
         return max((abs(least), low), (abs(greatest), high))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "pieces"]
+__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "extremes", "pieces"]
 
 DEGREE = 10
 FIRST_CELLS = 32
@@ -214,8 +214,39 @@ class Pieces:
 
 def pieces(cells: Cells, row: int = 0) -> Pieces:
     """Cut one of the functions into pieces."""
-    low, high, c, noise = cells.low, cells.high, cells.coefficients[row], cells.noise[row]
-    least = LEAST_CELL * (high[-1] - low[0])
+    least = LEAST_CELL * (cells.high[-1] - cells.low[0])
+    low, high, c, noise = _single(cells.low, cells.high, cells.coefficients[row], cells.noise[row], least)
+    for order in (1, 2):
+        low, high, c, noise = _cut(low, high, c, noise, order)
+    rank = np.argsort(low)
+    return Pieces(np.append(low[rank], high.max()), c[rank], noise[rank])
+
+
+def extremes(cells: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Least and greatest value of one of the functions, each with its place: those of its `pieces`, without these.
+
+    A polynomial lies within the hull of its coefficients, so that only cells are cut whose halves reach beyond a value
+    that some cell has; of many cells those are few.
+    """
+    c = cells.coefficients[row]
+    left, right = halves(c)
+    ends = np.stack([c[:, 0], left[:, -1], c[:, -1]])
+    above = np.maximum(left.max(axis=1), right.max(axis=1)) >= ends.max()
+    chosen = above | (np.minimum(left.min(axis=1), right.min(axis=1)) <= ends.min())
+    least = LEAST_CELL * (cells.high[-1] - cells.low[0])
+    part = cells.low[chosen], cells.high[chosen], c[chosen], cells.noise[row, chosen]
+    low, high, c, _ = _cut(*_single(*part, least), 1)
+    rank = np.argsort(low)
+    places, values = np.column_stack([low, high])[rank], c[rank][:, [0, -1]]
+    lowest, highest = int(values.argmin()), int(values.argmax())
+    return (
+        (float(values.flat[lowest]), float(places.flat[lowest])),
+        (float(values.flat[highest]), float(places.flat[highest])),
+    )
+
+
+def _single(low: Array, high: Array, c: Array, noise: Array, least: float) -> tuple[Array, Array, Array, Array]:
+    """Halve cells until each has at most one turning point and one of inflection, or is no wider than `least`."""
     done = []
     while len(low):
         single = (_changes(c, 1, noise) <= 1) & (_changes(c, 2, noise) <= 1) | (high - low <= least)
@@ -225,10 +256,7 @@ def pieces(cells: Cells, row: int = 0) -> Pieces:
         c = np.concatenate(halves(c))
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     low, high, c, noise = (np.concatenate(list(part)) for part in zip(*done, strict=True))
-    for order in (1, 2):
-        low, high, c, noise = _cut(low, high, c, noise, order)
-    rank = np.argsort(low)
-    return Pieces(np.append(low[rank], high.max()), c[rank], noise[rank])
+    return low, high, c, noise
 
 
 def _differences(c: Array, order: int, noise: Array) -> Array:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kin.numeric.monotone import RoughError, between, cells, pieces
+from kin.numeric.monotone import RoughError, between, cells, extremes, pieces
 
 TURN = 2 * math.pi
 
@@ -37,6 +37,23 @@ def test_every_piece_is_monotone_and_so_is_its_slope(cos, sin):
         # a piece may be as narrow as 1e-8, and its slope is known to the rounding of its values over its width
         known = 1e-9 * max(size, 1) + of.blur / of.width
         assert (np.abs(of.slope(every, row) - derivative(row, 1)[0]) < known).all()
+
+
+@given(
+    st.lists(st.floats(-1, 1), min_size=1, max_size=7),
+    st.lists(st.floats(-1, 1), min_size=7, max_size=7),
+    st.sampled_from([1, 3, 40]),
+)
+def test_extremes_without_pieces_are_those_of_the_pieces(cos, sin, parts):
+    k = np.arange(1, len(cos) + 1)[:, None]
+    places = np.linspace(0.0, TURN, parts + 1)
+
+    def f(x):
+        return (np.array(cos) @ np.cos(k * x) + np.array(sin[: len(cos)]) @ np.sin(k * x))[None]
+
+    made = cells(f, places, 1e-12)
+    of = pieces(made)
+    assert extremes(made) == (of.least(), of.greatest())
 
 
 def test_roots_and_touching_roots():
