@@ -81,7 +81,7 @@ FORMAT = Format(
                 Kind.CHOICE,
                 "of controller, whose table it is",
                 default="required for it",
-                choices=("codesys", "codesys-table", "plain"),
+                choices=("codesys", "codesys-table", "sew", "plain"),
             ),
             Field(
                 "suffix",

@@ -248,13 +248,14 @@ class Recipe(Order):
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
 
     def unstated(self, path: Path) -> float | None:
-        """Give the unit, mm, of a list of points, or of a file of this name in the recipe that states none."""
+        """Give the unit, mm, of points of a curve or a drive, or of a file of the recipe that states none."""
+        from kin.read.curve_points import is_curve_points
         from kin.read.formats import format_of
         from kin.read.point_list import is_point_list
 
         request = self.request_of(path.name)
         told = self if request is None else self.told_for(request)
-        if format_of(path).contents == "table" and is_point_list(path):
+        if format_of(path).contents == "table" and (is_point_list(path) or is_curve_points(path)):
             return told.mm
         return None if request is None or request.format.units else told.mm
 

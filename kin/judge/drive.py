@@ -12,6 +12,7 @@ from kin.judge.check import Check, at_most, failed
 from kin.law.joined_rows import JoinedRows
 from kin.numeric.angles import TURN
 from kin.numeric.monotone import RoughError, between, cells, pieces
+from kin.read.curve_points import is_curve_points, read_curve_points
 from kin.read.errors import ReadError
 from kin.read.size import contents
 
@@ -49,20 +50,21 @@ class Table(NamedTuple):
 
 
 def is_drive(path: Path) -> bool:
-    """Whether a table is one for a drive, by its heading; raises OSError as the file system does."""
+    """Whether a table is one for a drive, by its first lines; raises OSError as the file system does."""
     with path.open("rb") as file:
         text = file.read(1 << 16).decode("utf-8-sig", "replace")
-    return MASTER in _heading(text)
+    return MASTER in _heading(text) or is_curve_points(path)
 
 
-def drive_checks(path: Path, follower: Follower, limits: Limits) -> list[Check]:
+def drive_checks(path: Path, follower: Follower, limits: Limits, mm: float = 1.0) -> list[Check]:
     """Check the motion that a table makes of a drive, lowest at 0, against a follower's intended one.
 
-    The greatest error, mm or degrees, is at most that of the limits, or what their tolerance is at the follower. A file
-    that is no such table has a check that says why. Raises OSError as the file system does.
+    The greatest error, mm or degrees, is at most that of the limits, or what their tolerance is at the follower. `mm`
+    are the unit of a slave whose table states none, under a follower on a stem. A file that is no such table has a
+    check that says why. Raises OSError as the file system does.
     """
     try:
-        table = read_table(path)
+        table = read_table(path, SLAVES["slave_deg"] if follower.unit == "deg" else mm)
         worst, at = _off(table.rows, follower)
     except RoughError:
         return [failed("readable", "the motion changes too abruptly to be followed")]
@@ -88,8 +90,11 @@ def _off(rows: JoinedRows, follower: Follower) -> tuple[float, float]:
     return rows.off(lambda t: follower.intended(t) - lowest, breaks)
 
 
-def read_table(path: Path) -> Table:
-    """Read a table for a drive; raises ReadError for what is none."""
+def read_table(path: Path, unit: float = 1.0) -> Table:
+    """Read a table for a drive, whose slave is in `unit`, mm or rad, if it states none; raises ReadError for others."""
+    if is_curve_points(path):
+        points = read_curve_points(path)
+        return Table(JoinedRows(_turn(points[:, 0], path), points[:, 1:].T * unit, "line"), unit, None)
     text = contents(path, "csv").decode("utf-8-sig", "replace")
     head = [line for line in text.splitlines() if line.startswith("#")]
     join = next((name for name, words in JOINS.items() if any(words in line for line in head)), None)
@@ -103,15 +108,19 @@ def read_table(path: Path) -> Table:
         raise ReadError("unsupported", f"its columns are {', '.join(names)}, and not {', '.join(columns)}", path)
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")][1:]
     numbers = _numbers(lines, len(names), path)
-    master = numbers[:, 0]
-    if abs(master[0]) > FULL or abs(master[-1] - 360.0) > FULL or (np.diff(master) <= 0.0).any():
-        raise ReadError("range", "the master does not rise from 0 to 360 degrees", path)
-    degree = math.degrees(1.0)
+    angle, degree = _turn(numbers[:, 0], path), math.degrees(1.0)
     rows = numbers[:, 1:wanted].T * SLAVES[slave] * np.array([1.0, degree, degree**2])[: wanted - 1, None]
-    angle = np.radians(master)
-    angle[-1] = TURN
     stated = [float(match[1]) for line in head if (match := STATED.search(line)) and _is_number(match[1])]
     return Table(JoinedRows(angle, rows, join), SLAVES[slave], min(stated, default=None))
+
+
+def _turn(master: Array, path: Path) -> Array:
+    """Angles of a master (n,), rad, from degrees; raises ReadError where they do not go round."""
+    if abs(master[0]) > FULL or abs(master[-1] - 360.0) > FULL or (np.diff(master) <= 0.0).any():
+        raise ReadError("range", "the master does not rise from 0 to 360 degrees", path)
+    angle = np.radians(master)
+    angle[-1] = TURN
+    return angle
 
 
 def _numbers(lines: list[str], count: int, path: Path) -> Array:

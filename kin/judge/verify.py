@@ -70,7 +70,7 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
         from kin.judge.drive import drive_checks, is_drive  # which has no contour
 
         if is_drive(path):
-            checks = drive_checks(path, part.surfaces[0].gauge, limits)
+            checks = drive_checks(path, part.surfaces[0].gauge, limits, 1.0 if units is None else units)
             return Verdict(kind.name, tuple(about(check, path.name) for check in checks))
         if is_point_list(path):
             return verify_points(path, part, angles, limits, 1.0 if units is None else units)

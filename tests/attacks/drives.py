@@ -24,7 +24,7 @@ HEADS = (
 
 def driven(rng: Random, number: int) -> Attack:
     """A cam by chance as a table for a drive."""
-    options = f"as: controller, for: {rng.choice(['codesys', 'codesys-table', 'plain'])}"
+    options = f"as: controller, for: {rng.choice(['codesys', 'codesys-table', 'sew', 'plain'])}"
     options += rng.choice(["", "", ", step: 1", ", step: 0.01", ", step: 7", ", units: inch", ", tolerance: 1e-7"])
     text = drawn(rng).text(f"{{csv: {{{options}}}}}")
 
@@ -47,5 +47,9 @@ def tabled_for_a_drive(rng: Random, number: int) -> Attack:
         rows.append(",".join(map(str, [angle, *cells])) + "\n")
     if rng.random() < 0.4:
         rows[rng.randrange(len(rows))] = rng.choice(["", "x,y\n", "10\n", "nan,nan\n", "1,2,3,4,5,6\n", "180,inf\n"])
+    if rng.random() < 0.3:  # of a curve point table
+        mark = rng.choice([";", "\t", ",", ";;"])
+        head = f"{len(rows) + rng.choice([0, 0, 0, 1, -1])}\n"
+        rows = [mark.join(row.split(",")[:2]).rstrip() + "\n" for row in rows]
     files = {"cam.yaml": drawn(rng).text("dxf").encode(), "drive.csv": (head + "".join(rows)).encode()}
     return Attack(f"drive's table {number}", ("verify", "cam.yaml", "drive.csv"), files, statuses=(1, 2))

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.cases import few
 from support.heavy import interpolate
 
 import camgeo
@@ -60,7 +61,7 @@ def joined(columns: dict[str, Any], degrees: Any) -> Any:
 
 
 @pytest.mark.parametrize("cam", CAMS)
-@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
     path = written(tmp_path, cam, f"for: {controller}", "0.0001" if cam == "inch" else "0.002")
     report = camgeo.export(path, tmp_path / "out")
@@ -78,6 +79,65 @@ def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_pa
     assert off <= error * (1.0 + 1e-6)
     assert off >= 0.97 * error - 1e-9
     assert checks["interpolation"].value == pytest.approx(error, rel=1e-4, abs=1e-10)
+
+
+@pytest.mark.parametrize("cam", few(CAMS, 2))
+def test_a_curve_point_table_has_its_number_of_rows_and_holds_its_tolerance(cam: str, tmp_path: Path) -> None:
+    path = written(tmp_path, cam, "for: sew", "0.0002" if cam == "inch" else "0.005")
+    report = camgeo.export(path, tmp_path / "out")
+    assert report.ok
+    (check,) = (check for check in report.checks if check.file == "cam.csv")
+    table = tmp_path / "out" / "cam" / "cam.csv"
+    count, *lines = table.read_text(encoding="ascii").splitlines()
+    assert int(count) == len(lines) <= 1024
+    assert re.fullmatch(r"[-0-9.;\n]+", "\n".join(lines))  # no exponents
+    rows = np.array([line.split(";") for line in lines], dtype=float)
+    degrees = np.linspace(0.0, 360.0, 100_001)[:-1]
+    motion = camgeo.design(path).motion(np.radians(degrees))
+    scale = {"arm": math.radians(1.0), "inch": 25.4}.get(cam, 1.0)
+    off = np.abs(np.interp(degrees, *rows.T) - (motion - motion.min()) / scale).max()
+    assert (check.name, check.unit) == ("interpolation", "deg" if cam == "arm" else "in" if cam == "inch" else "mm")
+    assert 0.97 * off <= check.value <= check.limit
+    assert off <= check.value * (1 + 1e-6)
+    for suffix, text in ((".txt", table.read_text()), (".csv", table.read_text().replace(".", ",").replace(";", "\t"))):
+        other = tmp_path / f"other{suffix}"
+        other.write_text(text)
+        tolerance = ["--tolerance", "0.0002" if cam == "inch" else "0.005"]
+        assert main(["verify", str(path), str(other), *tolerance]) == 0
+        place = len(lines) // 7
+        cells = text.splitlines()[place].replace(",", ".").replace(";", "\t").split("\t")
+        cells[1] = repr(float(cells[1]) + 2 * check.limit)
+        other.write_text("\n".join([*text.splitlines()[:place], ";".join(cells), *text.splitlines()[place + 1 :]]))
+        assert main(["verify", str(path), str(other), *tolerance]) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("360;0\n", "", "its first line says 400 rows, and there are 399"),
+        ("360;0", "359;0", "the master does not rise from 0 to 360 degrees"),
+        ("360;0", "360;x", "row 400 is not of 2 finite numbers"),
+        ("360;0", "360;0;1", "row 400 is not of 2 finite numbers"),
+    ],
+)
+def test_what_is_no_curve_point_table_says_why(
+    old: str, new: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, table = written(tmp_path, "stem", "for: plain"), tmp_path / "table.csv"
+    text = "400\n" + "".join(f"{360 * i / 399:.9g};0\n" for i in range(400))
+    assert old in text
+    table.write_text(text.replace(old, new))
+    assert main(["verify", str(path), str(table)]) == 1
+    assert told in capsys.readouterr().out
+
+
+def test_a_curve_point_table_has_so_many_rows_and_no_more(tmp_path: Path) -> None:
+    with pytest.raises(RecipeErrors, match=r"rows 0.36 degrees apart leave .*; give at least (\S+) mm") as caught:
+        camgeo.export(written(tmp_path, "stem", "for: sew", "0.00001"), tmp_path / "out")
+    enough = re.search(r"give at least (\S+) mm", str(caught.value))
+    assert enough is not None
+    assert camgeo.export(written(tmp_path, "stem", "for: sew", enough[1]), tmp_path / "out").ok
+    assert (tmp_path / "out" / "cam" / "cam.csv").read_text().startswith("1001\n")
 
 
 @pytest.mark.parametrize(("controller", "tolerance"), [("codesys", "0.00001"), ("codesys-table", "0.01")])
@@ -98,7 +158,7 @@ def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolera
     ).ok
 
 
-@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_row_changed_by_twice_the_tolerance_is_refused(
     controller: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -162,8 +222,13 @@ def test_what_is_no_table_for_a_drive_says_why(
             "as: controller, for: plain, step: 0.5",
         ),
         (
+            "as: controller, for: sew, step: 0.25",
+            "step: more rows than its table takes; give 0.36 or more",
+            "as: controller, for: sew, step: 0.36",
+        ),
+        (
             "as: controller, for: siemens",
-            "for: not one of the choices, given 'siemens'; give codesys, codesys-table or plain",
+            "for: not one of the choices, given 'siemens'; give codesys, codesys-table, sew or plain",
             "as: controller, for: plain",
         ),
     ],

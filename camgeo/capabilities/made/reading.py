@@ -14,6 +14,7 @@ from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
+from kin.judge.drive import is_drive
 from kin.made.points import SurfacePoints
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 GRINDER = "c_deg"  # heading of the column of the work's angle in a grinder's table
-DRIVE = "master_deg"  # of the master's in a table for a drive
 REPEATED = 0.02  # of the mean step: points nearer than this are one place, measured again
 FEWER = 0.8  # of the points: as many places or less, and they are repeats
 MOST_LENGTH = 1e3  # mm, of a probe and its errors
@@ -40,12 +40,12 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
     """Whether a file holds measured points, and not rows for a machine."""
     if "as" in options:
         return options["as"] == "measured"
-    if is_point_list(path):  # of a curve, which is judged as a contour
+    if is_point_list(path) or is_drive(path):  # of a curve, which is judged as a contour, or of a motion
         return False
     if path.suffix.lower() not in FORMATS["csv"].suffixes:
         return True
     heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
-    return not {GRINDER, DRIVE}.intersection(heading)
+    return GRINDER not in heading
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.common.rounding import upward
+from camgeo.files.curve_points import fixed, write_curve_points
 from camgeo.files.table import DIGITS, write_table
 from camgeo.formats.tables.tabled import check_step, fewest_rows
 from camgeo.measures.file_result import FileResult
@@ -24,6 +25,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.monotone import between, cells, pieces
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from camgeo.output.job import Job, Made
@@ -36,12 +38,23 @@ SHARE = 1e-12  # of the stroke, to which the lowest place is found
 NOTHING = 1e-13  # of the greatest value: rounding about 0
 
 
+def _write(path: Path, columns: Sequence[str], rows: Array, head: Sequence[str]) -> None:
+    write_table(path, columns, rows, head=head)
+
+
 class Controller(NamedTuple):
-    """How a controller joins the rows of its table, what it is called there, and on whose word it does so."""
+    """How a controller joins the rows of its table, what it is called there, and on whose word it does so.
+
+    `finest` are the degrees that its rows are apart at least, so many does it take. `number` writes a position or a
+    rate, `write` the table with the names of its columns and the lines of its head.
+    """
 
     join: Join
     layout: str
     word: str
+    finest: float = FINEST
+    number: Callable[[float], str] = f"{{:.{DIGITS}g}}".format
+    write: Callable[[Path, Sequence[str], Array, Sequence[str]], None] = _write
 
 
 CONTROLLERS = {
@@ -54,6 +67,14 @@ CONTROLLERS = {
         "line",
         "CODESYS SoftMotion, MC_CAM_REF of type XY: SMC_CAMTable_LREAL_n_2 with pairs of master and slave",
         "as SM3_Basic says of MC_CAM_REF with byInterpolationQuality 1",
+    ),
+    "sew": Controller(
+        "line",
+        "SEW-EURODRIVE MOVI-C, curve point table: the number of points, then master and slave with a semicolon between",
+        "as its manual says of the interpolation method Linear",
+        finest=0.36,  # 1001 rows: a table has 1024, and 0.36 degrees are the next divisor of a turn
+        number=fixed,
+        write=write_curve_points,
     ),
     "plain": Controller(
         "quintic",
@@ -74,6 +95,9 @@ def check(file: Values, values: Values, reader: Reader) -> None:
         remedy = "leave the table or the linkage out"
         reader.fault_at(f"{path}.as", "a table for a controller is of a follower without a linkage", None, remedy)
     check_step(file, reader)
+    finest = CONTROLLERS[file["for"]].finest if "for" in file else FINEST
+    if "step" in file and math.degrees(file["step"]) < finest * (1.0 - 1e-9):
+        reader.fault_at(f"{path}.step", "more rows than its table takes", None, f"give {finest:g} or more")
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
@@ -100,9 +124,9 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
             f"{JOINS[controller.join]} ({controller.word})",
             f"so joined it is within {upward(error / rows.scale, 6)} {unit} of the motion, proved",
         )
-        write_table(path, columns, table, head=head)
+        controller.write(path, columns, table, head)
     with job.clock.stage("judge csv"):
-        checks = drive_checks(path, gauge, limits)
+        checks = drive_checks(path, gauge, limits, recipe.mm)
     file = FileResult(path, request, units=recipe.mm)
     return Made((file,), tuple(about(check, path.name) for check in checks))
 
@@ -136,7 +160,7 @@ class _Rows:
         powers = np.array([1.0, degree, degree**2])[: order + 1, None]
         shown = rows * powers / self.scale
         shown[np.abs(shown) < NOTHING * np.abs(shown).max(axis=1, keepdims=True)] = 0.0
-        written = np.array([[float(f"{value:.{DIGITS}g}") for value in row] for row in shown.tolist()])
+        written = np.array([[float(self.controller.number(value)) for value in row] for row in shown.tolist()])
         return JoinedRows(angle, written * self.scale / powers, self.controller.join)
 
     def off(self, joined: JoinedRows) -> float:
@@ -167,15 +191,16 @@ def _joined(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[J
         if error <= most:
             return joined, error
         what = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
-        fewest = fewest_rows(rows.error, most)
+        fewest = fewest_rows(rows.error, most, rows.controller.finest)
         remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
         remedy += f"a tolerance of {upward(error / rows.scale)} {rows.unit}"
         raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
-    fewest = fewest_rows(rows.error, most)
+    finest = rows.controller.finest
+    fewest = fewest_rows(rows.error, most, finest)
     if fewest is None:
-        error = rows.error(round(360.0 / FINEST))
+        error = rows.error(round(360.0 / finest))
         left = f"{error / rows.scale:.4g} {rows.unit}"
-        what = f"joined as the controller joins them rows {FINEST:g} degrees apart leave {left}"
+        what = f"joined as the controller joins them rows {finest:g} degrees apart leave {left}"
         remedy = f"give at least {upward(error / rows.scale)} {rows.unit}"
         raise recipe.error(job.tolerance_field(request), what, None, remedy)
     joined = rows.joined(fewest)

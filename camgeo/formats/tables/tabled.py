@@ -34,10 +34,13 @@ def check_step(file: Values, reader: Reader) -> None:
             reader.fault_at(path, "360 degrees are no whole number of it", None, remedy)
 
 
-def fewest_rows(error: Callable[[int], float], most: float) -> int | None:
-    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is."""
+def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINEST) -> int | None:
+    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is.
+
+    They are at least `finest` degrees apart.
+    """
     whole = 360 * TICKS
-    ticks = [tick for tick in range(int(COARSEST * TICKS), int(FINEST * TICKS) - 1, -1) if whole % tick == 0]
+    ticks = [tick for tick in range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1) if whole % tick == 0]
     low, high = 0, len(ticks) - 1
     while low < high:  # finer steps leave less, but for a few that meet the motion's breaks
         middle = (low + high) // 2
