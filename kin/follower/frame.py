@@ -313,10 +313,10 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
     for loop in range(mechanism.outputs):
 
         def margin(theta: Array, loop: int = loop) -> Array:
-            return chain.margin(loop, *lifts(theta), about)[None]
+            return chain.margins(loop, *lifts(theta), about)
 
-        least = pieces(cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)).x
-        theta = np.concatenate([nodes, least])
+        of = cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)
+        theta = np.concatenate([nodes, *(pieces(of, row).x for row in range(len(of.coefficients)))])
         s, s1 = lifts(theta)
         moved = np.full_like(theta, 2.0)
         if loop > 0:
@@ -325,7 +325,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
                 s_jet, s1_jet = (Jet(np.stack([f, np.full_like(f, rate)])) for f, rate in ((s, off), (s1, off1)))
                 x, y = chain.hung(chain.solve(s_jet, s1_jet, about[: loop - 1]), loop - 1)
                 moved += np.hypot(x.c[1], y.c[1])
-        if (margin(theta)[0] <= tolerance * moved).any():
+        if (margin(theta) <= tolerance * moved).any():
             return True
     return False
 

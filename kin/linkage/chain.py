@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from kin.linkage.links import Link, bar
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.records import dataclass
@@ -117,9 +115,12 @@ class Chain:
             return self.linkage.joints(solved.linkage)
         return self.dyads[loop - 1].joints(self.hung(solved, loop - 1), solved.dyads[loop - 1])
 
-    def margin(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
-        """How far a loop is from binding, mm (n,), negative where it binds; BindingError where an earlier loop does."""
+    def margins(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
+        """How far a loop is from each of its k limits, mm (k, n), negative where it binds.
+
+        Each is smooth where the lifts (n,) are. BindingError where an earlier loop binds.
+        """
         if loop == 0:
-            return np.broadcast_to(self.linkage.margin(s, s1, self.breadth), s.shape)
+            return self.linkage.margins(s, s1, self.breadth)
         x, y = self.hung(self.solve(Jet(s[None]), Jet(s1[None]), about[: loop - 1]), loop - 1)
-        return np.broadcast_to(self.dyads[loop - 1].margin(x.c[0], y.c[0]), s.shape)
+        return self.dyads[loop - 1].margins(x.c[0], y.c[0])

@@ -27,9 +27,10 @@ from kin.linkage.loop import (
     demand_lengths,
     demand_mobile,
     excess,
+    excesses,
     longer,
     side_of,
-    triangle_margin,
+    triangle_margins,
     with_value,
 )
 from kin.numeric.elementary import Jet, sqrt
@@ -92,11 +93,11 @@ class RRR(_Pivoted):
         _demand_place(self.on, self.point, self.ground)
         demand_lengths(self.assembly, **{"first link": self.links[0], "second link": self.links[1]})
 
-    def margin(self, x: float | Array, y: float | Array) -> Array:
-        """How far GP is from the least and greatest length that the bars span, mm (n,), for P at x, y (n,)."""
+    def margins(self, x: float | Array, y: float | Array) -> Array:
+        """How far GP is from the least and greatest length that the bars span, mm (2, n), for P at x, y (n,)."""
         a, b = self.links[1], self.links[0]
         terms = _arm_terms(x, y, self.ground)
-        return triangle_margin(a, b, _square(*terms), excess(*terms, (a, -b)), -excess(*terms, (a, b)))
+        return triangle_margins(a, b, _square(*terms), *excesses(*terms, a, b))
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
         """Solve the triangle GQP for P at x, y; GP's direction is taken within pi of `about`. Raises BindingError."""
@@ -138,12 +139,11 @@ class RRP:
         _demand_place(self.on, self.point, (*self.through, self.direction))
         demand_lengths(self.assembly, link=self.link)
 
-    def margin(self, x: float | Array, y: float | Array) -> Array:
-        """How much longer the bar is than P's distance from the line, mm (n,), for P at x, y (n,)."""
+    def margins(self, x: float | Array, y: float | Array) -> Array:
+        """How much longer the bar is than P's distance from the line, on either side, mm (2, n), for P at x, y (n,)."""
         c, s = math.cos(self.direction), math.sin(self.direction)
-        across = (y - self.through[1]) * c - (x - self.through[0]) * s
-        margin: Array = np.atleast_1d(self.link - np.abs(across))
-        return margin
+        across = np.atleast_1d((y - self.through[1]) * c - (x - self.through[0]) * s)
+        return np.stack([self.link - across, self.link + across])
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:  # noqa: ARG002 - one call for all dyads
         """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2. Raises BindingError."""
@@ -193,10 +193,10 @@ class RPR(_Pivoted):
     def __post_init__(self) -> None:
         _demand_place(self.on, self.point, (*self.ground, self.offset))
 
-    def margin(self, x: float | Array, y: float | Array) -> Array:
-        """How much farther P is from G than the slot's line, mm (n,), for P at x, y (n,)."""
+    def margins(self, x: float | Array, y: float | Array) -> Array:
+        """How much farther P is from G than the slot's line, mm (1, n), for P at x, y (n,)."""
         terms = _arm_terms(x, y, self.ground)
-        return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)
+        return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)[None]
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
         """Solve GP^2 = slide^2 + offset^2; the direction of GP is taken within pi of `about`. Raises BindingError."""

@@ -84,22 +84,16 @@ class Rows(NamedTuple):
 _OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity", "acceleration"}
 
 
-def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], breaks: Array) -> Figures:
-    """Find the figures from the rows, smooth between breaks, and the shaft angle at a relative angle."""
+def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], breaks: Array) -> Figures:
+    """Find the figures from the rows, smooth between breaks, and the shaft angles at relative angles."""
     places = between(0.0, TURN, breaks.tolist())
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
     of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
     by = dict(zip(Rows._fields, (pieces(of, row) for row in range(len(Rows._fields))), strict=True))
 
-    def place(extreme: tuple[float, float]) -> Place:
-        value, at = extreme
-        at = at % TURN
-        turned = shaft(at) % TURN
-        return Place(value, at, 0.0 if turned >= TURN else turned)
-
-    def peak(name: str) -> Place:
-        return place(max(by[name].greatest(), by[name].least(), key=lambda found: abs(found[0])))
+    def peak(name: str) -> tuple[float, float]:
+        return max(by[name].greatest(), by[name].least(), key=lambda found: abs(found[0]))
 
     def nearest_zero(name: str) -> float:
         """Where the absolute value is least."""
@@ -109,25 +103,29 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], brea
             return least[1]
         return greatest[1] if greatest[0] <= 0 else float(of.crossings(0.0)[0])
 
-    def acute(name: str, angle: float) -> Place:
-        here = rows(np.array([angle % TURN]))
-        sine, cosine = (abs(float(getattr(here, f"{name}_{part}")[0])) for part in ("sine", "cosine"))
-        return place((math.atan2(sine, cosine), angle))
-
-    return Figures(
-        least=place(by["output"].least()),
-        greatest=place(by["output"].greatest()),
-        frame_least=place(by["frame"].least()),
-        frame_greatest=place(by["frame"].greatest()),
-        transmission_least=acute("transmission", nearest_zero("transmission_sine")),
-        transmission_greatest=acute("transmission", nearest_zero("transmission_cosine")),
-        force_least=acute("force", nearest_zero("force_sine")),
-        velocity=peak("velocity"),
-        acceleration=peak("acceleration"),
-        velocity_relative=peak("velocity_relative"),
-        acceleration_relative=peak("acceleration_relative"),
-        dead_centres=_once([place((0.0, at)) for at in by["offset"].crossings(0.0).tolist()]),
-    )
+    acute = {
+        "transmission_least": nearest_zero("transmission_sine"),
+        "transmission_greatest": nearest_zero("transmission_cosine"),
+        "force_least": nearest_zero("force_sine"),
+    }
+    at = rows(np.mod(list(acute.values()), TURN))
+    transmission = np.arctan2(np.abs(at.transmission_sine), np.abs(at.transmission_cosine)).tolist()
+    force = np.arctan2(np.abs(at.force_sine), np.abs(at.force_cosine)).tolist()
+    extreme = {
+        "least": by["output"].least(),
+        "greatest": by["output"].greatest(),
+        "frame_least": by["frame"].least(),
+        "frame_greatest": by["frame"].greatest(),
+        **dict(zip(acute, zip([*transmission[:2], force[2]], acute.values(), strict=True), strict=True)),
+        **{name: peak(name) for name in ("velocity", "acceleration", "velocity_relative", "acceleration_relative")},
+    }
+    still = [(0.0, angle) for angle in by["offset"].crossings(0.0).tolist()]
+    values, angles = np.transpose([*extreme.values(), *still])
+    angles = np.mod(angles, TURN)
+    turned = np.mod(shaft(angles), TURN)
+    turned[turned >= TURN] = 0.0
+    found = [Place(*numbers) for numbers in zip(values.tolist(), angles.tolist(), turned.tolist(), strict=True)]
+    return Figures(**dict(zip(extreme, found, strict=False)), dead_centres=_once(found[len(extreme) :]))
 
 
 def _once(places: list[Place]) -> tuple[Place, ...]:

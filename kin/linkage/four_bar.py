@@ -36,10 +36,11 @@ from kin.linkage.loop import (
     demand_lengths,
     demand_mobile,
     excess,
+    excesses,
     longer,
     side_of,
     total,
-    triangle_margin,
+    triangle_margins,
     with_value,
 )
 from kin.numeric.elementary import Jet, sqrt
@@ -105,12 +106,11 @@ class FourBar:
         demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
         demand_finite("joint's offset", self.joint_offset)
 
-    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
-        """How far AD is from |r1 - r4| and from r1 + r4, mm (n,): negative where the loop cannot close."""
+    def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:
+        """How far AD is from |r1 - r4| and from r1 + r4, mm (2, n): negative where the loop cannot close."""
         x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
-        q = total(*x) ** 2 + total(*y) ** 2
-        a, b = self.ground, self.rocker
-        return triangle_margin(a, b, np.atleast_1d(q), excess(x, y, (a, -b)), -excess(x, y, (a, b)))
+        q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
+        return triangle_margins(self.ground, self.rocker, q, *excesses(x, y, self.ground, self.rocker))
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve the triangle ABD of r1, r4 and AD; in place of AS 13-18, 19-20 and 34. Raises BindingError.
@@ -209,24 +209,22 @@ class InvertedSliderCrank:
             raise ValueError(f"the rocker must be 0 or longer, not {self.rocker!r} mm")
         demand_finite("joint's offset", self.joint_offset)
 
-    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:  # noqa: ARG002 - one call for all linkages
-        """How far Y is from the ends of its range, r4 - r1 and r4 + r1, mm (n,): negative out of reach."""
-        margin: Array = np.minimum(*self._room(s, w))
-        return margin
+    def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:  # noqa: ARG002 - one call for all linkages
+        """How far Y is from the ends of its range, r4 - r1 and r4 + r1, mm (2, n): negative out of reach.
 
-    def _room(self, s: float | Array, w: float) -> tuple[Array, Array]:
-        """r1 (1 - cos theta_4) and r1 (1 + cos theta_4), each (n,)."""
+        So it is r1 (1 - cos theta_4) and r1 (1 + cos theta_4).
+        """
         r1, r4, e = self.ground, self.rocker, self.joint_offset
         near, far = total(r1, -r4, s, -w / 2, e), total(r1, r4, -s, w / 2, -e)
-        return np.atleast_1d(near), np.atleast_1d(far)
+        return np.stack([np.atleast_1d(near), np.atleast_1d(far)])
 
-    def solve(self, s: Jet, s1: Jet, w: float) -> Positions:  # noqa: ARG002 - one call for all linkages
+    def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve r1 cos theta_4 = r4 - Y (AS 24-27), r1 sin theta_4 theta_4' = S' (AS 29). Raises BindingError.
 
         AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
-        near_value, far_value = self._room(s.c[0], w)
+        near_value, far_value = self.margins(s.c[0], s1.c[0], w)
         demand_mobile(np.minimum(near_value, far_value), order=s.order)
         near, far = with_value(s, near_value), with_value(-s, far_value)
         slide = sqrt(near * far) * side
@@ -320,11 +318,11 @@ class SliderCrank:
         demand_finite("offset", self.offset)
         demand_finite("joint's offset", self.joint_offset)
 
-    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
-        """How much AD is longer than the offset, mm (n,): negative out of reach."""
+    def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:
+        """How much AD is longer than the offset, mm (1, n): negative out of reach."""
         x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
         q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
-        return longer(q, excess(x, y, (self.offset,)), self.offset)
+        return longer(q, excess(x, y, (self.offset,)), self.offset)[None]
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2. Raises BindingError."""

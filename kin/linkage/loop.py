@@ -66,27 +66,33 @@ def demand_mobile(margin: Array, *, order: int, fixed: NDArray[np.bool_] | None 
 
 def total(*terms: Term) -> Array:
     """Sum of numbers or arrays (n,), compensated: good to an ulp unless it nearly vanishes (Knuth's sum of two)."""
-    value: Array = np.asarray(terms[0], dtype=float)
-    lost: Array = np.zeros(())
+    value, lost = terms[0], 0.0  # plain numbers stay so until an array comes
     for term in terms[1:]:
         longer = value + term
         share = longer - value
         lost = lost + ((value - (longer - share)) + (term - share))
         value = longer
-    return value + lost
+    return np.asarray(value + lost)
 
 
 def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
     """Give x^2 + y^2 - z^2, each of the three the sum of its terms, numbers or (n,); its sign is right.
 
-    x^2 - z^2 is taken as a product; where little is left of the squares, all is done in rational arithmetic.
+    Terms of z may be columns (k, 1): (k, n) is the result. x^2 - z^2 is taken as a product; where little is left of the
+    squares, all is done in rational arithmetic.
     """
     a, b, c = total(*x), total(*y), total(*z)
     value = np.atleast_1d(total(*x, *(-term for term in z)) * total(*x, *z) + b * b)
-    for i in np.flatnonzero(np.abs(value) <= _CLOSE * np.atleast_1d(a * a + b * b + c * c)):
+    for i in zip(*np.nonzero(np.abs(value) <= _CLOSE * np.atleast_1d(a * a + b * b + c * c)), strict=True):
         squares = [sum(Fraction(float(np.broadcast_to(t, value.shape)[i])) for t in terms) ** 2 for terms in (x, y, z)]
         value[i] = float(squares[0] + squares[1] - squares[2])
     return value
+
+
+def excesses(x: Sequence[Term], y: Sequence[Term], a: float, b: float) -> tuple[Array, Array]:
+    """Give x^2 + y^2 - (a - b)^2 and (a + b)^2 - x^2 - y^2, (n,) each, likewise."""
+    value = excess(x, y, (a, np.array([[-b], [b]])))
+    return value[0], -value[1]
 
 
 def with_value(jet: Jet, value: Array) -> Jet:
@@ -138,8 +144,8 @@ class Triangle:
     def of(a: float, b: float, third: Vector) -> Triangle:
         """Make the triangle on the third side; BindingError if there is none."""
         q = third.q
-        near, far = excess(third.x_terms, third.y_terms, (a, -b)), -excess(third.x_terms, third.y_terms, (a, b))
-        demand_mobile(triangle_margin(a, b, q.c[0], near, far), order=q.order, fixed=q.c[0] == 0)
+        near, far = excesses(third.x_terms, third.y_terms, a, b)
+        demand_mobile(np.minimum(*triangle_margins(a, b, q.c[0], near, far)), order=q.order, fixed=q.c[0] == 0)
         return Triangle(a, b, q, with_value(q, near), with_value(-q, far))
 
     @cached_property
@@ -170,13 +176,12 @@ class Triangle:
         return (arm * self.between.derivative() / (2.0 * self.q.lower())).integral(value)
 
 
-def triangle_margin(a: float, b: float, q: Array, near: Array, far: Array) -> Array:
-    """How far the third side is from its least and greatest length, |a - b| and a + b; (n,), negative out of reach."""
+def triangle_margins(a: float, b: float, q: Array, near: Array, far: Array) -> Array:
+    """How far the third side is from its least and greatest length, |a - b|, a + b: (2, n), negative out of reach."""
     side, least = np.sqrt(q), abs(a - b)
     with np.errstate(invalid="ignore"):
         inner = np.where(side + least > 0, near / (side + least), 0.0)
-    margin: Array = np.minimum(inner, far / (side + (a + b)))
-    return margin
+    return np.stack([inner, far / (side + (a + b))])
 
 
 def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:

@@ -208,21 +208,21 @@ class Mechanism:
     @cached_property
     def _mobility(self) -> Mobility:
         return mobility(
-            [self._margin(loop) for loop in range(self.outputs)],
+            [self._margins(loop) for loop in range(self.outputs)],
             lambda theta: 1.0 - self._driven(theta, 1)[0].c[1],
             self._sense,
             self.breaks,
             self.breadth,
         )
 
-    def _margin(self, loop: int) -> Callable[[Array], Array]:
-        """Margin of a loop, mm, over the relative angle."""
+    def _margins(self, loop: int) -> Callable[[Array], Array]:
+        """Margins of a loop, mm, over the relative angle."""
 
-        def margin(theta: Array) -> Array:
+        def margins(theta: Array) -> Array:
             s, s1 = self._lifts(theta, 0)
-            return self.chain.margin(loop, s.c[0], s1.c[0], self.about)
+            return self.chain.margins(loop, s.c[0], s1.c[0], self.about)
 
-        return margin
+        return margins
 
     def mobility(self) -> Mobility:
         """Tell where the mechanism binds or turns back, or how far it is from that."""
@@ -234,7 +234,7 @@ class Mechanism:
         PlaceError unless the mechanism turns; RoughError where it comes so close to binding that rounding hides them.
         """
         self._demand_turning()
-        return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
+        return figures(self._rows, lambda theta: self.at(theta, 0).shaft[0], self.breaks)
 
     @cached_property
     def _dwells(self) -> dict[tuple[float, str, int], tuple[Dwell, ...]]:
@@ -255,11 +255,14 @@ class Mechanism:
         if over == "relative":
             return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
 
-        def output(shaft: Array, order: int) -> Array:
-            at = self.at(self.relative(shaft), order)
-            return at.over_shaft(at.output)
+        self._demand_turning()
 
-        return dwells(output, self.at(self.breaks, 0).shaft[0], band, TURN, most)
+        def rows(theta: Array) -> Array:
+            at = self.at(theta, 0)
+            return np.stack([at.shaft[0], at.output[0]])
+
+        of = cells(rows, between(0.0, TURN, self.breaks.tolist()))
+        return dwells(lambda phi, _: of.over(0, phi)[1:], self.at(self.breaks, 0).shaft[0], band, TURN, most)
 
     def _rows(self, theta: Array) -> Rows:
         motion = self.at(theta, 2)
@@ -307,7 +310,7 @@ class Mechanism:
         theta: Array = np.linspace(0.0, TURN, _TABLE, endpoint=False)
         for loop, dyad in enumerate(self.dyads):
             s, s1 = (lift.c[0] for lift in self._lifts(theta, 0))
-            theta = theta[self.chain.margin(loop, s, s1, found) > 0]
+            theta = theta[(self.chain.margins(loop, s, s1, found) > 0).all(axis=0)]
             if not len(theta):
                 return (*found, *(0.0,) * (len(self.dyads) - loop))
             s0, s01 = self._lifts(theta, 0)

@@ -69,35 +69,38 @@ def mobility(
 ) -> Mobility:
     """Find the margins of the loops, and the rate of the shaft, all round.
 
-    `margins` give a loop's margin, mm (n,), at relative angles (n,), each called only where those before it do not
-    bind; `rate` gives 1 - theta_3', asked for only where the linkage does not bind anywhere; `sense` a bounded function
-    of its sign, asked for where the linkage can be closed.
+    `margins` give how far a loop is from each limit, mm (k, n), at relative angles (n,), each called only where those
+    before it do not bind; `rate` gives 1 - theta_3', asked for only where the linkage does not bind anywhere; `sense` a
+    bounded function of its sign, asked for where the linkage can be closed.
     """
     found: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()
     for loop, margin in enumerate(margins):
-        of = _all_round(margin, breaks, _RESOLUTION * breadth)
-        least, at = of.least()
-        if least < found[0]:
-            found = (least, at % TURN, loop)
-        rounding = float(of.blur.min())
-        if least <= rounding:
-            binds = _below(of, 0.0 if least < -2 * rounding else 4 * rounding)
+        for of in _all_round(margin, breaks, _RESOLUTION * breadth):
+            least, at = of.least()
+            if least < found[0]:
+                found = (least, at % TURN, loop)
+            rounding = float(of.blur.min())
+            if least <= rounding:
+                binds += _below(of, 0.0 if least < -2 * rounding else 4 * rounding)
+        if binds:
+            binds = _merged(sorted(binds))
             break
     if binds and found[2] == 0:
         free = _others(binds)
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
         return Mobility(*found, binds, math.nan, math.nan, reverses)
     try:
-        of = _all_round(rate, breaks, _RESOLUTION)
+        (of,) = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
     except RoughError as error:
         return Mobility(*found, binds, math.nan, error.at % TURN, ())
     least, at = of.least()
     return Mobility(*found, binds, least, at % TURN, _below(of, 0.0))
 
 
-def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> Pieces:
-    return pieces(cells(lambda x: f(x)[None], between(0.0, TURN, breaks.tolist()), resolution))
+def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> list[Pieces]:
+    of = cells(f, between(0.0, TURN, breaks.tolist()), resolution)
+    return [pieces(of, row) for row in range(len(of.coefficients))]
 
 
 def _below(pieces: Pieces, level: float) -> tuple[Span, ...]:
@@ -115,7 +118,7 @@ def _below(pieces: Pieces, level: float) -> tuple[Span, ...]:
 
 
 def _merged(spans: list[Span]) -> tuple[Span, ...]:
-    """Join spans that meet, the last with the first among them."""
+    """Join spans that meet, rising, the last with the first among them."""
     joined: list[Span] = []
     for begin, end in spans:
         if joined and begin - joined[-1][1] <= SAME:

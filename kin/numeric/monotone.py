@@ -72,6 +72,13 @@ class Cells:
     coefficients: Array
     noise: Array
 
+    def over(self, row: int, level: Array) -> Array:
+        """All functions where one of them, which rises, has the values `level` (n,): (r, n)."""
+        rising = self.coefficients[row]
+        cell = np.clip(np.searchsorted(rising[:, 0], level, side="right") - 1, 0, len(rising) - 1)
+        t = rising_root(rising[cell] - level[:, None])
+        return np.stack([values(c[cell], t) for c in self.coefficients])
+
 
 class _Basis(NamedTuple):
     """Chebyshev points in (0, 1) (k,), and what takes values there to Bernstein and last two Chebyshev coefficients."""

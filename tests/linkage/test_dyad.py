@@ -176,7 +176,7 @@ def test_dyad_on_a_dyad():
     first = DYADS[0]
     point = first.output_link(first.solve(*POINT)).point(80.0, 10.0)
     second = RPR("previous", (80.0, 10.0), (60.0, -50.0), 4.0)
-    assert second.margin(point[0].c[0], point[1].c[0]).min() > 18
+    assert second.margins(point[0].c[0], point[1].c[0]).min() > 18
     output = second.solve(*point).output
     h = 1e-6
     near = []
@@ -202,7 +202,7 @@ def test_margin_and_where_it_binds(case):
     dyad, beyond, _ = MARGINS[case]
     y = np.array([5.0, 18.0, 24.9, 25.1, 34.9, 35.1, 84.9, 85.1, 200.0])
     x = np.full_like(y, 10.0)
-    margin = dyad.margin(x, y)
+    margin = dyad.margins(x, y).min(axis=0)
     where = [-beyond(*pair) for pair in zip(x, y, strict=True)]
     near = np.abs(where) < 0.2
     assert near.any()
@@ -228,7 +228,7 @@ BARE = [
 @pytest.mark.parametrize("case", range(len(LIMITS) + len(BARE)))
 def test_limit_positions_are_said_so(case):
     dyad, (x, y) = (LIMITS + BARE)[case]
-    assert dyad.margin(x, y) == [0.0]
+    assert dyad.margins(x, y).min(axis=0) == [0.0]
     for order in (1, 2):
         with pytest.raises(BindingError, match="limit position"):
             dyad.solve(Jet.variable(x, order), Jet.variable(y, order))
@@ -304,16 +304,16 @@ def test_near_the_limits(assembly, power):
         ):
             point = driven(side)
             dyad = RRR("output", (0, 0), tuple(ground), pair, assembly)
-            if dyad.margin(point[0][0], point[1][0])[0] > 0:
+            if dyad.margins(point[0][0], point[1][0]).min(axis=0)[0] > 0:
                 judge(dyad, "rrr", pair, point, ground)
         point = driven(math.sqrt(a**2 * (1 + e)))
         rpr = RPR("output", (0, 0), tuple(ground), a if assembly == "open" else -a)
-        if rpr.margin(point[0][0], point[1][0])[0] > 0:
+        if rpr.margins(point[0][0], point[1][0]).min(axis=0)[0] > 0:
             judge(rpr, "rpr", (rpr.offset,), point, ground)
         direction = float(way - math.asin(math.sqrt(1 - e)))
         point = driven(b)
         rrp = RRP("output", (0, 0), b, tuple(ground), direction, assembly)
-        if rrp.margin(point[0][0], point[1][0])[0] > 1e-13:
+        if rrp.margins(point[0][0], point[1][0]).min(axis=0)[0] > 1e-13:
             judge(rrp, "rrp", (b, direction), point, ground)
 
 
@@ -332,7 +332,7 @@ def test_any_rrr(near, part, ground, assembly, driven):
     far = abs(side - near) + part * (side + near - abs(side - near))
     assume(far > 0)
     dyad = RRR("output", (0, 0), ground, (near, far), assembly)
-    assume(dyad.margin(driven[0][0], driven[1][0])[0] > 0)
+    assume(dyad.margins(driven[0][0], driven[1][0]).min(axis=0)[0] > 0)
     judge(dyad, "rrr", (near, far), driven, ground)
 
 
@@ -347,7 +347,7 @@ def test_any_rrp(direction, more, through, assembly, driven):
 def test_any_rpr(part, ground, driven):
     offset = part * math.hypot(driven[0][0] - ground[0], driven[1][0] - ground[1])
     dyad = RPR("output", (0, 0), ground, offset)
-    assume(dyad.margin(driven[0][0], driven[1][0])[0] > 0)
+    assume(dyad.margins(driven[0][0], driven[1][0]).min(axis=0)[0] > 0)
     judge(dyad, "rpr", (offset,), driven, ground)
 
 

@@ -228,7 +228,7 @@ def margin_from_lengths(linkage, s, s1):
 )
 def test_margin_and_where_it_binds(linkage):
     s, s1 = jets()
-    margin = linkage.margin(s.c[0], s1.c[0], W)
+    margin = linkage.margins(s.c[0], s1.c[0], W).min(axis=0)
     expected = [margin_from_lengths(linkage, *pair) for pair in zip(s.c[0], s1.c[0], strict=True)]
     assert margin == pytest.approx(expected, rel=1e-10, abs=1e-11)
     assert margin.min() < 0 < margin.max()
@@ -241,9 +241,9 @@ def test_margin_and_where_it_binds(linkage):
 
 
 def test_margin_takes_numbers():
-    assert FourBar(80.0, 70.0, 105.0).margin(25.0, 30.0, W).shape == (1,)
-    assert InvertedSliderCrank(80.0, 10.0).margin(25.0, 30.0, W) == pytest.approx([70.0])
-    assert SliderCrank(70.0, -10.0).margin(25.0, 30.0, W) == pytest.approx([80.0])
+    assert FourBar(80.0, 70.0, 105.0).margins(25.0, 30.0, W).shape == (2, 1)
+    assert InvertedSliderCrank(80.0, 10.0).margins(25.0, 30.0, W).min(axis=0) == pytest.approx([70.0])
+    assert SliderCrank(70.0, -10.0).margins(25.0, 30.0, W).min(axis=0) == pytest.approx([80.0])
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf])
@@ -283,7 +283,7 @@ frames = st.tuples(st.just(0.0) | st.floats(-60, 60), st.tuples(lifts, lifts))
 
 def check(kind, linkage, dims, pair):
     s, s1 = (Jet(np.array([[c[0]], [c[1]], [c[2] / 2]])) for c in pair)
-    assume(linkage.margin(s.c[0], s1.c[0], W)[0] > 0)
+    assume(linkage.margins(s.c[0], s1.c[0], W).min(axis=0)[0] > 0)
     at = linkage.solve(s, s1, W)
     exact, condition = judged_linkage(kind, linkage.assembly, dims, W, pair, offset=linkage.joint_offset)
     found = (*at.output.derivatives()[:, 0], *at.frame.derivatives()[:, 0])

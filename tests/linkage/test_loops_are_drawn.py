@@ -10,7 +10,7 @@ from kin.linkage import dyad, four_bar
 def kinds(module):
     """Classes of a module of kin that are loops: they tell how far they are from binding."""
     own = (one for one in vars(module).values() if isinstance(one, type) and one.__module__ == module.__name__)
-    return {kind for kind in own if "margin" in vars(kind)}
+    return {kind for kind in own if "margins" in vars(kind)}
 
 
 TABLES = {"page": set(page.MAKERS)}

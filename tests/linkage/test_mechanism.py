@@ -225,7 +225,7 @@ linkages = st.one_of(
 def close(of, theta):
     """Those of the relative angles at which the linkage is well away from binding."""
     s, s1 = (of.lift.derivatives(theta + k, 0)[0] for k in (0, math.pi / 2))
-    return theta[of.linkage.margin(s, s1, of.breadth) > 1e-3]
+    return theta[of.linkage.margins(s, s1, of.breadth).min(axis=0) > 1e-3]
 
 
 @settings(max_examples=examples(60))
@@ -288,7 +288,7 @@ def test_mobility_against_dense_samples(linkage, pivot):
     of = mechanism(linkage, pivot)
     mobile = of.mobility()
     s, s1 = (of.lift.derivatives(EVERY + k, 0)[0] for k in (0, math.pi / 2))
-    margin = linkage.margin(s, s1, 50.0)
+    margin = linkage.margins(s, s1, 50.0).min(axis=0)
     assert mobile.margin <= margin.min() + 1e-9
     assert mobile.margin == pytest.approx(margin.min(), abs=1e-3)
     assert mobile.loop == 0
@@ -297,7 +297,7 @@ def test_mobility_against_dense_samples(linkage, pivot):
     assert ((margin < 0) == inside)[np.abs(margin) > 1e-6].all()
     for end in np.ravel(mobile.binds) if mobile.margin_at and len(mobile.binds) and not inside.all() else ():
         s, s1 = (of.lift.derivatives(end + k, 0)[0] for k in (0, math.pi / 2))
-        assert abs(linkage.margin(s, s1, 50.0)[0]) < 1e-9
+        assert abs(linkage.margins(s, s1, 50.0).min(axis=0)[0]) < 1e-9
     theta = close(of, EVERY)
     if not len(theta):
         return

@@ -135,7 +135,7 @@ def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
     try:
         at = mechanism.at(theta, 2)
         margin = min(
-            float(mechanism.chain.margin(loop, at.faces[0, 0], at.faces[1, 0], mechanism.about).min())
+            float(mechanism.chain.margins(loop, at.faces[0, 0], at.faces[1, 0], mechanism.about).min())
             for loop in range(mechanism.outputs)
         )
     except BindingError:
