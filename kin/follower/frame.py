@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.contour.contour import apart
-from kin.follower.frame_contact import CENTRED, WAYS, FrameError, Resting, driven
+from kin.follower.frame_contact import CENTRED, RESOLUTION, WAYS, FrameError, Resting, driven, resolution
 from kin.follower.frame_dwell import Output, longest_dwell
 from kin.follower.motion_error import MotionError, Play, motion_error, with_steps
 from kin.follower.support import bearing_of
@@ -39,9 +39,6 @@ if TYPE_CHECKING:
 __all__ = ["DwellFound", "FrameError", "LinkageVerdict", "implied_limit", "judge_frame"]
 
 Over = Literal["shaft", "relative"]
-RESOLUTION = 2e-13  # of the breadth: of lengths
-RESOLUTION_ANGLE = 1e-13  # rad
-ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
 SHARE = 1e-6  # of the greatest error: what is resolved at least
 FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
 BESIDE = 1e-13  # rad: from a break, less than which is rounding
@@ -215,8 +212,8 @@ def _judged(
     meant = intended.output(angles)
     errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
     window = None if band is None else _intended_dwell(mechanism, band)
-    flat = [] if window is None else [_extremes(way, *way.relative(window)).span for way in every]
-    across, along = _plays(centred)
+    flat = [] if window is None else [_extremes(way, mechanism, "shaft", *window).span for way in every]
+    across, along = _plays(bearing, mechanism.breadth, centred)
     return LinkageVerdict(
         error=motion_error(max(worst), np.stack(errors), max(flat, default=None), unit),
         centred=motion_error(worst[-1], errors[-1], flat[-1] if flat else None, unit),
@@ -224,7 +221,7 @@ def _judged(
         play_across=across,
         play_along=along,
         least_rate=min(way.least_rate[0] for way in every),
-        dwells=() if band is None else _dwells(ways, band, over),
+        dwells=() if band is None else _dwells(ways, mechanism, band, over),
     )
 
 
@@ -237,16 +234,9 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
     def error(theta: Array, interval: Indices) -> Array:
         return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
 
-    resolution = _resolution(intended.mechanism, rows[1, 0], at_low[0])
-    worst, at = extremes(low, high, at_low, at_high, error, resolution=resolution).worst
-    return worst, way.shaft_at(at)
-
-
-def _resolution(mechanism: Mechanism, output: Array, error: Array | None = None) -> float:
-    """What is to be resolved of the output, or of its error; their values at the nodes are given, rad or mm."""
-    least = RESOLUTION * mechanism.breadth if mechanism.unit == "mm" else RESOLUTION_ANGLE
-    share = 0.0 if error is None else SHARE * float(np.abs(error).max())
-    return max(least, ROUNDING * float(np.abs(output).max()), share)
+    needed = max(resolution(intended.mechanism, rows[1, 0]), SHARE * float(np.abs(at_low[0]).max()))
+    worst, at = extremes(low, high, at_low, at_high, error, resolution=needed).worst
+    return worst, float(way.turned(np.array([at]), 0)[0, 0])
 
 
 def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
@@ -286,7 +276,7 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
                 at[:, :-1],
                 at[:, 1:],
                 lambda theta, _, off=off, off1=off1: error(theta, off, off1, meant(theta)),  # type: ignore[misc]
-                resolution=_resolution(mechanism, output, at[0]),
+                resolution=max(resolution(mechanism, output), SHARE * float(np.abs(at[0]).max())),
             )
             corners.append(found.worst[0])
         bulge = sum(
@@ -330,37 +320,22 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
     return False
 
 
-def _plays(centred: Resting) -> tuple[Play, Play]:
+def _plays(bearing: Bearing, breadth: float, centred: Resting) -> tuple[Play, Play]:
     """Play across and along the frame: one figure of the contour, a quarter turn on."""
-    bearing, side = centred.bearing, centred.mechanism.breadth
-    found = bearing.breadth_extremes(RESOLUTION * side)
-    breadth = side - 2.0 * bearing.back
+    found = bearing.breadth_extremes(RESOLUTION * breadth)
+    least, most = breadth - 2.0 * bearing.back - found.greatest, breadth - 2.0 * bearing.back - found.least
 
     def play(turned: float) -> Play:
-        least, most = (degrees(centred.shaft_at(at - turned)) for at in (found.greatest_at, found.least_at))
-        return Play(breadth - found.greatest, least, breadth - found.least, most, "mm")
+        at = centred.turned(np.array([found.greatest_at, found.least_at]) - turned, 0)[0]
+        return Play(least, degrees(at[0]), most, degrees(at[1]), "mm")
 
     return play(0.0), play(0.5 * np.pi)
 
 
-def _extremes(way: Resting, theta: Array, interval: Indices) -> Extremes:
-    """Extremes of the output from one relative angle to another (2,), less than a turn on, in the given intervals."""
-    count = len(way.nodes) - 1
-    further = int(interval[1] - interval[0]) % count
-    if further == 0 and theta[1] < theta[0]:
-        further = count - 1
-    of = (interval[0] + np.arange(further + 1)) % count
-    low, high = way.nodes[of], way.nodes[of + 1]
-    at_low, at_high = way.low[1][:, of], way.high[1][:, of]
-    if further < count - 1:
-        ends = way.rows(theta, interval)[1]
-        low[0], at_low[:, 0], high[-1], at_high[:, -1] = theta[0], ends[:, 0], theta[1], ends[:, 1]
-
-    def output(x: Array, i: Indices) -> Array:
-        rows: Array = way.rows(x, of[i])[1]
-        return rows
-
-    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism, at_low[0]))
+def _extremes(way: Resting, mechanism: Mechanism, over: Over, begin: float, end: float) -> Extremes:
+    """Extremes of the output from one angle to another, less than a turn on."""
+    of = way.over_shaft if over == "shaft" else way.over_relative
+    return of.extremes(begin, end, resolution(mechanism, of.low[0]))
 
 
 def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
@@ -369,31 +344,26 @@ def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
     return dwell.start + np.array([0.0, min(dwell.length, TURN * (1.0 - 1e-12))])
 
 
-def _dwells(ways: list[Resting], band: float, over: Over) -> tuple[DwellFound, ...]:
+def _dwells(ways: list[Resting], mechanism: Mechanism, band: float, over: Over) -> tuple[DwellFound, ...]:
     """Return the longest dwell of each way, the shortest of them first; of those as short the first way's."""
     found = []
     for way in ways:
-        dwell = longest_dwell(_output(way, over), band)
-        degree = way.mechanism.unit == "deg"
-        told = float(np.degrees(band)) if degree else band
+        dwell = longest_dwell(_output(way, mechanism, over), band)
+        told = float(np.degrees(band)) if mechanism.unit == "deg" else band
         found.append(DwellFound(over, told, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name))
     return tuple(sorted(found, key=lambda dwell: round(dwell.length_deg, ALIKE)))
 
 
-def _output(way: Resting, over: Over) -> Output:
+def _output(way: Resting, mechanism: Mechanism, over: Over) -> Output:
     """Output of a way over the shaft angle or over the relative one."""
-    value = np.append(way.low[1, 0], way.high[1, 0, -1])
-    (phi_low, low), (phi_high, high) = way.low, way.high
+    of = way.over_shaft if over == "shaft" else way.over_relative
 
     def between(a: float, b: float) -> tuple[float, float]:
-        at = np.array([a, b])
-        found = _extremes(way, *(way.relative(at) if over == "shaft" else way.place(at)))
+        found = of.extremes(a, b, resolution(mechanism, of.low[0]))
         return found.least, found.greatest
 
-    if over == "shaft":
-        bends = [(y[2] - y[1] / phi[1] * phi[2]) / phi[1] ** 2 for phi, y in ((phi_low, low), (phi_high, high))]
-        return Output(lambda x: way.over_shaft(x, 0)[0], between, way.shaft, value, _slack(way.shaft, *bends))
-    return Output(lambda x: way.over_relative(x, 0)[0], between, way.nodes, value, _slack(way.nodes, low[2], high[2]))
+    value = np.append(of.low[0], of.high[0, -1])
+    return Output(lambda x: of(x, 0)[0], between, of.x, value, _slack(of.x, of.low[2], of.high[2]))
 
 
 def _slack(x: Array, low: Array, high: Array) -> float:

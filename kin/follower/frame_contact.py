@@ -17,18 +17,25 @@ from kin.contour.contour import apart
 from kin.linkage.loop import BindingError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.elementary import Jet
-from kin.numeric.errors import CamgeoError
-from kin.numeric.newton import cubic_inverse, zeros
+from kin.numeric.errors import CamgeoError, UnsettledError
+from kin.numeric.quintics import Quintics, coefficients, polynomial
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kin.follower.support import Bearing
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices
 
+    Flags = NDArray[np.bool_]
+
 QUARTER = 0.5 * np.pi
 COARSEST = 720  # intervals of a turn at least, however few the breaks
-SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding
+RESOLUTION = 2e-13  # of the breadth: of lengths
+RESOLUTION_ANGLE = 1e-13  # rad
+ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
+HALVINGS = 16  # of an interval, until quintics follow the motion
 SHORT = 1e-6  # rad: over less, the mean rate of the shaft is rounding
 
 
@@ -60,36 +67,51 @@ class Resting:
     """A frame resting on a contour; m intervals of the relative angle between `nodes` (m + 1,), from 0 to 2 pi.
 
     `low` and `high` (2, 3, m) are shaft angle and output, rad or mm, with their derivatives by the relative angle at
-    the ends of the intervals, seen from within; `stretch` (4, m) is what bears on each face.
+    the ends of the intervals, seen from within. These are so short that quintics follow both, over either angle.
     """
 
-    mechanism: Mechanism
-    bearing: Bearing
     rest: Rest
     nodes: Array
-    stretch: Indices
     low: Array
     high: Array
 
     @staticmethod
     def of(mechanism: Mechanism, bearing: Bearing, rest: Rest) -> Resting:
-        """Lay the frame on the contour all round. FrameError where the mechanism binds or the shaft would turn back."""
+        """Lay the frame on the contour all round. FrameError where the mechanism binds or the shaft would turn back.
+
+        UnsettledError where rounding hides the motion.
+        """
         nodes = _nodes(bearing, rest, mechanism.breaks)
-        middle = 0.5 * (nodes[:-1] + nodes[1:])
-        stretch = np.stack([bearing.find(middle + k * QUARTER) for k in range(4)])
-        low, high = (_rows(mechanism, bearing, rest, theta, stretch) for theta in (nodes[:-1], nodes[1:]))
-        found = Resting(mechanism, bearing, rest, nodes, stretch, low, high)
-        least, at = found.least_rate
+        stretch = np.stack([bearing.find(0.5 * (nodes[:-1] + nodes[1:]) + k * QUARTER) for k in range(4)])
+        begin, end = nodes[:-1], nodes[1:]
+        low, high = (_rows(mechanism, bearing, rest, theta, stretch) for theta in (begin, end))
+        whole = Resting(rest, nodes, low, high)
+        least, at = whole.least_rate
         if least <= 0.0:
             raise FrameError(
                 f"{rest.name} the frame turns the shaft back at a relative angle of {degrees(at):.6g} degrees: "
                 f"1 - theta_3' is {least:.3g}"
             )
-        return found
-
-    def rows(self, theta: Array, interval: Indices) -> Array:
-        """Shaft angle and output at theta (n,) in intervals (n,), with two derivatives by theta: (2, 3, n)."""
-        return _rows(self.mechanism, self.bearing, self.rest, theta, self.stretch[:, interval])
+        allowed = np.array([[RESOLUTION_ANGLE], [resolution(mechanism, low[1, 0])]])
+        done: list[tuple[Array, Array, Array]] = []
+        for _ in range(HALVINGS):
+            middle = 0.5 * (begin + end)
+            rows = _rows(mechanism, bearing, rest, middle, stretch)
+            open_ = _missed(end - begin, low, rows, high, allowed)
+            if not (open_.any() or done):
+                return whole
+            done.append((begin[~open_], low[..., ~open_], high[..., ~open_]))
+            if not open_.any():
+                break
+            begin, middle, end, stretch = begin[open_], middle[open_], end[open_], np.tile(stretch[:, open_], 2)
+            low, rows, high = low[..., open_], rows[..., open_], high[..., open_]
+            begin, end = np.concatenate([begin, middle]), np.concatenate([middle, end])
+            low, high = np.concatenate([low, rows], axis=2), np.concatenate([rows, high], axis=2)
+        else:
+            raise UnsettledError("rounding makes the motion rougher than its error may be", float(begin[0]))
+        begin, low, high = (np.concatenate(parts, axis=-1) for parts in zip(*done, strict=True))
+        order = np.argsort(begin)
+        return Resting(rest, np.append(begin[order], TURN), low[..., order], high[..., order])
 
     @cached_property
     def shaft(self) -> Array:
@@ -112,60 +134,52 @@ class Resting:
         k, i = divmod(int(rate.argmin()), len(h))
         return float(rate[k, i]), float(self.nodes[i] + (0.0, 1.0, s[i])[k] * h[i])
 
-    def relative(self, shaft: Array, side: int = 1) -> tuple[Array, Indices]:
-        """Relative angles, in [0, 2 pi], at any shaft angles (n,), and their intervals (n,), to rounding.
+    @cached_property
+    def turned(self) -> Quintics:
+        """Shaft angle over the relative one, any, to whole turns."""
+        return Quintics(self.nodes, self.low[0], self.high[0])
 
-        At a node the interval is that which begins there (side 1) or ends there (side -1).
-        """
-        interval, reduced = _place(self.shaft, shaft, side)
-        low, high = self.nodes[interval], self.nodes[interval + 1]
-        ends, rates = (self.shaft[interval], self.shaft[interval + 1]), (self.low[0, 1], self.high[0, 1])
-        theta = cubic_inverse(reduced, ends, (low, high), (rates[0][interval], rates[1][interval]))
+    @cached_property
+    def over_relative(self) -> Quintics:
+        """Output, rad or mm, over the relative angle."""
+        return Quintics(self.nodes, self.low[1], self.high[1])
 
-        def over(theta: Array) -> tuple[Array, Array]:
-            value, slope = self.rows(theta, interval)[0, :2]
-            return value - reduced, slope
+    @cached_property
+    def over_shaft(self) -> Quintics:
+        """Output over the shaft angle."""
+        return Quintics(self.shaft, _by_shaft(self.low), _by_shaft(self.high))
 
-        return zeros(over, low, high, theta, SETTLED), interval
-
-    def shaft_at(self, theta: float) -> float:
-        """Shaft angle at any relative angle, rad, to whole turns."""
-        return float(self.rows(*self.place(np.array([theta])))[0, 0, 0])
-
-    def place(self, theta: Array, side: int = 1) -> tuple[Array, Indices]:
-        """Return relative angles (n,), any, brought to [0, 2 pi], and their intervals; at a node as `relative` does."""
-        interval, reduced = _place(self.nodes, theta, side)
-        return reduced, interval
-
-    def over_shaft(self, shaft: Array, order: int, side: int = 1) -> Array:
-        """Output, rad or mm, at shaft angles (n,) and up to two derivatives by them, (order + 1, n).
-
-        At a node as `relative` has it.
-        """
-        phi, output = self.rows(*self.relative(shaft, side))
-        rows = [output[0]]
-        if order > 0:
-            rows.append(output[1] / phi[1])
-        if order > 1:
-            rows.append((output[2] - rows[1] * phi[2]) / phi[1] ** 2)
-        return np.stack(rows)
-
-    def over_relative(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Output at relative angles (n,) and up to two derivatives by them, likewise."""
-        rows: Array = self.rows(*self.place(theta, side))[1, : order + 1]
-        return rows
+    def rows(self, theta: Array, interval: Indices) -> Array:
+        """Shaft angle and output at theta (n,) in intervals (n,), with two derivatives by theta: (2, 3, n)."""
+        return np.stack([of.within(interval, theta, 2) for of in (self.turned, self.over_relative)])
 
 
-def _place(ends: Array, x: Array, side: int) -> tuple[Indices, Array]:
-    """Interval between the `ends` (m + 1,) of a turn for each x (n,), and x within the turn.
+def _by_shaft(rows: Array) -> Array:
+    """Output and two derivatives by the shaft angle (3, n), from both by the relative angle (2, 3, n)."""
+    phi, output = rows
+    slope = output[1] / phi[1]
+    return np.stack([output[0], slope, (output[2] - slope * phi[2]) / phi[1] ** 2])
 
-    At an end that is the interval to the right, or to the left (side -1); the turn goes on from its end at its start.
+
+def _missed(width: Array, low: Array, middle: Array, high: Array, allowed: Array) -> Flags:
+    """Whether quintics between the ends of intervals (n,) miss what is in the middle, rows (2, 3, n), by too much.
+
+    `allowed` (2, 1) is what they may miss shaft angle and output by, beside the rounding of the angle itself.
     """
-    outside = (x < ends[0]) | (x > ends[-1])
-    x = np.where(outside, ends[0] + np.mod(x - ends[0], TURN), x)
-    x = np.where(x == (ends[-1] if side > 0 else ends[0]), ends[0] if side > 0 else ends[-1], x)
-    interval = np.searchsorted(ends, x, side="right" if side > 0 else "left") - 1
-    return np.clip(interval, 0, len(ends) - 2), x
+    turned, step, off = high[0, 0] - low[0, 0], middle[0, 0] - low[0, 0], np.zeros((3, len(width)))
+    spans = ((width, 0.5 * width, low[0], high[0]), (width, 0.5 * width, low[1], high[1]))
+    ends = _by_shaft(low), _by_shaft(high)
+    for row, (wide, share, first, last) in enumerate((*spans, (turned, step, *ends))):
+        off[row] = polynomial(coefficients(first, last, wide), wide, share, 0)[0]
+    off = np.abs(off - middle[[0, 1, 1], 0])
+    missed: Flags = np.any(off > allowed[[0, 1, 1]] + ROUNDING * TURN * np.abs(middle[[0, 1, 1], 1]), axis=0)
+    return missed
+
+
+def resolution(mechanism: Mechanism, output: Array) -> float:
+    """What is to be resolved of the output; its values (n,), rad or mm, are given."""
+    least = RESOLUTION * mechanism.breadth if mechanism.unit == "mm" else RESOLUTION_ANGLE
+    return max(least, ROUNDING * float(np.abs(output).max()))
 
 
 def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, rest: Rest | None = None) -> Array:

@@ -66,7 +66,8 @@ def demand_mobile(margin: Array, *, order: int, fixed: NDArray[np.bool_] | None 
 
 def total(*terms: Term) -> Array:
     """Sum of numbers or arrays (n,), compensated: good to an ulp unless it nearly vanishes (Knuth's sum of two)."""
-    value, lost = terms[0], 0.0  # plain numbers stay so until an array comes
+    value: Term = terms[0]  # plain numbers stay so until an array comes
+    lost: Term = 0.0
     for term in terms[1:]:
         longer = value + term
         share = longer - value
