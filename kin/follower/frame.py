@@ -93,8 +93,7 @@ class _Intended:
 
     def output(self, shaft: Array) -> Array:
         """Output at shaft angles (n,)."""
-        output: Array = self.mechanism.at(self.mechanism.relative(shaft), 0).output[0]
-        return output
+        return self.mechanism.output(shaft)
 
     def rows(self, theta: Array) -> Array:
         at = self.mechanism.at(theta, 3)

@@ -20,6 +20,7 @@ from kin.linkage.extremes import Figures, Rows, figures
 from kin.linkage.loop import BindingError
 from kin.linkage.mobility import Mobility, mobility
 from kin.numeric.angles import TURN
+from kin.numeric.bernstein import values
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from kin.linkage.dyad import Dyad
     from kin.linkage.four_bar import Linkage
     from kin.numeric.arrays import Array, Indices
+    from kin.numeric.monotone import Cells
 
 __all__ = ["LinkageMotion", "Mechanism", "OutsideError", "PlaceError"]
 
@@ -205,6 +207,11 @@ class Mechanism:
 
         return zeros(over, low, high, x, _SETTLED) + turns * TURN
 
+    def output(self, shaft: Array) -> Array:
+        """Output (n,) at shaft angles (n,), likewise, by polynomials that follow it to its rounding."""
+        cell, share = self._followed.reach(np.mod(shaft, TURN))
+        return values(self._followed.coefficients[1, cell], share)
+
     @cached_property
     def _mobility(self) -> Mobility:
         return mobility(
@@ -255,14 +262,8 @@ class Mechanism:
         if over == "relative":
             return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
 
-        self._demand_turning()
-
-        def rows(theta: Array) -> Array:
-            at = self.at(theta, 0)
-            return np.stack([at.shaft[0], at.output[0]])
-
-        of = cells(rows, between(0.0, TURN, self.breaks.tolist()))
-        return dwells(lambda phi, _: of.over(0, phi)[1:], self.at(self.breaks, 0).shaft[0], band, TURN, most)
+        shaft = self.at(self.breaks, 0).shaft[0] if len(self.breaks) else self.breaks
+        return dwells(lambda phi, _: self.output(phi)[None], shaft, band, TURN, most)
 
     def _rows(self, theta: Array) -> Rows:
         motion = self.at(theta, 2)
@@ -332,6 +333,17 @@ class Mechanism:
         theta = distinct(np.concatenate([steps, self.breaks]))
         at = self.at(theta, 1)
         return theta, at.shaft[0], at.shaft[1]
+
+    @cached_property
+    def _followed(self) -> Cells:
+        """Shaft angle and output over the relative angle, to their rounding."""
+        self._demand_turning()
+
+        def rows(theta: Array) -> Array:
+            at = self.at(theta, 0)
+            return np.stack([at.shaft[0], at.output[0]])
+
+        return cells(rows, between(0.0, TURN, self.breaks.tolist()))
 
     def _demand_turning(self) -> None:
         mobile = self._mobility

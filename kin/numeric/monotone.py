@@ -72,12 +72,11 @@ class Cells:
     coefficients: Array
     noise: Array
 
-    def over(self, row: int, level: Array) -> Array:
-        """All functions where one of them, which rises, has the values `level` (n,): (r, n)."""
-        rising = self.coefficients[row]
+    def reach(self, level: Array) -> tuple[Indices, Array]:
+        """Cells and shares of them, (n,) each, where the first function, which rises, has the values `level` (n,)."""
+        rising = self.coefficients[0]
         cell = np.clip(np.searchsorted(rising[:, 0], level, side="right") - 1, 0, len(rising) - 1)
-        t = rising_root(rising[cell] - level[:, None])
-        return np.stack([values(c[cell], t) for c in self.coefficients])
+        return cell, rising_root(rising[cell] - level[:, None])
 
 
 class _Basis(NamedTuple):

@@ -159,6 +159,25 @@ def test_shaft_angle_and_its_inverse(driven):
     assert driven.at(0.0, 0).shaft[0, 0] == 0
     assert at.shaft[1] == pytest.approx(1 - at.frame[1])
     assert driven.relative(shaft + TURN) == pytest.approx(theta + TURN, abs=1e-13)
+    size = max(1.0, np.abs(driven.at(theta, 0).output[0]).max())
+    assert np.abs(driven.output(shaft) - driven.at(theta, 0).output[0]).max() < 1e-14 * size
+
+
+@pytest.mark.parametrize("loop", [LINKAGES["four-bar"], InvertedSliderCrank(80.0, 0.0)], ids=["four-bar", "yoke"])
+def test_either_limit_of_a_loop_is_followed_by_itself(monkeypatch, loop):
+    """The nearer of two limits has a kink where they change places, on which cells would be halved thirty times."""
+    of = mechanism(loop)
+    margins, counts = of.chain.margins, []
+
+    def counted(*arguments):
+        rows = margins(*arguments)
+        counts.append(rows.shape)
+        return rows
+
+    monkeypatch.setattr(type(of.chain), "margins", lambda _self, *arguments: counted(*arguments))
+    assert of.mobility().turns
+    assert len(counts) <= 6
+    assert {rows for rows, _ in counts} == {2}
 
 
 @pytest.mark.thin(2)
