@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.made.runs import POINTS, places_of
-from camgeo.schema.fields import Field, Kind, length, mapping
+from camgeo.schema.fields import Field, Kind, either, length, mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.runs import Run
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.part import Part
-    from camgeo.registry.formats import Format
+    from camgeo.registry.formats import Form, Format
     from camgeo.schema.reader import Reader, Values
     from kin.made.points import Datum
 
@@ -57,8 +57,13 @@ CORRECT = Field(
 
 
 def offered(record: Format) -> bool:
-    """Files that show the contour itself, or cut it, may be corrected."""
-    return record.contour
+    """Files that show the contour itself, or cut or grind it, may be corrected; of tables, those that do."""
+    return record.contour or any(_is_contour(form) for form in record.forms.values())
+
+
+def _is_contour(form: Form) -> bool:
+    """Whether a form of tables holds a contour: a grinder's, or points of a curve."""
+    return form.ground or form.curve
 
 
 def check(values: Values, reader: Reader) -> None:
@@ -72,6 +77,9 @@ def check(values: Values, reader: Reader) -> None:
 def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
     """Note a corrected file without points, or of what is not corrected."""
     place = f"{path}.{request.kind}.{CORRECT.name}"
+    if not (request.format.contour or _is_contour(request.form)):
+        kinds = either(tuple(name for name, form in request.format.forms.items() if _is_contour(form)))
+        reader.fault_at(place, f"belongs to a table as {kinds}", None, "leave it out")
     if "made.points" not in reader.marks:
         remedy = "give made.points, such as `made: {points: [run1.csv]}`, or leave it out"
         reader.fault_at(place, "there are no measured points to correct by", None, remedy)

@@ -86,6 +86,31 @@ def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     assert camgeo.verify(recipe, *(report.path / name for name in files)).ok
 
 
+@pytest.mark.parametrize("kind", ["roller on a stem", "flat"])
+def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
+    """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
+    text = plain(RECIPES[kind]) + "\nmanufacture: {wheel: 200}"
+    forms = ", ".join(
+        f"{{csv: {{as: {form}, correct: 0.8}}}}" for form in ("grinding", "points", "lift, roller: 25")
+    )
+    recipe = written(tmp_path, text, runs_of(tmp_path, text, wavy), forms)
+    report = camgeo.export(recipe, tmp_path / "out")
+    files = [report.path / file["path"] for file in report["files"]]
+    assert [file.name for file in files] == ["part-correct.csv", "part-points-correct.csv", "part-lift-correct.csv"]
+    assert report.ok
+    assert camgeo.verify(recipe, *files).ok
+    ((_, _, surface),) = surfaces(RECIPES[kind])
+    degrees, far, normal = np.loadtxt(files[0], delimiter=",", skiprows=4).T
+    centres, facing = (
+        length[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+        for length, angle in ((far, np.radians(degrees)), (np.ones_like(far), np.radians(normal)))
+    )
+    points = np.loadtxt(files[1], delimiter=",")[:, :2]
+    for places in (centres - 100.0 * facing, points):
+        feet = surface.gauge.envelope.feet(places)
+        assert feet.excess == pytest.approx(-0.8 * wavy(feet.parameter), abs=0.0005)
+
+
 def read_contour(path):
     (chain, *_) = sorted(read_drawing(path).chains, key=lambda chain: -chain.contour.length)
     return chain.contour.sample(8)
