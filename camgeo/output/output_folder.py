@@ -82,6 +82,9 @@ class _Swap:
         return _Swap(entry["target"], tuple(entry["come"]), tuple(entry["go"]), tuple(entry["before"]))
 
 
+TRIES = 10  # to lock a name in a folder that others clear away
+
+
 class RunFolder:
     """One run's place in the output folder, as a context: files are written to `folder`, then committed or rejected.
 
@@ -97,13 +100,14 @@ class RunFolder:
         self._family = family
         self._report = family.report
         self._lock = -1
+        self._new: list[Path] = []
         self.folder = self._beside(f"partial-{os.getpid()}")
 
     def __enter__(self) -> Self:
         """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
         try:
-            self._out.mkdir(parents=True, exist_ok=True)
-            lock = locked(self._beside("lock"))
+            self._new = [path for path in (self._out, *self._out.parents) if not os.path.lexists(path)]
+            lock = self._locked()
             if lock is None:
                 text = f"another run is at work here (it holds {self._beside('lock').name})"
                 raise BusyError(text, self._out / self._name)
@@ -119,8 +123,16 @@ class RunFolder:
             raise _surroundings(error, self._out) from error
         return self
 
+    def _locked(self) -> int | None:
+        """Make the output folder and lock the name in it; another run may clear away an empty one in between."""
+        for _ in range(TRIES):
+            self._out.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):
+                return locked(self._beside("lock"))
+        return locked(self._beside("lock"))
+
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
-        """Clear away and unlock; a swap that an interrupt cut off is finished here."""
+        """Clear away and unlock; a swap that an interrupt cut off is finished here. Folders made for nothing go."""
         try:
             # what cannot be finished or cleared away now is left to the next run, and says nothing about this one
             with suppress(OSError, SurroundingsError):
@@ -128,6 +140,9 @@ class RunFolder:
                 self._recover()
         finally:
             self._unlock()
+            with suppress(OSError):  # what is not empty stays, and all above it
+                for folder in self._new:
+                    folder.rmdir()
         if isinstance(error, OSError):
             raise _surroundings(error, self.folder) from error
 

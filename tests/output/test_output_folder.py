@@ -62,6 +62,20 @@ def test_the_output_folder_is_made(tmp_path):
     assert generation_of(export(tmp_path / "a" / "b", 1)) == 1
 
 
+def test_a_folder_that_is_made_for_nothing_goes(tmp_path):
+    with pytest.raises(RuntimeError, match="stop"):
+        stopped(tmp_path / "a" / "b", RuntimeError("stop"))
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(RuntimeError, match="stop"):
+        stopped(tmp_path / "empty", RuntimeError("stop"))
+    assert (tmp_path / "empty").is_dir()  # it was there before
+    with RunFolder(tmp_path / "c", NAME) as run:
+        (tmp_path / "c" / "notes.txt").write_text("mine", "utf-8")
+        write(run.folder, 1)
+    assert (tmp_path / "c" / "notes.txt").read_text("utf-8") == "mine"
+
+
 def test_nothing_changes_without_a_commit(tmp_path):
     export(tmp_path, 1)
     with RunFolder(tmp_path, NAME) as run:

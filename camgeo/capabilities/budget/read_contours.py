@@ -31,13 +31,22 @@ def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict
     from camgeo.synthesis.intent import permitted
     from kin.judge.together import DiscFile, verify_set
     from kin.numeric.errors import CamgeoError
+    from kin.read.errors import ReadError
+    from kin.read.formats import format_of
 
+    try:
+        for path in paths:
+            format_of(path)
+    except ValueError as error:
+        raise CallError(escaped(str(error))) from error
     shown = ", ".join(escaped(str(path)) for path in paths)
     try:
         first, *others = sets_of(recipe, paths, recipe.export.tolerance)
         intent = shaft_of_file(recipe, design, first.held.kind)
         files = [DiscFile(path, disc, recipe.unstated(path)) for _, path, disc in first.files]
         verdicts = verify_set(files, intent, LOOKS, permitted(recipe, recipe.export.tolerance))
+    except ReadError as error:
+        raise CallError(f"{escaped(str(error.path))}: {error.message}") from error
     except (OSError, CamgeoError, ValueError) as error:
         raise CallError(f"{shown}: {getattr(error, 'strerror', None) or error}") from error
     if others:

@@ -15,14 +15,13 @@ from camgeo.cams.family import ExactCam
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
 from camgeo.capabilities.made.reading import Probing
+from camgeo.capabilities.made.refusal import refused_at
+from camgeo.capabilities.made.runs import POINTS_PATH, places_of_run
 from camgeo.common.errors import CallError
-from camgeo.common.terminal import escaped
 from camgeo.curve.moved import Spline, moved
-from kin.follower.motion_error import ContactError
 from kin.made.corrected import Corrected
-from kin.made.smooth import POINTS_A_SPAN, GapError, Smooth, fit
+from kin.made.smooth import POINTS_A_SPAN, Smooth, fit
 from kin.numeric.angles import degrees
-from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -59,28 +58,28 @@ class RunMade:
 
 
 class _FilePoints(NamedTuple):
-    """Deviations of the points in a file of a run, by surface."""
+    """Deviations of the points in a file of a run, by surface; `place` is that of the file in the recipe."""
 
+    recipe: Recipe
+    place: str
     name: str
     deviations: Mapping[str, Deviations]
 
     def smooth(self, surface: str, spans: int | None = None) -> Smooth:
-        """Their curve; raises CallError for a gap."""
+        """Their curve; raises RecipeErrors for a gap."""
         points = self.deviations[surface]
-        try:
+        with refused_at(self.recipe, self.place, self.name):
             return fit(points.parameter, points.e, spans).curve
-        except (GapError, ValueError) as error:
-            raise CallError(f"{escaped(self.name)}: {error}") from error
 
 
 def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
     """Smoothed deviations of all runs of a recipe, each against the exact contour.
 
-    Raises CallError, naming the file, for points that are none of this part or leave a gap.
+    Raises RecipeErrors at the file's place in the recipe for points that are none of this part or leave a gap.
     """
     made = recipe.of(Made)
     listed = () if made is None else made.points
-    runs = [_files(recipe, design, run) for run in listed]
+    runs = [_files(recipe, design, run, f"{POINTS_PATH}[{i}]") for i, run in enumerate(listed)]
     names = [surface.name for surface in design.exact.surfaces]
     spans = {name: _spans(name, [file for run in runs for file in run]) for name in names} if runs else {}
     errors = [max((file.error or 0.0 for file in files), default=0.0) for files in listed]
@@ -106,29 +105,26 @@ def _spans(surface: str, files: Sequence[_FilePoints]) -> int:
     )
 
 
-def _files(recipe: Recipe, design: Design, run: Run) -> list[_FilePoints]:
-    """Points of the files of a run, each placed by itself; raises CallError where a disc has none."""
+def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePoints]:
+    """Points of the files of a run, each placed by itself; raises RecipeErrors where a disc has none."""
     files, missing = [], None
-    for place, file in enumerate(run):
-        points = _points(recipe, design, file, place)
+    for rank, (below, file) in enumerate(places_of_run(run, place)):
+        points = _points(recipe, design, file, below, rank)
         surfaces = [one for disc in points.discs for one in disc.surfaces]
-        files.append(_FilePoints(file.file, {one.surface.name: one.points.deviations for one in surfaces}))
+        deviations = {one.surface.name: one.points.deviations for one in surfaces}
+        files.append(_FilePoints(recipe, below, file.file, deviations))
         lacking = {name_of(disc.part) for disc in points.missing}
         missing = [disc for disc in (points.missing if missing is None else missing) if name_of(disc.part) in lacking]
-    demand_discs(missing or ())
+    with refused_at(recipe, place):
+        demand_discs(missing or ())
     return files
 
 
-def _points(recipe: Recipe, design: Design, file: PointFile, place: int) -> Points:
-    """Points of a file, which is the `place`-th of its run."""
+def _points(recipe: Recipe, design: Design, file: PointFile, place: str, rank: int) -> Points:
+    """Points of a file at its place in the recipe, which is the `rank`-th of its run."""
     path = Path(recipe.path).parent / file.file
-    try:
-        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.face, file.units), place)
-    except CallError as error:
-        faults = [fault.removeprefix(f"{escaped(str(path))}: ") for fault in error.faults]
-        raise CallError(*(f"{escaped(file.file)}: {fault}" for fault in faults)) from error
-    except (UnsettledError, ContactError, ValueError) as error:
-        raise CallError(f"{escaped(file.file)}: {error}") from error
+    with refused_at(recipe, place, file.file, path):
+        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.face, file.units), rank)
 
 
 def totals(recipe: Recipe, design: Design) -> dict[str, Smooth]:

@@ -10,7 +10,6 @@ import numpy as np
 from camgeo.capabilities.made.correction import runs_made
 from camgeo.capabilities.made.judge import follower_motion
 from camgeo.capabilities.made.keys import CORRECT, Made
-from camgeo.common.errors import CallError
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.registry.capability import Results
 from kin.made.motion import COVERAGE, contact_errors, paired
@@ -37,11 +36,8 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
     if design.trimmed:
         problem = "a contour whose undercut is cut off is not held against points"
         raise recipe.error("made.points", problem, None, "give undercut: refuse")
-    try:
-        with clock.stage("made"):
-            runs = runs_made(recipe, design)
-    except CallError as error:
-        raise recipe.error("made.points", str(error)) from error
+    with clock.stage("made"):
+        runs = runs_made(recipe, design)
     totals = {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
     entry = {
         "unit": UNIT_NAMES[recipe.units],

@@ -5,8 +5,10 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.made.runs import in_recipe
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
+from camgeo.schema.errors import RecipeErrors
 from kin.follower.frame_contact import FrameError
 from kin.follower.motion_error import ContactError
 from kin.numeric.errors import UnsettledError
@@ -14,6 +16,8 @@ from kin.numeric.errors import UnsettledError
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
 
 
 @contextmanager
@@ -30,3 +34,23 @@ def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
         raise CallError(*(f"{of}{fault}" for fault in error.faults)) from error
     except (UnsettledError, ValueError) as error:
         raise CallError(f"{files}: {of}{error}") from error
+
+
+@contextmanager
+def refused_at(recipe: Recipe, place: str, file: str = "", path: Path | None = None) -> Iterator[None]:
+    """Turn what is refused of points that a recipe names into RecipeErrors at their place in it.
+
+    Messages that name the file by its `path` name it as the recipe does; remedies are keys of the entry.
+    """
+    try:
+        yield
+    except CallError as error:
+        faults = [fault.removeprefix(f"{escaped(str(path))}: ") for fault in error.faults]
+    except (ContactError, UnsettledError, ValueError) as error:
+        if isinstance(error, RecipeErrors):
+            raise
+        faults = [str(error)]
+    else:
+        return
+    name = f"{escaped(file)}: " if file else ""
+    raise recipe.error(place, f"{name}{in_recipe('; '.join(faults))}")

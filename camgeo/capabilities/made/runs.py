@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import read_path
@@ -117,10 +118,31 @@ POINTS = Field(
 )
 
 
-def places_of(runs: collections.abc.Sequence[Run]) -> list[tuple[str, PointFile]]:
-    """Each file of the runs with its place below `made.points`."""
+def _option_names() -> list[str]:
+    """Options of `verify` that are keys of an entry, a dash before those of a mapping in it."""
+    names = [field.name for field in POINT_FILE.fields if field.table is None]
     return [
-        (f"made.points[{i}]" + (f"[{k}]" if len(run) > 1 else ""), file)
-        for i, run in enumerate(runs)
-        for k, file in enumerate(run)
+        *names,
+        *(f"{field.name}-{key.name}" for field in POINT_FILE.fields if field.table for key in field.inner.fields),
     ]
+
+
+POINTS_PATH = f"made.{POINTS.name}"
+
+
+def places_of(runs: collections.abc.Sequence[Run]) -> list[tuple[str, PointFile]]:
+    """Each file of the runs with its place in the recipe."""
+    return [each for i, run in enumerate(runs) for each in places_of_run(run, f"{POINTS_PATH}[{i}]")]
+
+
+def places_of_run(run: Run, place: str) -> list[tuple[str, PointFile]]:
+    """Each file of a run with its place, by that of the run."""
+    return [(f"{place}[{k}]" if len(run) > 1 else place, file) for k, file in enumerate(run)]
+
+
+def in_recipe(text: str) -> str:
+    """Say by keys of a file's entry what a text says by options of `verify`."""
+    return _OPTION.sub(lambda option: f"{option[1].replace('-', '.')}{option[2] and ':'}{option[2]}", text)
+
+
+_OPTION = re.compile(rf"--({'|'.join(_option_names())})((?: (?:{'|'.join((*UNITS, *ALIGN, 'cm', 'm'))})\b)?)")
