@@ -155,6 +155,10 @@ def read_rows(
     from kin.law.programme import IntentError
     from kin.read.tables import Sheet
 
+    if values.get("scale") == 0.0:
+        place = f"{path.rpartition('.')[0]}.scale"
+        reader.fault_at(place, "times 0 no motion is left", "0", "give another number, or leave it out")
+        return None
     origin, mark = values["table"], reader.marks[path]
     sheet = Sheet(
         quantity,

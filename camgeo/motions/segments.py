@@ -328,8 +328,8 @@ def _tried(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
 
 def _table_law(reader: Reader, node: Node, path: str, values: Values) -> OwnLaw | None:
     """Read the rows of a law now, so that the recipe needs no file any more."""
-    raw = {**values, "angle": "radians", "units": "mm"}
-    found = read_rows(reader, raw, path, quantity="length", instead="mm")
+    raw = {**values, "angle": "radians"}
+    found = read_rows(reader, raw, path, quantity="share", instead="")
     if found is None:
         return None
     rows, place = found

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 AngleUnit: TypeAlias = Literal["cam", "crank", "radians", "turns", "percent"]
-Quantity: TypeAlias = Literal["length", "angle", "force", "moment"]
+Quantity: TypeAlias = Literal["length", "angle", "force", "moment", "share"]
 Column: TypeAlias = str | int
 
 _MM, _DEGREE, _LBF = 1.0, math.pi / 180, 4.4482216152605
@@ -27,8 +27,9 @@ UNITS: dict[Quantity, dict[str, float]] = {
     "angle": {"degrees": _DEGREE, "radians": 1.0},
     "force": {"N": 1.0, "kN": 1000.0, "lbf": _LBF},
     "moment": {"Nm": 1.0, "lbf in": _LBF * 0.0254, "lbf ft": _LBF * 0.3048},
+    "share": {"": 1.0},
 }
-"""One unit of a column as mm, rad, N or N m."""
+"""One unit of a column as mm, rad, N or N m; shares have none, nor have the angles beside them."""
 
 _WORDS = (
     {word: word for units in UNITS.values() for word in units if " " not in word}
@@ -39,7 +40,13 @@ _WORDS = (
     | {"%": "percent", "percent": "percent", "pct": "percent"}
 )  # units of headings, in small letters but for those that mean something else then
 _ANGLE_UNITS = {"degrees": _DEGREE, "radians": 1.0, "turns": 2 * math.pi, "percent": math.pi / 50}
-_QUANTITIES: dict[Quantity, str] = {"length": "a length", "angle": "an angle", "force": "a force", "moment": "a moment"}
+_QUANTITIES: dict[Quantity, str] = {
+    "length": "a length",
+    "angle": "an angle",
+    "force": "a force",
+    "moment": "a moment",
+    "share": "a share from 0 to 1 of a law's stroke or of its angle",
+}
 _JOINED = {"nm", "lbfin", "lbfft"}  # units of two words
 _ANGLE_NAMES = {"angle", "phi", "theta", "cam", "crank", "shaft", "rotation", "deg", "°", "rad", "degrees", "radians"}
 _VALUE_NAMES = {"lift", "s", "displacement", "stroke", "position", "rise", "travel", "swing", "load", "force", "torque"}
@@ -165,6 +172,10 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
     IntentError where heading and caller differ, or the heading's unit is another quantity's.
     """
     first, second = (rows.heading[k] for k in places) if rows.heading else ("", "")
+    for name in (first, second) if sheet.quantity == "share" else ():
+        if (unit := unit_of(name)) is not None:
+            meant = f"{_QUANTITIES[sheet.quantity]} is meant here: name it without a unit, such as u or s"
+            raise IntentError(f"the column {name!r} is in {unit}; {meant}", field)
     heading = unit_of(first)
     kind = heading if heading in _ANGLE_UNITS else None
     crank = "crank" in _words(first)

@@ -23,6 +23,7 @@ from camgeo.schema.json_schema import table_schema
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.yaml_source import entries, read_source
+from camgeo.synthesis.design import designed
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named
 from kin.law.sources.lobe import lobe
@@ -671,3 +672,44 @@ def test_faults_of_a_card_and_what_mends_them(lobe, message, remedy, tmp_path):
         for written, told in zip(("228", "250", "140"), nearest, strict=True):
             remedy = remedy.replace(written, told)
     pipeline.check(recipe(f"{{lobe: {{{remedy}}}}}", tmp_path, head=FLAT))
+
+
+TINY_RAMP = "{lobe: {lift: 8, half: 60, powers: [2, 8, 14, 20, 26], ramp: {height: 1e-12, velocity: 0.02}}}"
+LAW_IN_DEGREES = "[{rise: 8, over: 120, law: {table: law.csv}}, {return: 8, over: 240, law: cycloidal}]"
+
+
+@pytest.mark.parametrize(
+    ("motion", "told", "mended"),
+    [
+        (
+            "{table: lift.csv, scale: 0}",
+            "cam.motion.scale: times 0 no motion is left, given 0; give another number, or leave it out",
+            "{table: lift.csv, scale: 2}",
+        ),
+        (
+            TINY_RAMP,
+            "motion.lobe.ramp.height: at its velocity so low a ramp lasts 7e-11 degrees: give one of 0.0001 or more",
+            TINY_RAMP.replace("1e-12", "1e-5"),
+        ),
+        (
+            LAW_IN_DEGREES,
+            "law.table: law.csv, the column 'deg' is in degrees; a share from 0 to 1 of a law's stroke or of its angle",
+            LAW_IN_DEGREES.replace("law.csv", "named.csv"),
+        ),
+    ],
+)
+def test_a_motion_that_is_none_is_told_with_a_remedy(motion, told, mended, tmp_path):
+    rows = "".join(f"{angle},{5.0 - 5.0 * np.cos(np.radians(angle)):.5f}\n" for angle in range(0, 361, 5))
+    (tmp_path / "lift.csv").write_text(f"angle,lift\n{rows}", "utf-8")
+    shares = "".join(f"{u:.2f},{u - np.sin(2.0 * np.pi * u) / 2.0 / np.pi:.5f}\n" for u in np.linspace(0.0, 1.0, 41))
+    (tmp_path / "law.csv").write_text(f"deg,s\n{shares}", "utf-8")
+    (tmp_path / "named.csv").write_text(f"u,s\n{shares}", "utf-8")
+    file = tmp_path / "cam.yaml"
+    head = "cam: {kind: disc, base_radius: 40, follower: {kind: roller, radius: 10}, motion: "
+    file.write_text(f"{head}{motion}}}\n", "utf-8")
+    with pytest.raises(RecipeErrors) as refused:
+        designed(load(file))
+    assert told in str(refused.value)
+    assert len(str(refused.value).splitlines()) == 1
+    file.write_text(f"{head}{mended}}}\n", "utf-8")
+    assert designed(load(file)).exact.motion is not None

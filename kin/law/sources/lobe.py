@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kin.law.segment import Stretch
 
 FROM_REST = 0.4  # of a ramp's height, over which it comes to its velocity
+LEAST_RAMP = math.radians(1e-4)  # rad: a shorter one is a jump of velocity but for its name
 _NOTHING = 1e-12  # rad: a part so short is rounding
 GREATEST_POWER = 100
 
@@ -196,6 +197,10 @@ def demand_ramp(lift: float, ramp: Ramp, field: str) -> None:
         raise IntentError("the ramp's height must lie between 0 and the lift", f"{field}.ramp.height")
     if not (math.isfinite(ramp.velocity) and ramp.velocity > 0):
         raise IntentError("the ramp's velocity must be above 0", f"{field}.ramp.velocity")
+    if not ramp.over >= LEAST_RAMP:
+        over, least = math.degrees(ramp.over), math.degrees(LEAST_RAMP)
+        why = f"at its velocity so low a ramp lasts {over:.3g} degrees: give one of {least:g} or more, or none"
+        raise IntentError(why, f"{field}.ramp.height")
 
 
 def _demand_left(half: float, ramp: Ramp, total: float, field: str) -> None:
