@@ -32,7 +32,7 @@ UNITS: dict[Quantity, dict[str, float]] = {
 """One unit of a column as mm, rad, N or N m; shares have none, nor have the angles beside them."""
 
 _WORDS = (
-    {word: word for units in UNITS.values() for word in units if " " not in word}
+    {word: word for units in UNITS.values() for word in units if word and " " not in word}
     | {"in": "inch", "inches": "inch", '"': "inch", "mil": "thou", "mils": "thou", "thous": "thou"}
     | {"deg": "degrees", "degree": "degrees", "°": "degrees", "rad": "radians", "radian": "radians"}
     | {"n": "N", "kn": "kN", "nm": "Nm", "lbs": "lbf", "lb": "lbf", "lbfin": "lbf in", "lbfft": "lbf ft"}
