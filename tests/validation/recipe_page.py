@@ -10,6 +10,8 @@ from pathlib import Path
 from runpy import run_path
 
 from camgeo.cams.disc import FOLLOWERS
+from camgeo.formats.csv import FORMS
+from camgeo.formats.csv import MODULES as TABLES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
@@ -18,7 +20,7 @@ from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.registry import registry
 from camgeo.registry.capability import Capability
 from camgeo.registry.formats import FORMATS, MODULES
-from camgeo.schema.fields import Kind, Table
+from camgeo.schema.fields import Kind, Table, either
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"
@@ -55,6 +57,8 @@ def row(field, optional_together):
         default = field.default or ""
     # figures and formats that capabilities add have pages of their own
     wanted = "a figure" if field.choices and set(field.choices) <= set(FIGURES) else field.wanted()
+    if set(field.choices) == set(FORMS):  # tables that capabilities add have pages of their own
+        wanted = either(tuple(name for name in FORMS if name in TABLES))
     about = field.about
     for name in registry.formats():
         about = about.replace(f", {name}", "")

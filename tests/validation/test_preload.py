@@ -296,8 +296,11 @@ TRAIN = "dynamics: {mass: 2, stiffness: 1.0e6, rpm: 100, "
             "export.files[0].dxf.tolerance",
             "below 0.01",
         ),
+        # needs: dynamics
         (YOKE, "interference: 0.02", TRAIN + "backlash: 0.1}", "dynamics.backlash", "leave cam.preload out"),
+        # needs: dynamics
         (YOKE, "interference: 0.02", TRAIN + "preload: 10}", "dynamics.preload", "leave cam.preload out"),
+        # needs: dynamics
         (YOKE, "interference: 0.02", TRAIN.rstrip(", ") + "}", "dynamics.stiffness", "leave it out"),
         (YOKE + ", undercut: trim", "interference: 0.02", "", "cam.undercut", "leave it out"),
         (
