@@ -77,6 +77,7 @@ def test_the_citation_is_of_this_version():
     )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("arguments", "status", "shown"),
     [

@@ -38,6 +38,7 @@ def test_what_it_imports_is_there(name: str) -> None:
             assert hasattr(modules[node.value.id], node.attr), f"{name}:{node.lineno}: {node.value.id}.{node.attr}"
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["benchmarks/speed.py", "docs/make_gallery.py", "benchmarks/peer.py"])
 def test_help(name: str, tmp_path: Path) -> None:
     helped(name, tmp_path)

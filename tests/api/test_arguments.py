@@ -150,6 +150,7 @@ def refusal(function: Callable[..., object], given: dict[str, object]) -> Except
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("elsewhere")
 def test_every_public_function_is_held_to_the_rule(
     functions: Functions,

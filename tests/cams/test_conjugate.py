@@ -136,6 +136,7 @@ def least_by_brute_force(cam: Recipe, apart: float, rise: float, back: float) ->
     return float(np.hypot(d, e[:, 0])[kept].min())
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("rise", "back"), [(30, 30), (35, 25), (25, 40)])
 def test_a_stem_is_sized_by_both_discs(rise: int, back: int) -> None:
     size = f"sizing: {{pressure-angle: {{at_most: {rise}, on_return: {back}}}}}"
@@ -176,6 +177,7 @@ def test_a_stem_with_its_offset_given_is_sized_by_both_discs() -> None:
     within(pair(follower, f"distance: {least}", size=size), 30, 30)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", ["trailing", "leading"])
 def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
     """No pivot near the one that was found keeps the limits on both discs with a smaller base radius."""
@@ -222,6 +224,7 @@ def test_figures_are_of_the_worst_disc() -> None:
     assert found["pressure-angle-rise"].value == pytest.approx(-math.degrees(math.atan(low.value)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_remarks_say_which_size_would_keep_the_rules() -> None:
     cam = recipe(STEM, "distance: 85, radius: 8")
     told = {remark.name: remark.sentence for remark in remarks_of(cam, designed(cam))}

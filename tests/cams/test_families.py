@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 SHIPPED = sorted((ROOT / "recipes").glob("*.yaml"))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_follower_is_drawn_and_its_checks_are_made(path: Path) -> None:
     recipe = load(path)

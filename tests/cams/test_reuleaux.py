@@ -231,7 +231,7 @@ def test_the_polygon_by_hand_passes(text):
     assert all(check.ok for check in checks.values()), checks
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 @pytest.mark.parametrize("which", [0, 1, 2])
 @pytest.mark.parametrize("fault", ["shaved", "moved", "turned", "rounded"])
@@ -268,6 +268,7 @@ def test_a_corner_that_is_off_is_seen(text, which, fault):
         assert checks["motion"].value == pytest.approx(0.001, rel=1e-3)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 @pytest.mark.parametrize("which", [0, 1, 2])
 def test_an_arc_about_another_centre_is_seen(text, which):

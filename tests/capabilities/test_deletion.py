@@ -74,6 +74,7 @@ def strings(path: Path) -> set[str]:
     return {node.value for node in constants if isinstance(node.value, str)}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", CAPABILITIES)
 def test_no_test_that_is_left_imports_it(name: str) -> None:
     imported = re.compile(rf"^\s*(?:from|import) camgeo\.capabilities\.{name}\b", re.MULTILINE)

@@ -170,7 +170,7 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(
     ("text", "sign", "sense"),
     few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),
@@ -595,6 +595,7 @@ REMEDIES = [
 ]
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [row for row in REMEDIES if row[1] in FIGURES],  # those of a capability are where it is

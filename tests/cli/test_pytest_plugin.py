@@ -176,7 +176,7 @@ manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5
 
 
 # needs: milling
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
 @pytest.mark.parametrize(
     "part",
@@ -209,6 +209,7 @@ def test_a_recipe_runs_once_and_not_before_its_first_item(project: Pytester, cou
     assert counted == ["tiny"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("file", "text"),
     [

@@ -231,6 +231,7 @@ def test_motion_and_contour_of_good_files(tmp_path, vertices, recipe, write):
     assert testing.assert_contour(load(recipe), str(path)) < 5e-4
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("write", [dxf, stl])
 def test_motion_of_spoilt_files(tmp_path, vertices, recipe, write):
     cosine, sine = np.cos(np.radians(0.2)), np.sin(np.radians(0.2))

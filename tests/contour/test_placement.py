@@ -45,6 +45,7 @@ def words(points: np.ndarray) -> str:
     )
 
 
+@pytest.mark.thin(7)
 @pytest.mark.parametrize(
     ("placed", "expected"),
     [

@@ -101,7 +101,7 @@ def oracles() -> dict[str, tuple[Shape, Callable[[mp.mpf], mp.mpc]]]:
 ORACLES = oracles()
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("name", ORACLES)
 def test_frame_is_that_of_forty_digits(name: str) -> None:
     shape, point = ORACLES[name]

@@ -306,7 +306,7 @@ def test_a_neck_leaves_two_corners_and_two_pieces():
         assert body.boundary.distance(shapely.Point(corner.point)) < 1e-3
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("shift", [0.0, 1.0, 2.5, 4.0])
 def test_the_origin_of_the_parameter_does_not_matter(shift):
     turned = waves(20.0, (5, 5.0, 5 * shift), (2, 2.0, np.pi / 2 + 2 * shift))

@@ -56,7 +56,7 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 CLOSE = 0.25  # px: coordinates are rounded to a tenth, and letters stand about them
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("page", sorted({page for page, _ in paper_pages.TABLES}))
 def test_the_tables_of_a_page_are_measured_anew(page: str) -> None:
     marks = [mark for name, mark in paper_pages.TABLES if name == page]
@@ -90,7 +90,7 @@ def test_a_spoilt_motion_is_found_by_the_rows_of_its_equations(monkeypatch: pyte
     assert "1" not in failed  # the contour's own breadth is none of it
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("paper", EQUATIONS)
 def test_every_equation_and_every_figure_of_a_paper_has_a_row(paper: str) -> None:
     rows = measured("validation.md", paper)

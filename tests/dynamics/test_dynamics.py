@@ -117,7 +117,7 @@ def test_an_oscillator_has_finite_figures(figures):
 # --- response ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("order", [1, 3, 17])
 @pytest.mark.parametrize("zeta", DAMPINGS)
 @pytest.mark.parametrize("r", RATIOS)

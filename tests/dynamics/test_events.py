@@ -188,7 +188,7 @@ def stiff(ratio, zeta, rpm=300.0, preload=0.0, mass=0.4):
     return Train(mass, 2.0 * zeta * mass * natural, mass * natural**2, preload)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
 @pytest.mark.parametrize("ratio", [1.3, 123.0, 1e3 + 0.3, 1e5 + 0.3])
 def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):

@@ -93,6 +93,7 @@ def near_a_break(name: str) -> Curve:
     return load_text(text, "r").cam.exact().surfaces[0].curve
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", NEAR_A_BREAK)
 @pytest.mark.parametrize("tolerance", [0.05, 0.001, 1e-5])
 def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:

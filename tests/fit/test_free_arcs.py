@@ -134,7 +134,7 @@ def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     assert np.abs(gap).max() >= arcs.bound.worst - 0.1 * tolerance
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("tolerance", few([1e-2, 1e-4], 2))
 def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     """The other half of a two-sided bound: no point of the curve is farther from every arc than promised."""
@@ -148,7 +148,7 @@ def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     assert step < 1.0
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 def test_never_more_than_biarcs(curve: Curve, monkeypatch: pytest.MonkeyPatch) -> None:
     free = [fit_arcs(curve, tolerance).count for tolerance in TOLERANCES]
     monkeypatch.setattr(free_arcs, "free_arcs", lambda _curve, parts, _aim, _limit: [None] * len(parts))
@@ -195,7 +195,7 @@ def test_dwells_and_given_arcs_stay_exact() -> None:
     assert np.count_nonzero(np.abs(radius - 62.0) < 1e-9) == 3
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", ["as-figure-2a", "shu-wu", "w-figure-9"])
 def test_the_judge_agrees(name: str) -> None:
     """kin reads the DXF back and measures motion and deviation by contact: within tolerance, and within the bound."""

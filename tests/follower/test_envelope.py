@@ -65,7 +65,7 @@ def probes(points, spread, seed=5):
     return points + rng.uniform(-spread, spread, points.shape)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", LIFTS)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
 def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
@@ -109,6 +109,7 @@ def test_pitch_curve_in_polar_form_is_the_papers():
     assert near == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in LIFTS if n != "undercut"])
 def test_area_and_perimeter_of_a_flat_envelope(name):
     envelope = FlatEnvelope(LiftPitch(LIFTS[name]))
@@ -127,6 +128,7 @@ def test_barbier_and_reuleaux_in_closed_form():
     assert area == pytest.approx(np.pi * (25.0**2 - 4 * 2.0**2), rel=1e-14)  # pi (mean^2 - (k^2 - 1) a^2 / 2)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in PITCHES if n != "undercut"])
 def test_area_and_perimeter_of_a_roller_envelope(name):
     transmission, radius = PITCHES[name]

@@ -228,7 +228,7 @@ PAIRS = {
 }  # fmt: skip
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
 def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):

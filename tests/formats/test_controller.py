@@ -60,6 +60,7 @@ def joined(columns: dict[str, Any], degrees: Any) -> Any:
     return interpolate.BPoly.from_derivatives(x, list(rows))(degrees)
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
@@ -140,6 +141,7 @@ def test_a_curve_point_table_has_so_many_rows_and_no_more(tmp_path: Path) -> Non
     assert (tmp_path / "out" / "cam" / "cam.csv").read_text().startswith("1001\n")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("controller", "tolerance"), [("codesys", "0.00001"), ("codesys-table", "0.01")])
 def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolerance: str, tmp_path: Path) -> None:
     path = written(tmp_path, "stem", f"for: {controller}", tolerance)
@@ -159,6 +161,8 @@ def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolera
 
 
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("controller", CONTROLLERS)
 def test_a_row_changed_by_twice_the_tolerance_is_refused(
     controller: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -183,6 +187,7 @@ def test_a_row_changed_by_twice_the_tolerance_is_refused(
     assert main(["verify", str(path), str(changed)]) == 1
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

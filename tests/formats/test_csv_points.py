@@ -37,6 +37,7 @@ def written(folder: Path, cam: str, options: str = "", tolerance: str = "0.001")
     return path
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("cam", CAMS)
 def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path: Path) -> None:
     report = camgeo.export(written(tmp_path, cam, tolerance="0.0001" if cam == "inch" else "0.001"), tmp_path / "out")
@@ -48,6 +49,7 @@ def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path
     assert 36 < len(rows) < 2000
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("suffix", ["txt", "xyz"])
 def test_a_text_has_blanks_between_the_numbers(suffix: str, tmp_path: Path) -> None:
     report = camgeo.export(written(tmp_path, "flat", f", suffix: {suffix}"), tmp_path / "out")
@@ -67,6 +69,7 @@ def test_points_beside_another_table_have_a_name_of_their_own(tmp_path: Path) ->
     assert made == ["cam-points.csv", "cam-points.txt", "cam-points.xyz", "cam.csv"]
 
 
+@pytest.mark.slow
 def test_the_error_is_that_of_another_spline(tmp_path: Path) -> None:
     """Scipy's periodic cubic over the lengths of the chords, held against the contour of a fine list."""
     path = written(tmp_path, "stem", ", step: 10", "0.05")
@@ -122,6 +125,7 @@ def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
     camgeo.export(path, tmp_path / "out")
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("cam", ["stem", "ccw", "inch"])
 @pytest.mark.parametrize("suffix", ["csv", "txt", "xyz"])
 def test_a_list_of_any_origin_is_verified_as_the_spline_through_it(cam: str, suffix: str, tmp_path: Path) -> None:

@@ -58,6 +58,7 @@ def test_every_record_has_an_entry_where_its_files_are_read() -> None:
         assert record.program == (entry.contents == "program")
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", MANY)
 def test_without_a_format_all_others_are_made(name: str, tmp_path: Path) -> None:
     del MODULES[name]

@@ -232,6 +232,7 @@ def test_cadquery_imports_it(tmp_path):
 # --- planted faults -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @kernel
 @pytest.mark.parametrize(
     ("pattern", "replacement", "found"),
@@ -266,7 +267,7 @@ def test_a_moved_corner_of_the_contour_is_caught(plain, tmp_path):
     assert failures(path, recipe, design, 0.001) & {"watertight", "contour"}
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @kernel
 @pytest.mark.parametrize(
     ("change", "check"),

@@ -95,7 +95,7 @@ def sampled(data, count=9):
 # --- written and read back --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("form", ["arcs", "polyline", "spline"])
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_every_form_is_the_cam_by_a_second_reader_too(tmp_path, form, rotation):
@@ -198,6 +198,7 @@ def spoilt(path, pattern, replacement):
     return path
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("pattern", "replacement", "found"),
     [

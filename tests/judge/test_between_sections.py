@@ -81,6 +81,7 @@ def failing(recipe: Path, path: Path) -> dict[str, str]:
     return {check.name: check.detail for check in report.checks if not check.ok}
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("out", [2.0, 0.2, -0.2])
 @pytest.mark.parametrize("share", [(0.06, 0.44), (0.56, 0.94)])
 def test_a_bump_or_a_dent_between_sections(
@@ -108,7 +109,7 @@ def moved(path: Path, target: Path, move: Callable[[np.ndarray], np.ndarray]) ->
     return target
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("amount", [1e-30, 1e-9, 5e-6, 1e-4])
 def test_noise_in_height_is_rounding_for_every_kind(
     solid: tuple[str, Path, Path], tmp_path: Path, amount: float
@@ -130,7 +131,7 @@ def test_noise_in_height_is_rounding_for_every_kind(
         assert 0.9 * amount < noise - quiet < 4.0 * amount
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(("amount", "turned"), [(1e-4, False), (0.0, True)])
 def test_leans_of_all_walls_and_turns_there_and_back(
     solid: tuple[str, Path, Path], tmp_path: Path, amount: float, turned: bool
@@ -164,6 +165,7 @@ def leaning(path: Path, target: Path, top: float, amount: float, *, single: bool
     return moved(path, target, lean)
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("amount", "single"),
     [
@@ -222,6 +224,7 @@ def test_leans_in_a_glb_that_is_turned_z_up(
     assert not found or {"thickness", "chamfer", "set-screw"} & set(found)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("out", [0.0, 0.05])
 def test_a_chamfer_with_vertices_on_its_way(tmp_path: Path, out: float) -> None:
     """As remeshing leaves it, every triangle cut in four; and one vertex halfway up drawn out."""
@@ -235,6 +238,7 @@ def test_a_chamfer_with_vertices_on_its_way(tmp_path: Path, out: float) -> None:
     assert set(failing(recipe, tmp_path / "fine.stl")) == ({"chamfer"} if out else set())
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("kind", ["hub", "groove", "camshaft"])
 def test_a_fin_thinner_than_the_tolerance(tmp_path: Path, kind: str) -> None:
     """A sheet of 8 micrometres round the top of the wall, 4 mm wide: its faces are where they may be."""
@@ -256,6 +260,7 @@ def test_a_fin_thinner_than_the_tolerance(tmp_path: Path, kind: str) -> None:
     assert "where one is expected" in found["thickness"]
 
 
+@pytest.mark.thin(3)
 @kernel
 @pytest.mark.parametrize(("kind", "form"), [("hub", "cone"), ("camshaft", "cone"), ("camshaft", "box")])
 def test_a_bump_on_a_step_file(tmp_path: Path, kind: str, form: str) -> None:

@@ -77,6 +77,7 @@ def test_two_drawings_and_what_is_left_between_them(tmp_path):
     assert check.detail.endswith("with a.dxf")
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("fault", "caught"),
     [

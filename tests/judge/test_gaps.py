@@ -70,6 +70,7 @@ def verified(recipe: Path, path: Path, **options: float) -> tuple[dict[str, camg
     return {check.name: check for check in report.checks}, {check.name for check in report.checks if not check.ok}
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("decimals", "gap"), DECIMALS.items())
 def test_few_decimals_fail_closed_alone_and_a_gap_takes_them(
     made: tuple[Path, Path], tmp_path: Path, decimals: int, gap: float
@@ -88,6 +89,7 @@ def test_few_decimals_fail_closed_alone_and_a_gap_takes_them(
         assert wider[name].value - joined[name].value == pytest.approx(1e-3, rel=1e-6)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("apart", [5.7e-6, 1e-4, 4.4e-3])
 def test_pieces_that_are_apart_by_as_much_as_programs_leave(
     made: tuple[Path, Path], tmp_path: Path, apart: float

@@ -38,7 +38,7 @@ def recipe(folder: Path, cam: str, spike: str = "", export: str = f"{TOLERANCE},
     return path
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(18)
 @pytest.mark.parametrize(
     ("name", "width"),
     [

@@ -58,7 +58,7 @@ def rotated(points, degrees):
     return points @ np.array([[c, s], [-s, c]])
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_sound_file_passes(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -69,7 +69,7 @@ def test_a_sound_file_passes(tmp_path, name):
     assert verdict.pieces == made.count
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
@@ -81,7 +81,7 @@ def test_a_spline_under_every_follower(tmp_path, name):
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -94,7 +94,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -135,7 +135,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]

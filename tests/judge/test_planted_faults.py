@@ -179,7 +179,7 @@ def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
     assert "contour" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-40]), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("scale", [1.001, 0.999])
 def test_scale(tmp_path, cam, scale):
     intent, points = cam
@@ -200,7 +200,7 @@ def test_a_shift(tmp_path, cam, shift):
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", points(EDGES) + shift), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize(("units", "stated"), [(1, 25.4), (5, 10.0), (6, 1000.0)])
 def test_wrong_units(tmp_path, cam, units, stated):
     intent, points = cam
@@ -269,7 +269,7 @@ def test_a_mirrored_cam(tmp_path, cam):
         assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "straight.dxf", points(EDGES)), meant)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(
     "bores",
     [
@@ -475,6 +475,7 @@ def test_a_solid_whose_top_differs_from_its_bottom(tmp_path, cam):
     assert "thickness" in failures(write_stl(tmp_path / "cam.stl", triangles), intent)
 
 
+@pytest.mark.thin(2)
 def test_a_solid_without_its_bore(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)

@@ -70,6 +70,7 @@ def outward(points):
 # --- sound files ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_sound_file_passes_every_check(tmp_path, form):
     verdict, checks = judged(written(tmp_path, form, cam()))
@@ -195,7 +196,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault(tmp_path, fault, form):

@@ -108,7 +108,7 @@ def brute(inner, outer, radius, theta):
     return stopped[wide & (far.real > held)].min() - held
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("layers", [("GROOVE_INNER", "GROOVE_OUTER"), ("CUT", "CUT")])
 @pytest.mark.parametrize("blank", [None, 80.0])
 def test_a_sound_groove_is_found_by_layer_and_by_nesting(tmp_path, layers, blank):
@@ -124,6 +124,7 @@ def test_a_sound_groove_is_found_by_layer_and_by_nesting(tmp_path, layers, blank
     assert ("", "outer") in by_surface or blank is None
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("clearance", [1e-6, 0.03, 1.0])
 def test_what_is_left_between_two_circles_in_closed_form(tmp_path, clearance):
     """Both flanks are circles about a point 5 mm off the shaft, and so is the path of a roller on either."""
@@ -148,6 +149,7 @@ def dented(count):
     return flank(wavy, -ROLLER, count) + bump, flank(wavy, ROLLER + CLEARANCE, count) + dent
 
 
+@pytest.mark.slow
 def test_what_is_left_between_two_flanks_by_every_point_of_them(tmp_path):
     path = drawn(tmp_path / "groove.dxf", *dented(2 * MANY), bore=None)
     (closure,) = verify(path, groove(law_of(WAVY)), 36, Limits(0.01)).closures
@@ -171,6 +173,7 @@ def _spoilt(fault):
     }[fault]
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("fault", "caught"),
     [
@@ -187,7 +190,7 @@ def test_planted_faults_are_caught(tmp_path, fault, caught):
     assert failures(verify(path, groove(law_of(WAVY), bore=10.0), 90, LIMITS)) >= caught
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("by", [0.9, 1.1])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_the_closure_has_two_sides(tmp_path, by, sign):

@@ -308,6 +308,7 @@ def test_volume_from_the_intent_in_closed_form(tmp_path):
     assert verdict.kind == "stl"
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("unit", "mm", "word"), [("inches", 25.4, "inch"), ("centimetres", 10.0, "cm"), ("mm", 1.0, "mm")]
 )

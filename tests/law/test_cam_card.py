@@ -42,6 +42,7 @@ def peak(motion, half):
     return float(np.abs(motion.derivatives(np.linspace(0.0, half, 20_001), 2)[2]).max())
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_the_durations_of_a_card_are_met(count):
     mixture = solved(CARD[:count])
@@ -70,6 +71,7 @@ def test_it_falls_from_its_nose_without_a_turn():
     assert (rates < 0.0).all()
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(12), deadline=None)
 @given(
     st.sampled_from([(2, 8, 14, 20, 26), (2, 6, 10, 14, 18), (2, 10, 20, 34, 60), (2, 4, 8, 26, 44)]),
@@ -115,6 +117,7 @@ def test_no_angle_has_a_lower_peak_by_another_solver(count):
     assert peak(lobe_of(mixture.side, mixture.side), mixture.side.half) <= least * 1.001
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [((1.27, 228.0), (0.15, 250.0), (5.08, 140.0)), ((1.27, 228.0), (5.08, 60.0))])
 def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
     with pytest.raises(IntentError, match=r"the nearest has .* off: give those") as caught:
@@ -156,6 +159,7 @@ def test_a_side_by_its_powers_keeps_its_acceleration_at_the_nose():
     assert first.side == known
 
 
+@pytest.mark.slow
 def test_sides_whose_noses_do_not_agree_are_refused_with_ones_that_do():
     with pytest.raises(IntentError, match=r"nearest has ([\d.]+); ([\d.]+) degrees") as caught:
         sides_of_card(LIFT, side_card(((1.27, 110.0),), 2.0), side_card(((1.27, 60.0),), 2.0), HALF_TURN)

@@ -47,6 +47,7 @@ def by_kernel(x, lo, hi):
     return 2.0 * lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("reading", [0.02, 0.2, 0.6])
 def test_the_integral_is_that_of_the_kernel(reading):
     x = np.arange(12) * TURN / 12 + 0.03 * np.sin(7.0 * np.arange(12))
@@ -90,6 +91,7 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
         conditions(found, space, limits)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rest", [None, (0.3, -0.2)])
 @pytest.mark.parametrize("count", [69, 70, 71, 72, 73, 95, 96, 97, 120, 241, 700])
 def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monkeypatch):
@@ -148,6 +150,7 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     assert missed_by(few.curve, limits)[0].max() <= 1e-5
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [3_000, 120_000])
 def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):
     knots = []

@@ -305,6 +305,7 @@ def test_what_is_no_motion_is_refused_with_its_line(change, line, message):
     assert caught.value.message.startswith(f"line {line}: ")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("unit", "word"), [(1.0, "mm"), (25.4, "in"), (0.0254, "in"), (rad(1), "deg")])
 def test_the_reading_that_is_advised_lets_a_table_close(unit, word):
     rows = broken(climbing)._replace(unit=unit)
@@ -346,6 +347,7 @@ def test_a_gap_is_bridged():
 # --- remarks -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("readings", [3.0, 30.0])
 def test_noise_beyond_the_digits_is_remarked_with_a_reading_that_calms_it(readings):
     rng = np.random.default_rng(7)
@@ -372,6 +374,7 @@ def short_search(monkeypatch):
     monkeypatch.setattr("kin.law.sources.least_jerk._MOST_WORK", 5e8)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.usefixtures("short_search")
 @pytest.mark.parametrize(("around", "scatter"), [(1, 0.01), (1, 0.5), (-1, 0.01), (None, 0.01)])
 def test_rows_that_scatter_too_far_to_be_followed_are_refused_with_a_reading_that_does(around, scatter):
@@ -407,6 +410,7 @@ def test_a_distance_of_more_than_a_hundredth_of_the_stroke_is_remarked():
     assert from_table(plate(24, 1), 0.05).kept.remarks == ()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("end", "word"), [(2 * math.pi, "radians"), (1.0, "turns"), (100.0, "percent")])
 def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, word):
     theta = np.radians(np.linspace(0, end, 61))
@@ -704,6 +708,7 @@ def test_points_over_a_half_turn_go_on_upside_down():
     assert lift_constant_breadth(40.0, motion).derivatives(0.0, 0)[0, 0] == pytest.approx(40, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_row_of_few_digits_does_not_stand_out_for_them():
     """A quantised slope: less than three readings off its neighbours."""
     theta = np.radians(np.arange(0.0, 360.0, 2.0))

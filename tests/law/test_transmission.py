@@ -91,6 +91,7 @@ def samples(law, count=500):
 # --- Wunderlich's equations ---
 
 
+@pytest.mark.thin(2)
 @every_law
 def test_closing_equation(lam, mu, name):
     """W 7.1: the roller that stands where the other stood before sees a pitch curve that closes."""
@@ -119,6 +120,7 @@ def test_affinity(lam, mu, name):
     np.testing.assert_allclose(law.psi_of_shaft(phi[0] + 2 * law.delta, 0)[0], psi[0], atol=1e-13)
 
 
+@pytest.mark.thin(2)
 @every_law
 def test_the_parameter_of_a_polar_angle(lam, mu, name):
     law = made(lam, mu, name)
@@ -128,7 +130,7 @@ def test_the_parameter_of_a_polar_angle(lam, mu, name):
     np.testing.assert_allclose(image, -law.at(tau, 0)[1][0], atol=1e-14)  # W 4.4
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @every_law
 def test_chords_close_after_two_lambda_steps(lam, mu, name):
     """W section 6: chords of length 2 l sin(alpha), stepped round the pitch curve from anywhere, close."""
@@ -176,7 +178,7 @@ def test_the_law_over_the_shaft_angle_is_the_parametric_one(lam, mu, name):
         np.testing.assert_allclose(over_shaft[k], true, atol=1e-9 * np.abs(true).max())
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @every_law
 def test_enclosures_hold(lam, mu, name):
     law = made(lam, mu, name)
@@ -233,6 +235,7 @@ def psi_by_mpmath(delta, alpha, arm, phi, guess):
     return 2 * (phi - t) - alpha
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("lam", "mu", "m2"), [(4, 3, 625.0), (2, 1, 1100.0), (3, 1, 400.0), (5, 3, 900.0)])
 def test_delta_route_against_mpmath(lam, mu, m2):
     law = from_delta(lam, mu, L, {1: m2}, {3: 30.0})

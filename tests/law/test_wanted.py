@@ -49,6 +49,7 @@ def oracle_wanted(phi):
     return -on_half(x)
 
 
+@pytest.mark.slow
 def test_three_harmonics_by_mpmath():
     """Every digit anew: psi by W 4.4 and 5.7, the wanted law and its image, extremes of one size in turn."""
     found = nearest(up_and_down(4, 5.0, "cycloidal"), 3)

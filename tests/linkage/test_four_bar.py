@@ -78,6 +78,7 @@ def test_loop_closes(linkage, cam):
     assert np.abs(np.diff(frame)).max() < 0.2
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("linkage", LINKAGES)
 def test_derivatives_of_the_joint_are_those_of_the_loop(linkage):
     """D = X u + Y n and the rocker's circle, each differentiated by jets of its own."""

@@ -201,6 +201,7 @@ def test_a_knife_edge_has_no_radius_to_give():
         pipeline.check(recipe_of("{dxf: {kerf: 13}}", cam=SHOE))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("guide", ["", ", arm: {length: 60, pivot: 66}"])
 def test_the_cam_of_a_knife_edge_shrinks(guide):
     cam = KNIFE.replace("knife-edge", f"knife-edge{guide}")

@@ -137,6 +137,7 @@ def test_lift_of_a_roller_on_the_same_metal(tmp_path) -> None:
     assert "\nc_deg,lift_mm\n" in table.read_text()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "fault",
     ["mirrored", "spoilt", "spoilt outward", *(pytest.param(name, marks=pytest.mark.slow) for name in FAULTS)],
@@ -191,6 +192,7 @@ def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
 LIFT = "{csv: {as: lift, roller: 60}}"
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("files", "change", "wanted"),
     [
@@ -216,6 +218,7 @@ def test_head_of_a_table_is_judged(files, change, wanted, tmp_path, capsys) -> N
     assert re.search(wanted, capsys.readouterr().out)
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("fault", [(slice(None), 5.0, 1), (70, 0.003, 1), (70, -0.0015, 0)])
 def test_normals_of_a_table_are_judged(rotation, fault, tmp_path, capsys) -> None:
@@ -235,6 +238,7 @@ def test_normals_of_a_table_are_judged(rotation, fault, tmp_path, capsys) -> Non
         assert off == pytest.approx(60.0 * np.sin(np.radians(by) / 2.0), rel=1e-4)
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("old", "new", "wanted"),
     [

@@ -67,6 +67,7 @@ FLAT = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("case", list(BUMPS))
 def test_bumps_and_dents_move_the_follower_as_contact_has_it(case):
     kind, height, width = case
@@ -127,6 +128,7 @@ def all_round(off, t):
     return np.stack([np.full_like(t, off), np.zeros_like(t)])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", list(FOLLOWERS))
 def test_metal_too_much_lifts_every_follower_by_what_first_order_says(kind):
     """Greater deviation e moves a follower away from the metal by e/K, K the rate of the normal over the motion."""

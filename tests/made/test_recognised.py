@@ -37,7 +37,7 @@ def told(text, noise=0.0005):
 SMOOTH = [name for name in NAMES if name not in {"constant-velocity", "cubic", "parabolic", "polynomial-23"}]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("law", SMOOTH)
 def test_each_law_is_told_by_what_it_leaves(law):
     text = disc(
@@ -73,6 +73,7 @@ def test_a_motion_without_any_dwell():
     assert up[3] == pytest.approx(200.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_steps_of_several_heights():
     text = disc(
         ROLLER,

@@ -39,7 +39,7 @@ def moved(exact, order=0):
     return rows
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(15)
 @pytest.mark.parametrize("files", ["dxf", "svg", "{dxf: {as: spline}}"])
 @pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
 @pytest.mark.parametrize("follower", FOLLOWERS)
@@ -78,6 +78,7 @@ def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
     assert report["ok"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("track", "outer"), [("internal", 140), ("{groove: {clearance: 0.02}}", 140)])
 def test_rings_and_grooves_come_back(track, outer, tmp_path):
     def cam(motion):
@@ -103,7 +104,7 @@ def contacts(folder, follower, more="", name="old.csv", **changed):
     return text.cam.exact()
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
 @pytest.mark.parametrize("follower", FOLLOWERS)
 def test_points_round_a_contour_become_the_motion_that_they_were_made_of(follower, more, tmp_path):
@@ -116,6 +117,7 @@ def test_points_round_a_contour_become_the_motion_that_they_were_made_of(followe
     assert made.kept.distance <= 0.02 * size
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("follower", ["roller", "offset", "arm"])
 def test_points_of_a_pitch_curve_give_the_motion_of_the_centre_that_runs_on_it(follower, tmp_path):
     """The contour of a knife edge is the pitch curve of a roller whose cam is smaller all round by its radius."""
@@ -141,6 +143,7 @@ def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
     assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04)
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("motion", "message"),
     [

@@ -419,6 +419,7 @@ def test_faults_of_rows_are_told_as_the_table_has_them(head, units, key, tmp_pat
     assert f"{values[-1]:.3f} {unit} off its first row: the rest of the turn can be no dwell" in told(np.copy)
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("units", "stem", "unit", "key"),
     [
@@ -602,6 +603,7 @@ FLAT = "kind: disc, base_radius: 30, follower: {kind: flat}"
 CARD = "duration: [{at_lift: 1.27 mm, degrees: 228}, {at_lift: 0.15, degrees: 270}]"
 
 
+@pytest.mark.slow
 def test_a_card_is_met_by_the_figure_and_told_in_a_remark(tmp_path):
     read = recipe(f"{{lobe: {{lift: 9.2, {CARD}}}}}", tmp_path, head=FLAT)
     report = dict(camgeo.check(read))
@@ -617,6 +619,7 @@ def tappet(read):
     return camgeo.design(read).motion(np.radians(np.arange(0.0, 360.0, 5.0)))
 
 
+@pytest.mark.slow
 def test_sides_take_what_they_lack_from_the_lobe(tmp_path):
     shape = "lift: 9.2, half: 66, powers: [2, 8, 14, 20, 26], ramp: {height: 0.2, velocity: 0.02}"
     even = recipe(f"{{lobe: {{{shape}}}}}", tmp_path, head=FLAT)
@@ -627,6 +630,7 @@ def test_sides_take_what_they_lack_from_the_lobe(tmp_path):
     assert (tappet(uneven)[1:14] > tappet(even)[1:14]).all()
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("lobe", "message", "remedy"),
     [

@@ -122,6 +122,7 @@ def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
     assert done.stderr == "camgeo: the output cannot be written: No space left on device\n"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.skipif(sys.platform == "win32", reason="limits a process as a POSIX shell does")
 @pytest.mark.parametrize("kind", few(["stl", "3mf", "dxf", "glb"], 2))
 def test_a_file_that_does_not_fit_is_told_in_the_words_of_the_system(tmp_path: Path, kind: str) -> None:

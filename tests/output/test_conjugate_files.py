@@ -287,6 +287,7 @@ def test_a_body_of_a_3mf_out_of_its_place_is_caught(fine, tmp_path, turned, leve
     assert (told in check.detail) == (level != 14.0)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("level", "words"), [(0.0, "14 mm lower"), (9.0, "5 mm lower"), (16.5, "2.5 mm higher")])
 def test_a_body_that_another_program_dropped_to_the_plate(made, tmp_path, level, words):
     """Also where its layers are no longer at the heights of any section."""

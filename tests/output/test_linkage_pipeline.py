@@ -128,6 +128,7 @@ def test_the_table_holds_both_angles_and_true_derivatives(exported: tuple[Path, 
     assert inside["max"] - 0.01 <= output.max() <= inside["max"]
 
 
+@pytest.mark.slow
 def test_a_linkage_that_binds_fails_with_the_angles_and_keeps_the_last_good_set(tmp_path: Path) -> None:
     # THEORY: discriminant edges at 73.4 and 151.5 degrees, reversal already from 59.8
     assert pipeline.export(recipe(), tmp_path).ok

@@ -84,7 +84,7 @@ def exported(files: str, folder: Path, clearance: float = 0.03, more: str = "") 
     return pipeline.export(grooved(text, clearance), folder)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(("kind", "how"), HELD)
 def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, tmp_path: Path) -> None:
     outcome = exported(written(kind, how), tmp_path, more=LIMITED)
@@ -103,7 +103,7 @@ def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, t
     assert "perimeter" not in file
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(("kind", "how"), HELD)
 def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: Path) -> None:
     """A file of another clearance fails on the outer flank alone, by what it is off."""

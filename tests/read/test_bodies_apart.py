@@ -34,7 +34,7 @@ def small(place, low, high):
     return ring(centre + 2.0 * unit(T), centre + 0.5 * unit(T), low, high)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("write", [binary, text, in_3mf])
 @pytest.mark.parametrize("heights", [(), (4.0,)])
 @pytest.mark.parametrize("name", PLACES)

@@ -134,6 +134,7 @@ def test_a_block_is_what_ezdxf_explodes_it_to(exported):
     assert found.contour.area == pytest.approx(meant.contour.area, rel=1e-12)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("outer", [{"rotation": 1.0}, {"xscale": 1.01, "yscale": 1.01}, {"xscale": -1.0}])
 def test_a_block_that_moves_the_contour_is_caught(exported, outer):
     name = saved_anew(exported, unit=4, version="R2010", name="moved.dxf", block=({}, outer))

@@ -135,7 +135,7 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     assert "thickness" in failures(write_stl(path, leaning))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("form", ["%.6g", "%.8g", "%.6f", "%.9e", "%.17g"])
 def test_tilted_and_back_as_text_of_few_digits_or_many(tmp_path, form):
     triangles = tilted_and_back(triangles_of(), decimals(form))
@@ -197,6 +197,7 @@ def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share)
         assert ("thickness" in failures(path)) is not whole
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["%.6g", "%.9g"])
 @pytest.mark.parametrize("lean", [0.001, 0.02])
 def test_walls_that_lean_by_a_thousandth_in_text(tmp_path, form, lean):

@@ -83,6 +83,7 @@ def stadium(space: Modelspace, layer: str, order: list[int], backwards: list[boo
 # --- one closed entity, in every version
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("version", ["R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018"])
 @pytest.mark.parametrize("clockwise", [False, True])
 def test_polylines_with_bulges(tmp_path: Path, version: str, clockwise: bool) -> None:
@@ -250,6 +251,7 @@ def test_loose_entities_in_any_order_and_direction(tmp_path: Path, order: list[i
     assert len(drawing.contour.vertices) == 4
 
 
+@pytest.mark.slow
 def test_ten_thousand_loose_lines(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     points = RADIUS * unit(np.arange(3000) * 2.0 * np.pi / 3000)
@@ -598,6 +600,7 @@ def only_reference(document: Document) -> None:
     document.modelspace().add_circle((0, 0), 25.0, dxfattribs={"layer": "reference"})
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("draw", "reason", "words"),
     [

@@ -246,6 +246,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_of_a_plain_part(plain, fault):
     recipe, design, path, _ = plain
@@ -253,7 +254,7 @@ def test_fault_of_a_plain_part(plain, fault):
     assert caught <= failures(rewritten(path, change), recipe, design)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("fault", ["a triangle flipped", "a triangle removed", "inches", "stretched upward", "scaled"])
 def test_fault_of_a_part_with_everything(full, fault):
     recipe, design, path, _ = full

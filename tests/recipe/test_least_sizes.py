@@ -60,6 +60,7 @@ def test_a_hub_without_a_wall_is_refused() -> None:
     assert camgeo.check(camgeo.load(text.replace("SIZE", "10.0021"))).ok
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("sides", [3, 99])
 @pytest.mark.parametrize(("units", "mm"), [("mm", 1.0), ("inch", 25.4)])
 def test_a_corner_too_small_for_a_file_is_refused_with_the_least(sides: int, units: str, mm: float) -> None:

@@ -155,6 +155,7 @@ def test_yaml_that_cannot_be_read(body: str | bytes, message: str) -> None:
     assert told(body) == [f"c.yaml:{message}"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("reader", ["CSafeLoader", "SafeLoader"])
 def test_bounds_hold_from_both_sides(reader: str, monkeypatch: pytest.MonkeyPatch) -> None:
     if reader == "SafeLoader":

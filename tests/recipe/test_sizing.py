@@ -206,6 +206,7 @@ def test_the_remark_says_what_bounds_the_size() -> None:
     )
 
 
+@pytest.mark.slow
 def test_what_was_found_is_a_figure_and_can_be_limited() -> None:
     stem, arm = camgeo.design(camgeo.load(BOUND)).figures, camgeo.design(camgeo.load(ARM)).figures
     assert stem["base-radius"].value == pytest.approx(48.77017484, abs=1e-7)

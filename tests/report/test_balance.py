@@ -81,6 +81,7 @@ def test_cam_of_four_arcs() -> None:
     assert [off_centre.area, off_centre.x, off_centre.y, off_centre.polar] == pytest.approx(expected, rel=1e-14)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "text",
     [
@@ -129,6 +130,7 @@ def test_limits_and_what_they_need() -> None:
 
 
 # needs: sweep
+@pytest.mark.slow
 def test_sweep_ranks_by_mass(tmp_path, capsys) -> None:
     sweep = "sweep: {vary: {cam.base_radius: [18, 20, 22]}, rank: mass, keep: 3}\n"
     (tmp_path / "lobe.yaml").write_text(LOBE.replace("density: 7850", "density: 7850, bore: 37") + sweep)

@@ -183,6 +183,7 @@ def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
         assert file["path"] in made.text
 
 
+@pytest.mark.thin(3)
 def test_of_many_checks_those_of_files_that_hold_are_folded_up(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
     report = copy.deepcopy(made.outcome.report)
     fails = next(check for check in report["checks"] if check.get("file"))

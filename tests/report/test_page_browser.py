@@ -395,6 +395,7 @@ def test_one_player_shows_one_scene_after_another(browser: Browser, tmp_path: Pa
     assert page_.problems == []
 
 
+@pytest.mark.slow
 def test_a_frame_without_an_origin_shows_the_page(browser: Browser, tmp_path: Path) -> None:
     """Its address cannot be written there; the page turns all the same."""
     hear = "<script>addEventListener('error', (event) => parent.postMessage(event.message, '*'))</script></head>"

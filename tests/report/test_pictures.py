@@ -41,7 +41,7 @@ def assert_is_seen(text: str) -> None:
     assert share(image, "#000000") == 0.0  # what a program paints that does not understand a colour
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("path", few(GALLERY, 8), ids=lambda path: path.stem)
 def test_the_gallery_is_seen_without_a_browser(path: Path) -> None:
     assert_is_seen(path.read_text(encoding="utf-8"))

@@ -94,7 +94,7 @@ def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
     assert -angle.min() == pytest.approx(most["pressure-angle-return"].value, abs=1e-4)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("kind", ["roller", "flat", "arm", "plate", "knife edge"])
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_polar_radii_are_those_of_the_drawn_contour(kind: str, rotation: str, tmp_path: Path) -> None:

@@ -182,6 +182,7 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
         assert row.shaft > row.hub
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     "name",
     [

@@ -83,7 +83,7 @@ def test_the_mark_lies_on_the_ray_at_zero_as_far_out_as_the_wall_lets_it():
     assert farther.only_surface.contour is None
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("part", "tight"),
     [("mark: {width: 60}", True), ("mark: {width: 30, length: 40}, chamfer: 1", True), ("mark: {width: 4}", False),

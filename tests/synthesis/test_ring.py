@@ -95,7 +95,7 @@ def test_the_roller_that_would_do_does():
     assert all(check.ok for check in checks(ring(radius, base=float(said[2]) + radius)).values())
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("part", "wall", "pair"),
     [

@@ -114,6 +114,7 @@ def numbers(keys):
     return {key: float(value) for key, value in re.findall(r"(\w+): (-?[\d.]+)", keys)}
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", PAIRS)
 def test_each_contact_touches_its_disc_all_round(name):
     """The nearest point of each contour is a radius from the roller's centre, or lies on the face and none beyond."""
@@ -162,6 +163,7 @@ def least(surface, all_round, far):
     return value
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", PAIRS)
 def test_the_judge_finds_nothing_left_between_the_discs(name):
     """Contours of arcs within 1e-5 mm, each judged under its own gauge, and both as they hold the follower."""

@@ -61,7 +61,7 @@ def test_the_exact_contour_of_a_case(name):
         assert follower.envelope.area_and_perimeter()[0] == pytest.approx(AREAS[name], abs=NINE)
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
 @pytest.mark.parametrize("name", CURVES)
 def test_contact_on_a_fit_keeps_the_intent(name, tolerance):

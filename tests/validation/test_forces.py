@@ -146,6 +146,7 @@ def test_a_yoke_loses_its_faces():
     assert (high, low) == (pytest.approx(1509.876363135, rel=1e-9), pytest.approx(1849.213332184, rel=1e-9))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_work_against_levers(kind):
     """F y' is the torque of the contacts' lines about the shaft, to 1e-9 of the greatest."""
@@ -157,6 +158,7 @@ def test_work_against_levers(kind):
     assert np.abs(work).max() > 0.0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", [*KINDS, "groove", "discs"])
 def test_the_lines_are_those_of_the_surfaces(kind):
     """Points and normals of the contacts against the maker's own curves, where the parameter is the shaft angle."""
@@ -274,6 +276,7 @@ def test_what_is_refused(text, dynamics, field, words):
     assert words in str(error)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("load", ["sqrt(1 - cos(t))", "abs(sin(t))", "5 + 1/(2 + sin(t))", "40"])
 def test_loads_that_are_bounded(load):
     """Corners and roots of 0 are no poles."""

@@ -286,6 +286,7 @@ class Bench:
 NUMBERS = {F06: (0.02, 120, 12), F07: (0.02, 120, 12, (0.8, 6e-4)), F08: (0.03, 100, 9), F09: (1.5, 120, 200)}
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("text", "dynamics"), WORKED)
 def test_equilibrium_in_the_plane(text, dynamics):
     """Four equations for frame and output link at positions found by bisection, to what differences leave of them."""
@@ -368,6 +369,7 @@ def test_power_of_random_linkages(lift, linkage, demands, body):
     assert found.torque == pytest.approx(sum(levers), abs=1e-12 * scale / min(1.0, motion.shaft[1].min()))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("text", "dynamics"), WORKED)
 def test_power_of_the_shaft(text, dynamics):
     """Over a turn load and inertia give back what they take: the mean torque of a constant load is 0."""
@@ -392,6 +394,7 @@ def test_dyads_pass_their_load_on():
 # --- extremes ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_forces_near_the_place_where_the_shaft_turns_back():
     """They grow as 1 over the rate of the shaft; beyond it there are none, and the message says from where on."""
 
@@ -419,6 +422,7 @@ def test_forces_near_the_place_where_the_shaft_turns_back():
         running(FOUR_BAR.replace("105", "160"), F06)
 
 
+@pytest.mark.slow
 def test_a_coupler_of_huge_mass_and_a_load_over_the_angle():
     """All that the coupler adds is in proportion to its mass; a load over t is that at the shaft's angle."""
     bare, light, heavy = (
@@ -441,6 +445,7 @@ def test_a_spring_at_the_output():
     assert sprung.at(theta).force - plain.at(theta).force == pytest.approx(3 + 7 * (output - least), abs=1e-11)
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("text", "dynamics", "field", "words", "remedied"),
     [
@@ -475,6 +480,7 @@ def test_what_is_refused(text, dynamics, field, words, remedied):
 # --- report, page, table, figures -------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_report_page_table_and_figures(tmp_path):
     """f07 through a recipe: the same in the report, on the page, in the CSV file and as limits."""
     text = FOUR_BAR + (
@@ -574,6 +580,7 @@ def test_faces_of_unequal_stiffness():
     assert over.normal[3][lost] == pytest.approx(over.reactions["along"][lost], abs=1e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [PRESSED, UNEVEN])
 def test_speeds_from_which_faces_are_lost(text):
     """At that speed the least force of the face is 0, at that place; a little below it is above 0."""
@@ -586,6 +593,7 @@ def test_speeds_from_which_faces_are_lost(text):
         assert below.contacts[rank][0].value > 0.0
 
 
+@pytest.mark.slow
 def test_files_of_a_preloaded_frame(tmp_path):
     """The metal is made larger and judged about that; a file of the nominal cam, and of one twice too large, fails."""
     from camgeo import verify

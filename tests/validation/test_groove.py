@@ -100,7 +100,7 @@ def test_the_play_is_reported_and_limited(tmp_path):
     assert {check["name"] for check in tight.report["checks"] if not check["ok"]} == {"limit:backlash"}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("clearance", [1.0, 0.03, 1e-6, 0.0])
 @pytest.mark.parametrize("held", ["stem", "trailing", "leading"])
 def test_brute_force_on_either_flank(held, clearance, tmp_path):
@@ -176,6 +176,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(7)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_refused(fault, stem, tmp_path):
     recipe, path = stem
@@ -187,6 +188,7 @@ def test_a_planted_fault_is_refused(fault, stem, tmp_path):
     assert failed(recipe, tmp_path / "spoilt.dxf") >= FAULTS[fault]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("clearance", [0.0, 0.0302, -0.03])
 def test_the_file_of_another_clearance_is_refused(clearance, stem, tmp_path):
     """0: the outer flank with the inner's offset; of the wrong sign: a groove that its roller does not fill up to."""
@@ -256,7 +258,7 @@ export: {tolerance: 0.002, files: [stl, 3mf]}
 """
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["stl", "3mf", pytest.param("step", marks=kernel)])
 def test_a_solid_has_the_pocket(kind, tmp_path):
     """Its volume by closed forms; a groove that is 1e-3 mm too shallow, or too wide, is refused."""

@@ -73,6 +73,7 @@ def written(source, folder):
     return json.loads(next(folder.rglob("report.json")).read_text(encoding="utf-8")), rows
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("source", "at", "alpha", "force"), ROLLERS)
 def test_f25_of_a_roller(source, at, alpha, force, tmp_path):
     report, rows = written(source, tmp_path)
@@ -119,6 +120,7 @@ PLANE = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", PLANE)
 def test_equilibrium_in_the_plane(name):
     """Forces and moments on the stem, x outward along it; a second contact stands `apart` further back."""

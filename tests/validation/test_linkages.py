@@ -141,7 +141,7 @@ def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     assert apart(motion.shaft[1], 1 - loop.frame[1]) < 1e-11
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 def test_velocity_and_acceleration_over_the_shaft_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)
@@ -163,7 +163,7 @@ def test_the_motion_table_is_over_the_shaft_angle(workshop):
     assert np.abs(np.degrees(mistaken) - table["output_deg"]).max() > 4
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", DWELLING)
 @pytest.mark.parametrize("band", BANDS)
 def test_dwells_over_either_angle(name, band):

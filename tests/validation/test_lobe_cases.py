@@ -58,6 +58,7 @@ TAPPETS = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("follower", "point"), TAPPETS.values(), ids=TAPPETS)
 def test_f19_one_lift_under_another_tappet_is_other_metal(
     tmp_path: Path, follower: str, point: tuple[float, float]
@@ -71,6 +72,7 @@ def test_f19_one_lift_under_another_tappet_is_other_metal(
     assert row["lift_mm"] == pytest.approx(1.952853268, abs=6e-10)
 
 
+@pytest.mark.slow
 def test_f19_a_roller_on_the_metal_of_a_flat_tappet(tmp_path: Path) -> None:
     """The table of the lift that it has there is read as a motion, whose duration is not the tappet's."""
     export = "export: {tolerance: 0.001, files: [{csv: {as: lift, roller: 18, step: 0.5}}]}\n"

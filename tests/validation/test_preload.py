@@ -230,6 +230,7 @@ def test_what_is_made_interferes(exported):
         assert [play["min"], play["max"]] == pytest.approx([-0.0205, -0.02], abs=4.0 * TOLERANCE)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "share", [0.0, pytest.param(0.5, marks=pytest.mark.slow), pytest.param(1.5, marks=pytest.mark.slow), 2.0]
 )

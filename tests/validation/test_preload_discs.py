@@ -129,6 +129,7 @@ def test_what_is_made_interferes(made):
         assert [play["min"], play["max"]] == pytest.approx(ends, abs=3.0 * TOLERANCE)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "share", [0.0, pytest.param(0.5, marks=pytest.mark.slow), pytest.param(1.5, marks=pytest.mark.slow), 2.0]
 )
@@ -149,6 +150,7 @@ def test_a_limit_as_wide_as_the_interference_is_none(made):
     assert "as much as the interference" in told
 
 
+@pytest.mark.slow
 def test_the_command_line_judges_a_set(made, capsys):
     _, report, others = made
     recipe = report.path.parent / "pair.yaml"
@@ -213,6 +215,7 @@ def test_a_pair_is_sized_as_without():
     assert recipe_of(preload="interference: 0.02", size=size).cam.exact().preload is not None
 
 
+@pytest.mark.slow
 def test_a_sweep_ranks_by_the_force(tmp_path):
     """Which is in proportion to the interference."""
     sweep = "sweep: {vary: {cam.preload.interference: {from: 0.01, to: 0.03, steps: 3}}, rank: preload-force-least}\n"

@@ -147,7 +147,7 @@ def constant_breadth(request, workshop):
     return exported(workshop, request.param), CONSTANT_BREADTH[request.param]
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(18)
 def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_breadth):
     made, (breadth, _, _) = constant_breadth
     t = np.linspace(0, PI, 5001)
@@ -164,6 +164,7 @@ def test_barbier_and_area(constant_breadth):
         assert made.contour.area == pytest.approx(area, abs=1.001 * e * PI * breadth)
 
 
+@pytest.mark.thin(5)
 def test_equation_10_lift_of_the_file_at_every_angle(figure):
     made, p = figure
     t = np.linspace(0, 2 * PI, 5001)

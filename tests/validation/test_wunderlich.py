@@ -335,6 +335,7 @@ def test_equation_6_3_quartic_on_the_file(figure_8):
     assert (np.abs(f) / slope).max() <= 1.01e-3
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("share", "is_oval"), [(0.32, True), (0.345, False)])
 def test_oval_limit_on_the_file(workshop, share, is_oval):
     """The cam is the parallel curve of the lemniscate: convex with it."""

@@ -37,6 +37,7 @@ def put(text: str, field: dict[str, Any], value: str) -> str:
     return (data[: 2 * field["start"]] + value.encode("utf-16-le") + data[2 * field["end"] :]).decode("utf-16-le")
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", TEXTS)
 def test_every_value_stands_where_its_field_says_and_another_one_leaves_all_else(name: str) -> None:
     text = TEXTS[name]
@@ -67,6 +68,7 @@ def test_numbers_have_units_and_bounds_words_have_their_choices() -> None:
     assert part(text, fields["part.bore"]) == "8"  # behind a character of two units
 
 
+@pytest.mark.thin(7)
 @pytest.mark.parametrize("name", OF_CAMS)
 def test_a_recipe_in_inches_makes_the_same_cam_and_comes_back(name: str) -> None:
     text = TEXTS[name]

@@ -29,6 +29,7 @@ def of_words(text: str, degrees: tuple[float, ...], guide: float = 0.0, *, relat
     return influence(recipe, design, Budget(1.0, tuple((word, 1.0) for word in words), guide=guide), shaft)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", CASES)
 def test_influences_are_those_of_brute_force_contact(name: str) -> None:
     case = CASES[name]

@@ -119,6 +119,7 @@ def design_of(name: str):
     return designed(of_recipe(name))
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -> None:
     recipe = of_recipe(name)
@@ -138,6 +139,7 @@ def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -
             assert np.abs(measured - ours).max() < 2e-6 * max(1.0, np.abs(ours).max()), (word, component)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["yoke-preload", "preload-frame"])
 def test_errors_of_a_preloaded_follower_are_those_beside_its_overlap(name: str, tmp_path: Path) -> None:
     recipe, design = of_recipe(name), design_of(name)
@@ -172,7 +174,7 @@ def test_finite_errors() -> None:
     assert np.abs(errors - worked).max() < 1e-9
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_deviations_are_those_foreseen(name: str) -> None:
     recipe, design = of_recipe(name), design_of(name)
@@ -212,7 +214,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("name", READ)
 def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> None:
     """Nothing off, the error by contact is the one that the judge finds of the file."""
@@ -225,7 +227,7 @@ def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> Non
         assert abs((math.degrees(rms) if judged.unit == "deg" else rms) - judged.rms) < 2e-6
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", ["disc-knife-edge", "knife-arm", "conjugate-flat"])
 def test_on_a_file_sizes_do_what_they_do_on_the_exact_contour(name: str, tmp_path: Path) -> None:
     recipe, design = of_recipe(name), design_of(name)
@@ -277,6 +279,7 @@ def test_what_no_file_can_show_is_said(made: Path, tmp_path: Path) -> None:
         read_contours(recipe, design_of("disc-kerf"), [drawing])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["disc-trim", "trimmed-roller", "trimmed-frame"])
 def test_parts_of_a_trimmed_contour_begin_with_the_motion_that_is_lost(name: str, tmp_path: Path) -> None:
     recipe, design = of_recipe(name), design_of(name)

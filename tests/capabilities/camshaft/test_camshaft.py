@@ -171,6 +171,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureReq
     return request.param, camgeo.export(path, folder / "out")
 
 
+@pytest.mark.thin(2)
 def test_lifts_of_a_machine_in_phase(machine: tuple[str, camgeo.Report]) -> None:
     """Case f24: over the shaft's angle, wherever the followers stand."""
     _, report = machine
@@ -445,6 +446,7 @@ PLANTED = {
 }
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(("lobes", "body", "fails"), PLANTED.values(), ids=PLANTED)
 def test_planted_faults(
     tmp_path: Path, solid: tuple[Path, camgeo.Report], lobes: str, body: str, fails: set[str]
@@ -469,6 +471,7 @@ OTHER_LOBES = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("motion", "offset"), OTHER_LOBES.values(), ids=OTHER_LOBES)
 def test_another_lobe_is_caught(tmp_path: Path, solid: tuple[Path, camgeo.Report], motion: str, offset: str) -> None:
     right, _ = solid
@@ -482,6 +485,7 @@ def test_another_lobe_is_caught(tmp_path: Path, solid: tuple[Path, camgeo.Report
     assert not {name for name in fails if name.endswith("intake")}
 
 
+@pytest.mark.slow
 def test_a_mirrored_shaft_fails(tmp_path: Path, solid: tuple[Path, camgeo.Report]) -> None:
     right, _ = solid
     made = camgeo.export(shaft(tmp_path, TWO, extra="rotation: ccw\n"), tmp_path / "out")
@@ -556,6 +560,7 @@ FLUSH = {  # lobes, journals and where the shaft ends: sums that round up and do
 }
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(("first", "second", "journal", "end"), FLUSH.values(), ids=FLUSH)
 def test_bodies_that_meet_face_to_face(tmp_path: Path, first: str, second: str, journal: str, end: float) -> None:
     bar = f"  journals: [{journal[:-1]}, diameter: 30}}]\n" if journal else ""
@@ -566,6 +571,7 @@ def test_bodies_that_meet_face_to_face(tmp_path: Path, first: str, second: str, 
     assert {check.name for check in report.checks} >= {"phase", "position", "thickness", "volume"}
 
 
+@pytest.mark.slow
 def test_equal_lobes_side_by_side_are_one_stretch(tmp_path: Path) -> None:
     """They have no face between them: their position is that of the faces at either end, in every solid."""
     pytest.importorskip("OCP")
@@ -620,6 +626,7 @@ def test_what_is_thinner_than_the_tolerance_is_refused_by_name(tmp_path: Path, r
         camgeo.check(shaft(tmp_path, lobes, body=body))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("z", ["6.2", "6.2101"], ids=["they meet", "farther apart"])
 def test_what_would_do_for_a_thin_gap_does(tmp_path: Path, z: str) -> None:
     rows = f"recipe: intake.yaml, at: 0, z: 1.1, length: 5.1\nrecipe: intake.yaml, at: 90, z: {z}, length: 12"
@@ -748,6 +755,7 @@ def test_shipped_camshafts(tmp_path: Path, name: str) -> None:
     assert mesh.body_count == 1
 
 
+@pytest.mark.slow
 def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
     """They touch; the mesh closes, and every one is judged."""
     rows = [f"recipe: intake.yaml, at: {15 * k}, z: {4 * k}, length: 4" for k in range(24)]
@@ -839,6 +847,7 @@ def test_a_wheel_needs_an_engine(tmp_path: Path) -> None:
     load_order(shaft(tmp_path, rows, files="[{svg: {as: bars}}]"))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_the_drawing_of_the_shaft_is_to_scale(tmp_path: Path, rotation: str) -> None:
     """Lobes and bars stand at their places along z, as high as their contours at a shaft angle of 0."""
@@ -933,6 +942,7 @@ def test_centres_are_given_one_way(engine: str, message: str, tmp_path: Path) ->
     assert message in str(caught.value)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["manifold3d", "OCP"])
 def test_a_solid_that_a_missing_package_would_make_is_left_out(tmp_path, monkeypatch, capsys, name):
     """The rest is judged and placed as one set; where nothing is left nothing is written."""

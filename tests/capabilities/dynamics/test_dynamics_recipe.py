@@ -192,7 +192,7 @@ def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatc
         pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("held", ["preload: 150", "backlash: 0.02"])
 def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pytest.MonkeyPatch) -> None:
     from kin.dynamics import impacts
@@ -331,6 +331,7 @@ HIGH = "rounding does not tell it from a whole multiple"
 LOW = "nothing holds the follower to the cam"
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("train", "message", "change"),
     [

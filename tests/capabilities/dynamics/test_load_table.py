@@ -215,6 +215,7 @@ dynamics: {mass: 0.01, rpm: 60, preload: 80, load: {table: load.csv}}
         read(text.encode(), tmp_path / "case.yaml")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("rows", "more", "factor"),
     [

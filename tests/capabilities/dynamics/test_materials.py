@@ -136,6 +136,7 @@ def test_a_pressure_needs_a_width() -> None:
         assert [entry["ok"] for entry in found["checks"] if entry["name"] == "limit:contact-pressure"] == [False]
 
 
+@pytest.mark.slow
 def test_a_sweep_ranks_by_the_pressure_over_the_part_s_thickness(tmp_path: Path) -> None:
     more = "sweep: {vary: {cam.base_radius: [40, 45]}, rank: contact-pressure, keep: 2}\n"
     recipe = tmp_path / "cam.yaml"
@@ -181,6 +182,7 @@ def pressure_of(text: str) -> tuple[float, dict[str, Any]]:
     return max(one["max"] for one in found["pressure"]), found["width"]
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("part", "width", "track", "value", "bound"),
     [

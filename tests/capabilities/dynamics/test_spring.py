@@ -32,6 +32,7 @@ def measured(train: str, *figures: str) -> list[float]:
     return [found[f"limit:{name}"] for name in figures]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("spring", [COIL, LOADS])
 def test_seat_load_open_load_and_coil_bind(spring: str) -> None:
     """30 N/mm over 8 mm, and over 8.2 mm more; 40 - 8.2 - 28 mm are left."""
@@ -39,6 +40,7 @@ def test_seat_load_open_load_and_coil_bind(spring: str) -> None:
     assert found == pytest.approx([240.0, 486.0, 3.8], rel=1e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("more", ["", ", stiffness: 8.0e6, damping: 60"])
 def test_a_spring_is_the_preload_and_the_rate_that_it_makes(more: str) -> None:
     own, plain = (report(spring + more) for spring in (COIL, PLAIN))
@@ -58,6 +60,7 @@ def test_inches_and_pounds_are_the_same_spring() -> None:
     assert check.value == pytest.approx(486.0, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_pressure_float_and_transient_come_from_one_train() -> None:
     """Forces and pressure are those of the rigid train, float and impacts those of the elastic one."""
     elastic = "stiffness: 8.0e6, damping: 60, transient: true"
@@ -71,6 +74,7 @@ def test_pressure_float_and_transient_come_from_one_train() -> None:
     assert "forces" not in alone
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("train", "message", "remedy"),
     [

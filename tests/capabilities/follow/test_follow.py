@@ -50,6 +50,7 @@ def asked(name: str) -> dict[str, Any]:
     return FOLLOWERS[name] | {"rotation": camgeo.load(RECIPES / f"{name}.yaml").rotation}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_motion_is_that_of_the_law(drawings: dict[str, Path], name: str) -> None:
     """Within what a contour that is 1e-5 mm off gives a follower, at pressure angles below 40 degrees."""
@@ -68,6 +69,7 @@ def test_the_motion_is_that_of_the_law(drawings: dict[str, Path], name: str) -> 
     assert followed.base_radius == pytest.approx(float(text.split("base_radius: ")[1].split()[0]), abs=1e-4)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "side"),
     [
@@ -90,6 +92,7 @@ def test_pressure_angles_are_those_of_the_exact_cam(tmp_path: Path, name: str, s
     np.testing.assert_allclose(motion.pressure, exact.exact.surfaces[0].pressure(motion.phi), atol=2e-3)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("name", "offset"), [("disc-flat", 0.0), ("disc-flat", 4.0), ("disc-arm-flat", 0.0)])
 def test_the_travel_of_the_contact_is_that_of_the_exact_cam(tmp_path: Path, name: str, offset: float) -> None:
     recipe = camgeo.load(RECIPES / f"{name}.yaml").replace({"export.files": ["dxf"], "export.tolerance": 1e-5})
@@ -211,6 +214,7 @@ def test_the_shaft_stands_where_the_call_says(tmp_path: Path) -> None:
         shown(followed)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few([*FOLLOWERS], 2))
 def test_its_recipe_makes_the_file_again(drawings: dict[str, Path], tmp_path: Path, name: str, capsys) -> None:
     """Within the reading, by the judge; and a page shows how far off the file is all round."""
@@ -377,7 +381,7 @@ TWO_ROLLERS: dict[str, Any] = {
 }
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(42)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("kind", ["dxf", "svg", "stl"])
 @pytest.mark.parametrize("name", MADE)

@@ -69,7 +69,7 @@ def runs_of(folder, text, *deviations, noise=0.0):
     return runs
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     text = plain(RECIPES[kind])
@@ -114,6 +114,7 @@ def read_contour(path):
     return chain.contour.sample(8)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", [0.5, 1.5])
 def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_path):
     """Of two runs, the first measured in two files, whose mean counts; places are those of a formula."""
@@ -143,6 +144,7 @@ def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_
     assert failed["motion"]["value"] == pytest.approx(share * np.abs(off).max(), abs=0.002)
 
 
+@pytest.mark.slow
 def test_a_correction_goes_with_kerf_and_shrinkage(tmp_path):
     runs = runs_of(tmp_path, ROLLER, bump(0.02))
     recipe = written(tmp_path, ROLLER, runs, "{dxf: {as: arcs, correct: 1, kerf: 0.2, shrinkage: 1}}")
@@ -161,6 +163,7 @@ def test_a_correction_goes_with_kerf_and_shrinkage(tmp_path):
     assert np.abs(away[np.hypot(*(drawn - meant).T) < 0.3]).max() < 0.002
 
 
+@pytest.mark.slow
 def test_a_file_of_a_run_has_its_own_unit_probe_and_placing(tmp_path):
     """Centres of a ball, in inches, of a part turned by 5 degrees that is 20 um too large."""
     ((_, _, surface),) = surfaces(ROLLER)
@@ -228,6 +231,7 @@ BAD = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", list(BAD))
 def test_bad_input_is_told_in_one_line(name, tmp_path, capsys):
     text, runs, files, told = BAD[name]
@@ -248,6 +252,7 @@ def test_bad_input_is_told_in_one_line(name, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_head_and_name_of_a_program_say_that_it_is_corrected(tmp_path):
     runs = runs_of(tmp_path, ROLLER, bump(0.02))
     recipe = written(tmp_path, ROLLER + MILL, runs, "gcode, {gcode: {correct: 0.8}}")

@@ -19,7 +19,7 @@ def exported(folder, text, files):
     return recipe, camgeo.export(recipe, folder / "out")
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_a_table_measured_without_error_is_judged_at_its_digits(kind, tmp_path):
     recipe, report = exported(tmp_path, RECIPES[kind], "{csv: {as: inspection, step: 2}}")
@@ -31,7 +31,7 @@ def test_a_table_measured_without_error_is_judged_at_its_digits(kind, tmp_path):
     assert all(scale * one["profile"] < 2e-9 for one in verdict["made"]["discs"])
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_a_dmis_program_run_without_error_is_judged_at_its_digits(kind, tmp_path):
     thick = "bore: 12, thickness: 8" if kind == "conjugate discs" else "bore: 12"

@@ -21,7 +21,7 @@ def limited(text, profile=0.04, motion=0.02, datum="part"):
     return f"{text}\nmade: {{profile: {profile}, datum: {datum}}}\n"
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_a_clean_part_moves_as_meant(kind, tmp_path):
     recipe, files = measured(tmp_path, RECIPES[kind], noise=0.001)
@@ -37,7 +37,7 @@ def test_a_clean_part_moves_as_meant(kind, tmp_path):
         assert one["outlier_count"] == 0
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_a_planted_fault_is_found_where_it_is(kind, tmp_path):
     """By far above its uncertainty, at the place of contact; on one of two contacts it moves the follower by half."""
@@ -125,6 +125,7 @@ def test_an_outlier_is_named_counted_and_left_out_of_the_motion(tmp_path):
     assert abs(found["made"]["motion"]["error"]["max"]) < 0.002
 
 
+@pytest.mark.slow
 def test_lifts_of_an_indicator(tmp_path):
     """Its zero is free; a roller of another radius is told by --probe-radius."""
     recipe, _ = measured(tmp_path, limited(ROLLER, profile=1.0, motion=1.0))
@@ -201,6 +202,7 @@ BAD = {
 }
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("wrong", list(BAD))
 def test_points_that_are_not_of_this_cam_are_told_what_they_look_like(wrong, tmp_path, capsys):
     recipe, (file,) = measured(tmp_path, ROLLER)
@@ -213,6 +215,7 @@ def test_points_that_are_not_of_this_cam_are_told_what_they_look_like(wrong, tmp
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "remedy", [("turned", "--align", "rotation"), ("inches", "--units", "inch"), ("shifted", "--align", "best-fit")]
 )

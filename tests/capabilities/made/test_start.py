@@ -78,7 +78,7 @@ def start(folder, text, deviation=nothing, noise=0.0005, recipe=None):
     return main(["new", "--from", str(folder / "points.csv"), str(folder / "bare.yaml"), str(folder / "new.yaml")])
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
     assert start(tmp_path, RECIPES[kind]) == 0
@@ -166,6 +166,7 @@ def test_a_long_wave_moves_what_is_found_as_far_as_is_told(tmp_path, capsys):
     assert max(moves) > 0.8 * float(most)
 
 
+@pytest.mark.slow
 def test_round_numbers_are_written_where_the_points_let_them_be(tmp_path):
     start(tmp_path, RECIPES["roller on a stem"])
     recipe = camgeo.load(tmp_path / "new.yaml")
@@ -184,12 +185,14 @@ def test_comments_and_other_keys_stay(tmp_path):
     assert "# as asked" in new
 
 
+@pytest.mark.slow
 def test_what_a_recipe_says_of_motion_and_base_gives_way(tmp_path):
     other = RECIPES["roller on a stem"].replace("base_radius: 40", "base_radius: 35").replace("rise: 8", "rise: 3")
     assert start(tmp_path, RECIPES["roller on a stem"], recipe=other.replace("return: 8", "return: 3")) == 0
     assert "rise: 8, over: 120" in (tmp_path / "new.yaml").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_inches_and_a_shaft_that_turns_the_other_way(tmp_path):
     text = disc(
         "kind: roller, radius: 0.4",
@@ -203,6 +206,7 @@ def test_inches_and_a_shaft_that_turns_the_other_way(tmp_path):
     assert new.count("law: modified-sine") == 2
 
 
+@pytest.mark.slow
 def test_a_worn_cam_becomes_a_table(tmp_path, capsys):
     """A groove worn 0.2 mm deep beside the top of the rise: no law has it."""
     assert start(tmp_path, RECIPES["roller on a stem"], bump(-0.2, 5.0)) == 0
@@ -217,6 +221,7 @@ def test_a_worn_cam_becomes_a_table(tmp_path, capsys):
     assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.06
 
 
+@pytest.mark.slow
 def test_a_turn_that_begins_within_a_stroke_becomes_a_table(tmp_path, capsys):
     text = RECIPES["roller on a stem"]
     ((_, part, surface),) = surfaces(text)
@@ -231,6 +236,7 @@ def test_a_turn_that_begins_within_a_stroke_becomes_a_table(tmp_path, capsys):
     assert "the turn begins within a stroke: turn the points" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_laws_that_fit_alike_are_named(tmp_path, capsys):
     """Noise of 20 um leaves the laws of two cosines and of a trapezoid alike."""
     text = RECIPES["roller on a stem"].replace("cycloidal", "gutman-13")
@@ -279,6 +285,7 @@ def test_bad_input_is_told_and_nothing_is_written(name, tmp_path, capsys):
     assert set(tmp_path.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_files_that_are_there_or_not_there(tmp_path, capsys):
     assert start(tmp_path, RECIPES["flat"]) == 0
     assert start(tmp_path, RECIPES["flat"]) == 2

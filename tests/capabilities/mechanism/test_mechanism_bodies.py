@@ -123,7 +123,7 @@ def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str)
         assert solid.volume == pytest.approx(volume, rel=2e-3), member.name
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
     """shapely sees no overlap where kin's search has proved that there is none."""
@@ -191,7 +191,7 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
     return np.column_stack([x + point[0] * c - point[1] * s, y + point[0] * s + point[1] * c])
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("name", "one", "point", "other", "there"),
     [
@@ -272,7 +272,7 @@ def test_a_single_flat_face_is_exact_and_says_what_holds_it() -> None:
     assert "gravity or a spring" in assembly.remarks[0]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", GUIDED)
 def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) -> None:
     """shapely: no farther from the cam than the fit of the contour, and no deeper in it."""
@@ -463,6 +463,7 @@ def test_too_small_an_axial_gap_is_caught() -> None:
     assert check.detail.startswith("yoke and cap-right interfere")
 
 
+@pytest.mark.slow
 def test_what_drives_is_told_by_how_much_it_is_too_wide_to_slip_round() -> None:
     """In the words of report.json: of the shaft in the bore of the cam, and the figure is the assembly's own."""
     recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", "bore: {square: 5}"), "set.yaml")
@@ -511,7 +512,7 @@ def test_sizes_that_do_not_go_together_are_refused(asked: MechanismAsked, field:
     assert " inch" in "".join(caught.value.told(25.4, "inch"))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part"),
     [

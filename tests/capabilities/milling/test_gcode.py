@@ -457,7 +457,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults(program, tmp_path, fault):
     change, expected = FAULTS[fault]

@@ -58,7 +58,7 @@ def exact_flanks(recipe, sign=1.0):
     return [shapely.Polygon(one.curve.sample(t).point * [1.0, sign]) for one in designed(recipe).exact.surfaces]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("asked", "sign", "paths"),
     few(
@@ -106,6 +106,7 @@ def test_paths_lie_near_enough_and_end_on_the_flanks():
         assert 0.0 in ways
 
 
+@pytest.mark.slow
 def test_a_groove_in_a_blank_with_holes_and_a_path_in_its_drawing(tmp_path):
     part = ", outer: 170, bore: 16, bolts: {count: 3, circle: 40, hole: 7}"
     _, outcome, path = made(tmp_path, 6.0, ", holes: true, layer: true", part=part, files="gcode, dxf")
@@ -208,7 +209,7 @@ MADE = {
 }  # fmt: skip
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(deep, tmp_path, fault):
     given, expected = MADE[fault]

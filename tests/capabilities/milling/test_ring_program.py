@@ -64,7 +64,7 @@ def exact_opening(recipe, sign=1.0, count=8001):
     return shapely.Polygon(contour.sample(t).point * [1.0, sign])
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("asked", "sign"),
     few(
@@ -238,7 +238,7 @@ MADE = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(whole, tmp_path, fault):
     given, expected = MADE[fault]
@@ -272,7 +272,7 @@ SPOILT = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("fault", SPOILT)
 def test_a_program_that_is_spoilt(whole, tmp_path, fault):
     path = tmp_path / "c.ngc"

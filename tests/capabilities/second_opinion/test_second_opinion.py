@@ -137,7 +137,7 @@ def crossed() -> Any:
     return spoilt
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("vertices", "caught"),
     [
@@ -185,7 +185,7 @@ def with_a_box(mesh: Any) -> Any:
     return np.concatenate([mesh, box + np.array([60.0, 0.0, 0.0])])
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("write", [write_stl, write_3mf])
 @pytest.mark.parametrize(
     ("spoil", "caught"),

@@ -142,6 +142,7 @@ def with_sheet(text: str, options: str) -> str:
 # --- pages ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("paper", ["A3", "A4"])
 @pytest.mark.parametrize("path", few(SHIPPED, 12), ids=lambda path: path.stem)
 def test_nothing_lies_over_anything_else(path: Path, paper: str, drawn: list[drawing.Pages], tmp_path: Path) -> None:
@@ -152,6 +153,7 @@ def test_nothing_lies_over_anything_else(path: Path, paper: str, drawn: list[dra
         demand_clear(pages)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("projection", ["first", "third"])
 @pytest.mark.parametrize("paper", ["A3", "A4"])
 def test_of_a_part_with_everything(paper: str, projection: str, drawn: list[drawing.Pages], tmp_path: Path) -> None:
@@ -160,6 +162,7 @@ def test_of_a_part_with_everything(paper: str, projection: str, drawn: list[draw
     demand_clear(pages)
 
 
+@pytest.mark.slow
 def test_lengths_stand_below_what_is_seen_behind_the_cut(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     """A rosette's leaf beside the cut reaches further down than the cut."""
     path = next(path for path in SHIPPED if path.stem == "w-rosette")
@@ -185,6 +188,7 @@ def test_a_planted_line_through_a_text_is_seen(drawn: list[drawing.Pages], tmp_p
         demand_clear(drawn[0])
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     "name",
     [
@@ -203,6 +207,7 @@ def test_on_a4_parts_of_up_to_170_mm_are_drawn_half_their_size(
     assert all(pages.scale >= 0.5 for pages in drawn)
 
 
+@pytest.mark.slow
 def test_each_size_of_the_part_stands_once(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(ALL_SIZES, tmp_path)
     first = drawn[0].annotated[0]
@@ -215,6 +220,7 @@ def test_each_size_of_the_part_stands_once(drawn: list[drawing.Pages], tmp_path:
     assert len([text for text in texts if text.startswith("6 × Ø")]) == 1
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("bore", "value", "words"),
     [
@@ -233,6 +239,7 @@ def test_a_bore_that_is_not_round_has_a_view(
     demand_clear(drawn[0])
 
 
+@pytest.mark.slow
 def test_of_a_shaft_that_turns_the_other_way(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(f"rotation: ccw\n{ALL_SIZES}", tmp_path)
     texts = [text.text for text in drawn[0].annotated[0].texts]
@@ -298,6 +305,7 @@ def test_the_table_is_that_of_the_contour(tmp_path: Path) -> None:
     assert [float(row[1]) for row in table[1:]] == pytest.approx(radii.tolist(), abs=1e-4)
 
 
+@pytest.mark.slow
 def test_conjugate_discs_have_a_sheet_each(tmp_path: Path) -> None:
     path = next(path for path in SHIPPED if path.stem == "conjugate-flat")
     text = with_sheet(path.read_text(encoding="utf-8"), "profile: 0.02")
@@ -343,6 +351,7 @@ def test_text_can_be_searched_in_an_embedded_font(tmp_path: Path) -> None:
     assert len(data) < 80_000
 
 
+@pytest.mark.slow
 def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path) -> None:
     first, second = (exported(ALL_SIZES, tmp_path / name) for name in ("a", "b"))
     for name in ("cam-sheet.pdf", "cam-sheet.dxf"):
@@ -369,6 +378,7 @@ def test_a_failed_check_stands_on_the_drawing(drawn: list[drawing.Pages], tmp_pa
 # --- faults -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("options", "message", "remedy"),
     [

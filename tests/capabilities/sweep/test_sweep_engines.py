@@ -229,6 +229,7 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
         connection.close()
 
 
+@pytest.mark.slow
 def test_distributed_prints_no_lines_of_its_own(caplog: pytest.LogCaptureFixture) -> None:
     loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
     for logger in loggers:

@@ -423,6 +423,7 @@ def test_links_that_shape_the_cam_make_it_anew():
 
 
 # needs: dynamics
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
 def test_forces_of_a_rigid_train_are_ranked_by(figure):
     """Those of each design's own cam, as limits have them."""

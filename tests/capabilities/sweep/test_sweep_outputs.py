@@ -291,6 +291,7 @@ def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
     assert all(set(best["figures"]) == {"dwell", "dwell-relative", "margin"} for best in report["best"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) -> None:
     search(ask(), tmp_path, How(1), MEANS)

@@ -88,7 +88,7 @@ def assert_near(estimates, exact):
             assert math.isnan(value) or error_of(name, float(estimate), float(value)) < most, name
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", CAMS)
 def test_estimates_are_near_the_exact_designs(name):
     text, ranges = CAMS[name]
@@ -329,6 +329,7 @@ def swept(tmp_path):
     return sweep
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_the_next_design_follows_where_one_falls(swept):
     report, folder = swept()

@@ -63,6 +63,7 @@ def test_velocity_and_acceleration_while_it_is_open() -> None:
     assert seating * 6.0 * 3000.0 == pytest.approx(1832.860583452, abs=6e-9)
 
 
+@pytest.mark.slow
 def test_a_rocker_by_a_table_is_a_natural_cubic_spline_of_the_ratio() -> None:
     valve = camgeo.load(LOBE + ROCKER).of(Valve)
     assert valve is not None
@@ -103,6 +104,7 @@ def test_files_report_and_page(tmp_path: Path) -> None:
     assert all(words in page for words in ("Valve lift", "Valve acceleration", "Valve events", "ratio by a table"))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("lash", ["", ", lash: 0"])
 @pytest.mark.parametrize("nose", ["180", "0"])
 def test_without_lash_the_valve_is_open_while_the_tappet_is_off_its_lowest_place(lash: str, nose: str) -> None:
@@ -156,6 +158,7 @@ def test_inches_are_the_same_valve() -> None:
     assert found == pytest.approx([205.365783367, 12.5 / 25.4], abs=6e-10)
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("valve", "message", "remedy"),
     [
@@ -206,6 +209,7 @@ def test_a_lash_that_is_never_taken_up_has_no_events() -> None:
 
 
 # needs: camshaft
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("valve", [VALVE, ROCKER])
 def test_a_camshaft_tells_its_events_at_the_valve(valve: str, tmp_path: Path) -> None:
     (tmp_path / "lobe.yaml").write_text(LOBE + valve, encoding="utf-8")
