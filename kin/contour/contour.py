@@ -286,9 +286,14 @@ class Contour(Pieces):
         alike = tolerance is None or fine <= tolerance <= ALIKE * fine
         return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
 
-    def finer(self, tolerance: float) -> Contour:
-        """Return the contour for whose splines arcs within `tolerance` mm, or finer ones, stand by default."""
-        return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance < self._fine else self
+    def within(self, tolerance: float | None) -> Contour:
+        """Return the contour for whose splines arcs within `tolerance` mm stand by default; None: the usual ones."""
+        return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance != self.arcs_within else self
+
+    @property
+    def spread(self) -> float:
+        """How far the arcs that stand for splines by default may be from them, mm; 0 without splines."""
+        return self._fine if self.beziers.count else 0.0
 
     @property
     def _fine(self) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 from kin.contour.arcs import Arcs, dot, left
 from kin.contour.nearest import nearest
 from kin.numeric.extrema import extremes, resolution
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,6 +60,10 @@ class Deviation:
     def worst(self) -> tuple[float, float]:
         """Two-sided deviation, mm, and where: the envelope's parameter."""
         return max((self.outside, self.outside_at), (self.inside, self.inside_at), (self.bare, self.bare_at))
+
+    def less_sure(self, by: float) -> Deviation:
+        """Count in that the contour may be off by as much, mm."""
+        return replace(self, outside=self.outside + by, inside=self.inside + by, bare=self.bare + by)
 
 
 def deviation(chain: Arcs, envelope: Envelope) -> Deviation:

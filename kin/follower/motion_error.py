@@ -115,22 +115,23 @@ def motion_error(
     unit: Unit,
     *,
     remainder: float | None = 0.0,
+    off: float = 0.0,
 ) -> MotionError:
     """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
 
     `remainder` is by how much the worst may be exceeded, proved; None where it is but the worst of samples. Radians
-    become degrees if the unit says so.
+    become degrees if the unit says so. `off`, mm or degrees, is how far arcs in place of splines may put a sample off.
     """
     scale = 180.0 / np.pi if unit == "deg" else 1.0
     here, further = np.split(errors, 2, axis=-1)
     return MotionError(
         max=scale * worst[0],
-        rms=scale * float(np.sqrt(np.mean(here * here))),
+        rms=scale * float(np.sqrt(np.mean(here * here))) + off,
         unit=unit,
         at_deg=degrees(worst[1]),
-        increment=scale * float(np.abs(further - here).max()),
+        increment=scale * float(np.abs(further - here).max()) + 2.0 * off,
         step_deg=STEP_DEG,
-        dwell_flatness=None if flatness is None else scale * flatness,
+        dwell_flatness=None if flatness is None else scale * flatness + 2.0 * off,
         extremes="sampled" if remainder is None else "true",
         remainder=scale * (ALLOWANCE * worst[0] if remainder is None else remainder),
     )

@@ -1,9 +1,11 @@
 """Rollers on a guide: one, two on rigid arms with the cam between them, and two opposite ones in a translating frame.
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
-angles, with a proved remainder (`kin.follower.tracking`). On a contour of more than MOST_PIECES pieces, and where the
-proof does not succeed, it is that of samples: at the given shaft angles, where a piece stands out most and, up to
-MOST_PIECES, where the roller passes from piece to piece and midway along each; more closely about the worst of them.
+angles, with a proved remainder (`kin.follower.tracking`). Arcs within d of splines stand for these: on the arcs a
+roller that is larger by d stays farther out than the roller on the splines, and one that is smaller by d farther in, so
+the bounds are those of these two. On a contour of more than MOST_PIECES pieces, and where the proof does not succeed,
+the error is that of samples: at the given shaft angles, where a piece stands out most and, up to MOST_PIECES, where the
+roller passes from piece to piece and midway along each; more closely about the worst of them.
 So is the play between two rollers, without the closer look.
 """
 
@@ -12,7 +14,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.guide import Guide
     from kin.follower.tracking import Law
-    from kin.law.contacts import Side
+    from kin.law.contacts import Contact, Side
     from kin.numeric.arrays import Array, Indices
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
@@ -153,9 +155,9 @@ class _Rollers(Moved):
             for one, guide in zip(self.contacts, self.guides, strict=True)
         ]
 
-    def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
+    def _obstacle(self, contour: Contour, *spline: float, larger: float = 0.0) -> Arcs:
         chain = contour.as_arcs(*spline)[0]
-        return dilated(chain if self.side > 0 else chain.reversed(), self.radius)
+        return dilated(chain if self.side > 0 else chain.reversed(), self.radius + larger)
 
     def _positions(self, obstacle: Arcs, phi: Array, count: int = 2) -> Array:
         """Position with each of the first `count` rollers held: (1 or 2, n)."""
@@ -187,19 +189,30 @@ class _Rollers(Moved):
 
         ContactError where a roller meets nothing.
         """
-        obstacle, steps = self._obstacle(contour), with_steps(phi)
+        if contour.spread > self.radius:  # no roller is as much smaller: arcs as close as they come stand for splines
+            contour = contour.within(None)
+        obstacle, steps, spread = self._obstacle(contour), with_steps(phi), contour.spread
         each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
-        # a roller that stands turned meets the contour as one that does not meets it turned back
-        held = [held_on(obstacle.turned(-one.turned), guide, at, one.zero, one.sense) for one, guide, at in each]
+
+        def rollers(obstacle: Arcs, looked: int, *signs: int) -> list[Held]:
+            # a roller that stands turned meets the contour as one that does not meets it turned back
+            return [held_on(obstacle.turned(-one.turned), guide, at[:looked], one, signs) for one, guide, at in each]
+
+        held = bounds = rollers(obstacle, max(len(at) for _, _, at in each), 1, -1)
+        few = len(obstacle) <= MOST_PIECES
+        if few and 0.0 < spread <= self.radius:
+            bounds = [one for s in (1, -1) for one in rollers(self._obstacle(contour, larger=s * spread), 1, s)]
         place = [one.position(there.position[: len(steps)]) for (one, _, _), there in zip(each, held, strict=True)]
         errors = np.stack(place) - self.course.rows(steps)[0]
-        worst, remainder = settled(held, self.course, errors, few=len(obstacle) <= MOST_PIECES)
+        worst, remainder = settled(held, bounds, self.course, errors, few=few)
         dwells = list(dwell_angles(self.rests, phi))
         kept = self._positions(obstacle, np.concatenate(dwells), len(held)) if dwells else np.empty((1, 0))
         ends = np.cumsum([len(angle) for angle in dwells])[:-1]
         flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(kept, ends, axis=1) if part.size]
-        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder)
-        return Judged(motion, self._play(contour, obstacle, held, phi))
+        off = self.motion_limit(spread) if spread else 0.0
+        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder, off=off)
+        play, closure = self._play(contour, obstacle, held, phi), self.closure
+        return Judged(motion, play.less_sure(closure.limit(spread)) if spread and play and closure else play)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
@@ -306,33 +319,44 @@ class DoubleRoller(OfTransmission, _Rollers):
         return sampled_play(signed_distance(contour.as_arcs()[0], second) - self.radius, angle)
 
 
-def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, sense: int = 1) -> Held:
+def held_on(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], signs: tuple[int, ...]) -> Held:
     """Hold a roller at shaft angles `looked` (n,) first, and where pieces end if they are few. ContactError if loose.
 
-    It is meant to be at offset + sense * law.
+    `signs` are those of the errors that are looked for: those outwards do without the ends.
     """
     pieces, phi = obstacle, looked
     if len(obstacle) <= MOST_PIECES:
         pieces, _ = shortened(obstacle, guide)
+    if len(obstacle) <= MOST_PIECES and -1 in signs:
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), offset, sense)
+    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact.zero, contact.sense, signs)
 
 
-def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
+def settled(
+    rollers: Sequence[Held], bounds: Sequence[Held], law: Law, sampled: Array, few: bool
+) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
-    `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
-    where they are and no proof is found, all angles are looked at: None then.
+    No error is greater than that of `bounds`, which are the rollers themselves or stand farther out and in. `sampled`
+    are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few; where they
+    are and no proof is found, all angles are looked at: None then.
     """
     found = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
     passing: list[Array] = []
     if few:
         try:
-            found = greatest_error(rollers, law, found)
+            proved = greatest_error(bounds, law, found)
         except UnsettledError:
             passing = [passing_angles(one.pieces, one.guide) for one in rollers]
         else:
-            return (found.error, found.at), found.remainder
+            if bounds is rollers:
+                return (proved.error, proved.at), proved.remainder
+            here = np.array([proved.at])
+            reached = greatest(
+                errors_at(rollers, [Search.of(one.pieces, one.guide) for one in rollers], law, here), here
+            )
+            worst = max(reached, (found.error, found.at))
+            return worst, max(proved.error + proved.remainder - worst[0], 0.0)
     return _closely(rollers, law, np.concatenate([*(one.phi for one in rollers), *passing])), None
 
 
@@ -350,12 +374,7 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     worst = 0.0, 0.0
     searches = [Search.of(one.pieces, one.guide) for one in rollers]
     for _ in range(ROUNDS):
-        meant = law.rows(looked)
-        errors = [
-            np.abs(one.guide.position(touched(search, looked)[0]) - one.meant(meant.copy())[0])
-            for one, search in zip(rollers, searches, strict=True)
-        ]
-        error = np.max(errors, axis=0)
+        error = errors_at(rollers, searches, law, looked)
         worst = max(worst, greatest(error, looked))
         order = np.argsort(np.mod(looked, TURN))
         at, height = np.mod(looked, TURN)[order], error[order]
@@ -365,6 +384,16 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
         width = np.maximum(gap, np.roll(gap, 1))[tops, None]
         looked = (at[tops, None] + width * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)).ravel()
     return worst
+
+
+def errors_at(rollers: Sequence[Held], searches: Sequence[Search], law: Law, phi: Array) -> Array:
+    """Greatest absolute error of rollers, each with its search, at shaft angles phi (n,)."""
+    meant = law.rows(phi)
+    errors = [
+        np.abs(one.guide.position(touched(search, phi)[0]) - one.meant(meant.copy())[0])
+        for one, search in zip(rollers, searches, strict=True)
+    ]
+    return np.asarray(np.max(errors, axis=0))
 
 
 def touched(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:

@@ -81,7 +81,7 @@ class Held:
     """A guided roller held on `pieces`, short ones (`kin.follower.contact.shortened`), that bound its centre.
 
     At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
-    of all pieces. It is meant to be at offset + sense * law.
+    of all pieces. It is meant to be at offset + sense * law. `signs` are those of the errors looked for, 1 outwards.
     """
 
     pieces: Arcs
@@ -91,6 +91,7 @@ class Held:
     piece: Indices
     offset: float = 0.0
     sense: int = 1
+    signs: tuple[int, ...] = (1, -1)
 
     @cached_property
     def position(self) -> Array:
@@ -120,8 +121,10 @@ class Held:
 
     def spans(self) -> Spans:
         """Spans of all pieces for errors outwards, and of those that are touched for errors inwards."""
-        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
+        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack) & (1 in self.signs))
         half = 0.5 * self.pieces.length[near]
+        if -1 not in self.signs:
+            return Spans(self, np.ones(len(near)), near, half, half)
         touched = self.touched()
         return Spans(
             self,

@@ -81,6 +81,19 @@ def test_a_spline_under_every_follower(tmp_path, name):
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
+def test_a_spline_at_the_edge_of_its_tolerance(tmp_path):
+    """What does not hold with coarse arcs for it counted in is judged by fine ones."""
+    follower, path = FOLLOWERS["trailing arm"], tmp_path / "cam.dxf"
+    drawn_spline(path, bored(fit_spline(Curve.whole(CURVES["trailing arm"]), 1e-4), intent(follower).outline))
+    error = verify(path, intent(follower), 180, Limits(1e-8)).measured_error
+    for share, ok in ((1.0002, True), (0.9998, False)):
+        (check,) = (
+            one for one in verify(path, intent(follower), 180, Limits(share * error)).checks if one.name == "contour"
+        )
+        assert check.ok is ok
+        assert check.value == pytest.approx(error, abs=2e-9)
+
+
 @pytest.mark.thin(16)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
