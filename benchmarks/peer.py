@@ -12,6 +12,7 @@ would: exact points, its own offset, its own writer.
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 import math
 import resource
@@ -21,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
+COLLECT_AFTER = 300_000  # new objects: Python's collector of garbage waits as long in camgeo's own command
 THICKNESS = 8.0
 LONG = 1.0  # seconds; what takes longer is not repeated
 
@@ -224,6 +226,7 @@ def main() -> None:
     parser.add_argument("file", type=Path)
     parser.add_argument("repeats", type=int)
     given = parser.parse_args()
+    gc.set_threshold(COLLECT_AFTER)
     work, _ = PEERS[given.peer]
     seconds = []
     for _ in range(1 + given.repeats):

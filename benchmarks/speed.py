@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from peer import COLLECT_AFTER
 
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
@@ -171,7 +172,6 @@ def cold() -> dict[str, tuple[float, float, float]]:
     By the files that are asked for: seconds of it, of the imports, and MB.
     """
     print("\nprocessor time and memory of the whole command in a fresh process, its bytecode compiled as pip does")
-    print("target: STL alone 2.3 times numpy in 40 MB; DXF 1.25, DXF and STL 1.35 times numpy and ezdxf in 60 MB")
     text = (
         "cam: {{kind: constant-breadth, base_radius: 40, motion: [{{rise: 20, over: 120, law: modified-sine}}, "
         "{{dwell: 60}}]}}\n"
@@ -179,9 +179,7 @@ def cold() -> dict[str, tuple[float, float, float]]:
     )
     found = {}
     with tempfile.TemporaryDirectory() as folder:
-        environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
-        environment["PYTHONPYCACHEPREFIX"] = folder
-        environment["OPENBLAS_NUM_THREADS"] = "1"  # as the command has it
+        environment = compiled(Path(folder))
         for files, imports in (("stl", "numpy"), ("dxf", "numpy, ezdxf"), ("dxf, stl", "numpy, ezdxf")):
             recipe = Path(folder) / "cam.yaml"
             recipe.write_text(text.format(files=files), encoding="utf-8")
@@ -189,13 +187,19 @@ def cold() -> dict[str, tuple[float, float, float]]:
             command = ["-m", "camgeo", *words]
             best = [math.inf] * 2
             for _ in range(2 if SMALL else 10):  # the first of them compiles
-                for i, arguments in enumerate((command, ["-c", f"import {imports}"])):
+                for i, arguments in enumerate((command, ["-c", f"{AS_OURS}import {imports}"])):
                     best[i] = min(best[i], spent([sys.executable, *arguments], environment))
             (seconds, base), memory = best, held(words, environment)
             print(f"{files:9} {1e3 * seconds:6.0f} ms, import {imports:12} {1e3 * base:6.0f} ms", end="")
             print(f", ratio {seconds / base:5.2f}, {memory:4.0f} MB")
             found[files] = seconds, base, memory
     return found
+
+
+def compiled(folder: Path) -> dict[str, str]:
+    """Variables for a process whose bytecode is kept, in `folder`, and whose linear algebra runs in one thread."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return environment | {"PYTHONPYCACHEPREFIX": str(folder), "OPENBLAS_NUM_THREADS": "1"}
 
 
 def spent(command: list[str], environment: dict[str, str]) -> float:
@@ -208,6 +212,7 @@ def spent(command: list[str], environment: dict[str, str]) -> float:
     return usage.ru_utime + usage.ru_stime
 
 
+AS_OURS = f"import gc; gc.set_threshold({COLLECT_AFTER}); "
 HELD = """
 import atexit, sys
 def told():
