@@ -51,19 +51,14 @@ byId("follow-form").addEventListener("submit", async (event) => {
   event.preventDefault();
   const answer = await onForeign("following…", "follow", { file: somebodys.name, follower: follower() });
   if (!answer) return;
-  byId("followed").hidden = false;
-  byId("followed-words").textContent = answer.words;
-  const list = byId("followed-files");
-  downloads(list, answer.files);
-  if (answer.recipe) {
-    const button = element("button", { type: "button" }, "Make it the recipe");
-    button.addEventListener("click", () => {
-      loaded({ name: answer.name, text: answer.recipe, tables: answer.tables });
-      byId("desk-head").scrollIntoView({ block: "nearest" });
-    });
-    list.append(element("li", {}, button));
-  }
-  if (answer.page) showJudged({ ...answer, files: [] }, `${somebodys.name} and the recipe of its motion`);
+  showJudged(answer, `What ${somebodys.name} does`);
+  if (!answer.recipe) return;
+  const button = element("button", { type: "button" }, "Make it the recipe");
+  button.addEventListener("click", () => {
+    loaded({ name: answer.name, text: answer.recipe, tables: answer.tables });
+    byId("main").scrollIntoView();
+  });
+  byId("files").append(element("li", {}, button));
 });
 
 for (const id of ["touch", "led", "yoke"]) byId(id).addEventListener("change", showFollower);

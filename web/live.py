@@ -164,7 +164,10 @@ def fields(source: Source) -> list[dict[str, Any]]:
         if shared[id(node)] == 1 and node.tag is None
         for entry in _entry(reader, path, node)
     ]
-    return sorted([*entries, *_files(reader)], key=lambda entry: entry["start"])
+    lists = list(_files(reader))
+    whole = {entry["path"] for entry in lists}  # their words are ticked, and are no fields besides
+    single = [entry for entry in entries if entry["path"].partition("[")[0] not in whole]
+    return sorted([*single, *lists], key=lambda entry: entry["start"])
 
 
 def _read(source: Source, root: Mapping) -> Reader:
@@ -445,18 +448,19 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     folder = Path(OUT)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{stem}-motion.csv").write_text(followed.table(), "utf-8")
-    output: dict[str, Any] = {"words": summary(followed), "page": "", "ok": True, "verdict": ""}
+    output: dict[str, Any] = {"verdict": summary(followed), "page": "", "ok": True}
     output["files"] = [{"name": f"{stem}-motion.csv", "path": str(folder / f"{stem}-motion.csv")}]
     table = f"{stem}-lifts.csv"
     try:
         recipe = followed.recipe(table)
     except camgeo.CallError as error:
-        return {**output, "words": f"{output['words']}\nNo recipe is made of it: {error}"}
+        return {**output, "verdict": f"{output['verdict']}\nNo recipe is made of it: {error}"}
     (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
     output |= {"name": stem, "recipe": recipe, "tables": {table: followed.lifts()}}
     if followed.at == (0.0, 0.0):
         report = shown(followed)
-        output |= {"page": report.page or "", "ok": report.ok, "verdict": str(report)}
+        told = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
+        output |= {"page": report.page or "", "ok": report.ok, "verdict": told}
     return output
 
 

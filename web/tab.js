@@ -159,6 +159,7 @@ async function designed(name, text) {
   const verdict = byId("verdict");
   verdict.textContent = answer.verdict;
   verdict.className = `verdict ${answer.ok ? "ok" : "failed"}`;
+  byId("why").hidden = answer.ok;
   byId("checks").innerHTML = answer.checks;
   showFailed(answer.failed);
   play(answer.scene);
@@ -207,6 +208,7 @@ function showFaults(faults, trace) {
   if (faults.length) {
     verdict.textContent = faults.length === 1 ? "a fault in the recipe" : `${faults.length} faults in the recipe`;
     verdict.className = "verdict failed";
+    byId("why").hidden = true;
   }
 }
 
@@ -351,6 +353,7 @@ function showForm() {
     }
     const box = byId(`box-${index}`);
     if (document.activeElement !== box || field.kind === "choice") box.value = field.text;
+    box.parentElement.classList.toggle("long", field.kind === "number" && field.text.length > 6);
     const slider = byId(`slide-${index}`);
     if (!slider || document.activeElement === slider) return;
     if (!(field.value > Number(slider.min) && field.value < Number(slider.max)) || slider.dataset.fresh) {
@@ -633,7 +636,7 @@ async function long(words, call, input, files) {
   const answer = await work.ask(call, input, files);
   const seconds = ((performance.now() - begun) / 1000).toFixed(1);
   byId("stop").disabled = true;
-  busy.textContent = answer ? `${seconds} s` : "stopped";
+  busy.textContent = answer ? `it took ${seconds} s` : "stopped";
   tab.dataset.seconds = String((performance.now() - begun) / 1000);
   return answer;
 }
@@ -654,6 +657,11 @@ function showJudged(answer, head, rejected = "") {
   tab.dataset.judged = String(Number(tab.dataset.judged || 0) + 1);
   judged.scrollIntoView({ behavior: "smooth", block: "start" });
 }
+
+byId("why").addEventListener("click", (event) => {
+  event.preventDefault(); // the address holds the recipe
+  byId("checks-head").scrollIntoView();
+});
 
 byId("make").addEventListener("click", async () => {
   clearTimeout(typed);

@@ -33,6 +33,11 @@ def words(check: dict[str, Any]) -> str:
     return least if check["sense"] == "at_least" else below
 
 
+def verb(check: dict[str, Any]) -> str:
+    """Say what its limit is behind those words: `needed` where the limit itself fails, else `allowed`."""
+    return "needed" if is_strict(check) else "allowed"
+
+
 def sign(check: dict[str, Any]) -> str:
     """Give the same as a sign."""
     return {"at least": ">=", "more than": ">", "at most": "<=", "less than": "<"}[words(check)]

@@ -10,7 +10,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import UNIT_NAMES, in_units, pounds
 from camgeo.registry.formats import FORMATS
-from camgeo.report.bound import is_strict, sign, title, unit_text, words
+from camgeo.report.bound import sign, title, unit_text, verb, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 from kin.judge.verdict import UNREAD
@@ -394,8 +394,7 @@ def _told(check: dict[str, Any]) -> str:
     if check["value"] is not None:
         text += f": {_number(check['value'])} {unit_text(check)}".rstrip()
         if check["limit"] is not None:
-            word = "needed" if is_strict(check) else "allowed"
-            text += f", {words(check)} {_number(check['limit'])} {word}"
+            text += f", {words(check)} {_number(check['limit'])} {verb(check)}"
         if check["at_deg"] is not None:
             text += f", at {check['at_deg']:.2f} deg"
     if check.get("detail"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import LIMIT, Declared, declaration
-from camgeo.report.bound import title, unit_text, words
+from camgeo.report.bound import title, unit_text, verb, words
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
@@ -41,7 +41,7 @@ def headline(check: dict[str, Any]) -> str:
     text = f"{title(check)} of {file}" if file else title(check)
     if check["value"] is None:
         return f"{text}: {check.get('detail') or 'nothing to measure'}"
-    parts = [_value(check), _limit(check)]
+    parts = [_value(check), f"{_limit(check)} {verb(check)}" if _limit(check) else ""]
     if check["at_deg"] is not None:
         parts.append(f"at {check['at_deg']:.2f} deg")
     return f"{text}: " + ", ".join(part for part in parts if part)

@@ -124,7 +124,7 @@ def test_each_check_of_a_camshaft_is_an_item(project: Pytester) -> None:
     result = run(project, "cams/shaft.yaml")
     result.assert_outcomes(failed=1, passed=5, skipped=8)
     result.stdout.fnmatch_lines(
-        ["shaft, lobe: 30 mm, at least 31 mm", "*recipe   cams/shaft.yaml:1:* camshaft.lobes[[]0[]].recipe"]
+        ["shaft, lobe: 30 mm, at least 31 mm allowed", "*recipe   cams/shaft.yaml:1:* camshaft.lobes[[]0[]].recipe"]
     )
     assert "camgeo/" not in result.stdout.str().replace(str(project.path), "")
 
@@ -290,7 +290,7 @@ def test_a_failure_tells_figure_limit_place_and_remedy(project: Pytester) -> Non
     result.assert_outcomes(passed=len(ITEMS) - 1, failed=1)
     result.stdout.re_match_lines(
         [
-            r"motion of small\.dxf: 0\.00\d+ mm, at most 0\.001 mm, at \d+\.\d\d deg",
+            r"motion of small\.dxf: 0\.00\d+ mm, at most 0\.001 mm allowed, at \d+\.\d\d deg",
             r"  value    0\.00\d+ mm",
             r"  limit    at most 0\.001 mm",
             r"  at       \d+\.\d{4} deg of shaft angle",
@@ -361,9 +361,9 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     result.assert_outcomes(failed=2, passed=3, skipped=len(OF_DXF))
     result.stdout.fnmatch_lines(
         [
-            "radius-of-curvature: -1 mm, more than 0 mm, at *",
+            "radius-of-curvature: -1 mm, more than 0 mm needed, at *",
             "  remedy   a p larger by more than 1 mm",
-            "undercut-local: * mm, at most 0 mm, at *",
+            "undercut-local: * mm, at most 0 mm allowed, at *",
             "  found    from * deg; * larger by more than 1 would have no undercut; or let * undercut: trim",
         ]
     )
@@ -386,7 +386,9 @@ def test_a_check_that_was_not_foreseen_fails_the_recipe_itself(
     spoil(monkeypatch, lambda checks: [*checks, BOGUS])
     result = run(project)
     result.assert_outcomes(failed=1, passed=len(ITEMS) - 1)
-    result.stdout.fnmatch_lines(["new-check: 2 mm, at most 1 mm, at 5.00 deg", "FAILED cams/small.yaml::recipe*"])
+    result.stdout.fnmatch_lines(
+        ["new-check: 2 mm, at most 1 mm allowed, at 5.00 deg", "FAILED cams/small.yaml::recipe*"]
+    )
 
 
 def test_a_check_that_was_foreseen_and_not_made_fails(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:

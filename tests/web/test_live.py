@@ -178,7 +178,7 @@ def test_a_file_is_followed_by_what_the_page_offers(name: str, follower: dict[st
     path = next(report.path.glob("*.dxf"))
     (Path(live.FOLDER) / "cam.dxf").write_bytes(path.read_bytes())
     answer = json.loads(live.answer("follow", json.dumps({"file": "cam.dxf", "follower": FOLLOWER | follower})))
-    assert words in answer["words"]
+    assert words in answer["verdict"]
     assert answer["page"]
 
 

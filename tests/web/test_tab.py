@@ -175,6 +175,7 @@ def test_a_cam_that_undercuts_says_where_and_what_would_do(page: tab.Tab) -> Non
     assert page.text_of("verdict") == "2 checks of 4 fail"
     assert "would be free of it" in page.text_of("failed")
     assert page.ask("document.querySelectorAll('#drawing .mark.failed').length") == 2
+    assert page.ask("byId('why').hidden") is False
     page.ask("document.querySelector('#failed .go').click()")
     assert float(page.ask("document.documentElement.dataset.degrees")) == pytest.approx(51.08, abs=0.01)
 
@@ -208,8 +209,8 @@ def test_somebodys_file_is_judged_and_followed(page: tab.Tab, tmp_path: Path) ->
     assert "FAILED" in page.text_of("outcome")
     page.ask("byId('radius').value = '9'; byId('offset').value = '8,0'")
     page.judged("follow")
-    assert "lift 20 mm" in page.text_of("followed-words")
-    page.ask("document.querySelector('#followed-files button').click()")
+    assert "lift 20 mm" in page.text_of("outcome")
+    page.ask("document.querySelector('#files button').click()")
     page.wait("recipe.text.includes('reading: 0.01')")
     page.settle()
     assert page.text_of("verdict") == "every check of the design holds"
@@ -237,7 +238,7 @@ def test_a_follower_has_the_boxes_that_it_needs(page: tab.Tab, tmp_path: Path) -
     assert "width" in page.text_of("file-faults")  # which one is needed
     page.ask("byId('width').value = '34'")
     page.judged("follow")
-    assert "a centred face is" in page.text_of("followed-words")
+    assert "a centred face is" in page.text_of("outcome")
     page.choose("touch", "roller")
 
 

@@ -296,7 +296,8 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
     margin, name = "", f", {surface.name}" if surface.name else ""
     if found.value is not None and math.isfinite(found.value) and radius >= 0.0:
         room = (found.value - radius) / recipe.mm
-        margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
+        side = "from" if room > 0.0 else "beyond"
+        margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {abs(room):.5g} {unit} {side} undercut"
         if surface_design.contour is not None and is_sharp(surface_design.contour):
             margin = "radius 0 about sharp corners, as the recipe has them"
     if radius:

@@ -259,7 +259,7 @@ def test_a_report_of_a_camshaft_shows_itself_and_explains_its_checks(tmp_path: P
     report = camgeo.check(path)
     (failed,) = (check for check in report.checks if not check.ok)
     told = report.explain(failed)
-    assert told.startswith("shaft, intake: 18 mm, at least 18.5 mm\n")
+    assert told.startswith("shaft, intake: 18 mm, at least 18.5 mm allowed\n")
     assert told.endswith(f"recipe   {path}:4:16 camshaft.lobes[0].recipe")
     assert "shaft, intake" in report._repr_html_()
     assert "size, roller" in report.figures
