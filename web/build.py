@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import base64
 import hashlib
+import io
 import json
 import os
 import re
@@ -26,7 +27,8 @@ ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "web"
 VERSION = "0.27.7"  # of Pyodide; before 0.27.3 it ends Safari on iOS
 DISTRIBUTION = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"
-RUNTIME = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
+RUNTIME = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "pyodide-lock.json")
+LIBRARY = "python_stdlib.zip"
 OTHERS = ("yaml", "ezdxf", "fontTools", "pyparsing", "typing_extensions")  # what camgeo needs besides numpy
 UNUSED: tuple[str, ...] = ("*.so", "*.pyd", "__pycache__", "*.pyx", "*.pxd", "*.c", "*.cpp", "*.pyi")
 # parts of ezdxf and fontTools that draw, convert and compile fonts, a third of both: nothing here imports them
@@ -131,36 +133,43 @@ def python_of_pyodide() -> str | None:
 
 
 def packed() -> bytes:
-    """Pack camgeo with what it imports as a zip, compiled where there is the right Python; same input, same bytes.
-
-    The source of each `__init__` stays: camgeo lists its capabilities by them.
-    """
+    """A zip of camgeo and what it imports; the source of each `__init__` stays, as capabilities are listed by them."""
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name) / "packages"
+        folder = Path(name)
         gather(folder, (*OTHERS, "camgeo", "kin"))
         shutil.copy(WEB / "live.py", folder)
-        python = python_of_pyodide()
-        if python is not None:
-            command = [
-                python,
-                "-m",
-                "compileall",
-                "-q",
-                "-b",
-                "-s",
-                str(folder),
-                "--invalidation-mode",
-                "unchecked-hash",
-            ]
-            subprocess.run([*command, str(folder)], check=True)
-        bundle = Path(name) / "packages.zip"
-        with ZipFile(bundle, "w", ZIP_DEFLATED, compresslevel=9) as archive:
-            for path in sorted(folder.rglob("*")):
-                compiled = path.with_suffix(".pyc").is_file()
-                twice = path.stem != "__init__" and path.suffix == ".py" and compiled
-                if path.is_file() and not twice and path.name != "__init__.pyc":
-                    archive.writestr(entry_of(str(path.relative_to(folder))), path.read_bytes(), ZIP_DEFLATED)
-        return bundle.read_bytes()
+        return compiled(folder, kept="__init__.py")
+
+
+def repacked(archive: Path, level: int = 0) -> bytes:
+    """An archive of Python's or of a package's modules, such as a wheel, as a zip of compiled ones."""
+    with tempfile.TemporaryDirectory() as name:
+        with ZipFile(archive) as held:
+            held.extractall(name)
+        for path in Path(name).rglob("*.pyi"):
+            path.unlink()
+        return compiled(Path(name), level=level)
+
+
+def compiled(folder: Path, kept: str = "", level: int = 0) -> bytes:
+    """A zip of a folder with its modules compiled, where there is the right Python; files of the name `kept` stay.
+
+    A page that is opened would else compile every module that it imports. `level` is Python's of optimizing: 2 leaves
+    docstrings and assertions out. The same input gives the same bytes.
+    """
+    python = python_of_pyodide()
+    if python is not None:
+        command = [python, "-m", "compileall", "-q", "-b", "-s", str(folder), "-o", str(level)]
+        command += ["--invalidation-mode", "unchecked-hash"]
+        subprocess.run([*command, str(folder)], check=True)
+        for path in folder.rglob("*.py"):
+            (path.with_suffix(".pyc") if path.name == kept else path).unlink()
+    target = io.BytesIO()
+    with ZipFile(target, "w", ZIP_DEFLATED, compresslevel=9) as archive:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file():
+                archive.writestr(entry_of(str(path.relative_to(folder))), path.read_bytes(), ZIP_DEFLATED)
+    return target.getvalue()
 
 
 def licences() -> str:
@@ -247,7 +256,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     (target / "pictures").mkdir()
     for name in RUNTIME:
         shutil.copyfile(pyodide / "node_modules" / "pyodide" / name, target / "pyodide" / name)
-    shutil.copyfile(wheel, target / "pyodide" / wheel.name)
+    (target / "pyodide" / LIBRARY).write_bytes(repacked(pyodide / "node_modules" / "pyodide" / LIBRARY, 2))
     shown = starters()
     for one in shown:
         (target / "pictures" / f"{one['name']}{'-shipped' if 'shipped' in one else ''}.svg").write_text(
@@ -262,6 +271,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
     files = {
         "camgeo.zip": packed(),
+        "numpy.zip": repacked(wheel),
         "tab.css": style.encode(),
         "page.js": asset("page.js").encode(),
         "licences.txt": licences().encode(),
@@ -280,7 +290,6 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         "drawing": str(scene["drawing"]),
         "recipe": escaped(text),
         "scene": page.encoded(scene),
-        "numpy": wheel.name,
         "version": camgeo.__version__,
         **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
     }

@@ -16,28 +16,32 @@ async function begin() {
   say("Python is coming", 0.05);
   const python = await loadPyodide();
   say("numpy is coming", 0.5);
-  python.unpackArchive(await numpy, "wheel");
-  say("camgeo is coming", 0.65);
   const packages = python.runPython("import site; site.getsitepackages()[0]");
+  python.unpackArchive(await numpy, "zip", { extractDir: packages });
+  say("camgeo is coming", 0.65);
   python.unpackArchive(await code, "zip", { extractDir: packages });
   say("camgeo is starting", 0.8);
   const live = python.pyimport("live");
-  python.runPython("import gc; gc.collect(); gc.freeze()"); // what is loaded stays: no collection looks at it again
+  const gc = python.pyimport("gc");
+  gc.collect();
+  gc.freeze(); // what is loaded stays: no collection looks at it again
+  gc.set_threshold(100000); // one comes behind each answer, and none in the way of a picture
   say("", 1);
-  return { python, live };
+  return { python, live, gc };
 }
 
 const begun = begin();
 begun.catch((error) => postMessage({ broken: String(error.message || error) }));
 
 self.onmessage = async ({ data }) => {
-  const { python, live } = await begun;
+  const { python, live, gc } = await begun;
   const { id, call, input, files = {} } = data;
   try {
     for (const [name, content] of Object.entries(files)) python.FS.writeFile(`${live.FOLDER}/${name}`, content);
     const output = JSON.parse(live.answer(call, JSON.stringify(input)));
     const made = (output.files || []).map((file) => ({ ...file, bytes: python.FS.readFile(file.path) }));
     postMessage({ id, output, files: made }, made.map((file) => file.bytes.buffer));
+    gc.collect();
   } catch (error) {
     postMessage({ id, error: String(error.message || error) });
   }

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import pytest
 from support.places import SHIPPED, script
@@ -187,6 +189,30 @@ def test_a_length_that_is_none_is_named() -> None:
     call = {"file": "cam.dxf", "follower": FOLLOWER | {"roller": "9 ell"}}
     answer = json.loads(live.answer("follow", json.dumps(call)))
     assert answer["faults"][0]["text"].startswith("roller: 9 ell is no length")
+
+
+@pytest.mark.parametrize("kept", ["", "__init__.py"])
+def test_modules_are_compiled_and_all_else_stays(tmp_path: Path, kept: str) -> None:
+    build = script("build")
+    archive = tmp_path / "numpy.whl"
+    with ZipFile(archive, "w") as wheel:
+        for name, text in {
+            "a/__init__.py": "b = 1",
+            "a/c.py": "d = 2",
+            "a/c.pyi": "d: int",
+            "a/e.so": "binary",
+        }.items():
+            wheel.writestr(name, text)
+    with ZipFile(archive) as wheel:
+        wheel.extractall(tmp_path / "folder")
+    if build.python_of_pyodide() is None:
+        pytest.skip("no Python of the version of Pyodide's here, which compiles")
+    packed = build.compiled(tmp_path / "folder", kept) if kept else build.repacked(archive)
+    with ZipFile(io.BytesIO(packed)) as made:
+        names = made.namelist()
+        assert made.read("a/e.so") == b"binary"
+    package = "a/__init__.py" if kept else "a/__init__.pyc"
+    assert names == ([package, "a/c.pyc", "a/c.pyi", "a/e.so"] if kept else [package, "a/c.pyc", "a/e.so"])
 
 
 def test_a_capability_that_is_gone_takes_its_part_of_the_page_along(monkeypatch: pytest.MonkeyPatch) -> None:
