@@ -150,6 +150,70 @@ def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
     assert all(order > 2 for joint in motion.joints for order, *_ in joint.jumps)
 
 
+AGREE = side_card(((1.27, 120.0), (0.15, 142.0)), 2.0), side_card(((1.27, 112.0), (0.15, 132.0)), 2.0)
+APART = side_card(((1.27, 119.0), (0.15, 139.6)), 2.0), side_card(((1.27, 98.8),), 2.0)
+
+
+def peaks(first, second):
+    return max(peak(lobe_of(mixture.side, mixture.side), mixture.side.half) for mixture in (first, second))
+
+
+def test_uneven_sides_have_the_peak_of_the_worse_one_alone_where_the_other_can_follow_its_nose():
+    worse = max(peaks(*sides_of_card(LIFT, card, card, HALF_TURN)) for card in AGREE)
+    assert peaks(*sides_of_card(LIFT, *AGREE, HALF_TURN)) == pytest.approx(worse, rel=2e-4)
+
+
+def test_uneven_sides_are_searched_together_where_their_noses_differ():
+    # over the angles that are best of each side alone it is 38.86, and the worse one alone has 34.68
+    opening, closing = sides_of_card(LIFT, *APART, HALF_TURN)
+    assert peaks(opening, closing) == pytest.approx(38.37, abs=0.05)
+
+
+@pytest.mark.slow
+def test_no_angles_of_uneven_sides_have_a_lower_peak_by_another_solver():
+    """Mixtures of both sides by scipy, at pairs of angles round the ones found and far from them."""
+    pytest.importorskip("scipy")
+    from kin.law.sources.cam_card import _members
+
+    u = np.linspace(0.0, 1.0, 120)
+    powers = np.array(_members(), dtype=float)
+    factors = np.array([coefficients(member) for member in _members()])
+    bends = np.einsum("nk,unk->un", factors * powers * (powers - 1), u[:, None, None] ** (powers - 2))
+    count, size = len(factors), np.abs(bends).max()
+    found = sides_of_card(LIFT, *APART, HALF_TURN)
+    least = peaks(*found)
+    tried = 0
+    near = [[mixture.side.half * share for share in (0.98, 1.0, 1.03)] for mixture in found]
+    for halves in ((first, second) for first in near[0] for second in near[1]):
+        if any(half <= max(c.angle for c in card.crossings) for half, card in zip(halves, APART, strict=True)):
+            continue
+        equal, right, upper = [], [], []
+        for i, (half, card) in enumerate(zip(halves, APART, strict=True)):
+            here = slice(i * count, (i + 1) * count)
+            rows = [np.ones(count), *(1.0 + (factors * (c.angle / half) ** powers).sum(axis=1) for c in card.crossings)]
+            for row, level in zip(rows, [1.0, *(c.lift / LIFT for c in card.crossings)], strict=True):
+                equal.append(np.zeros(2 * count + 1))
+                equal[-1][here] = row
+                right.append(level)
+            for sign in (1.0, -1.0):
+                block = np.zeros((len(u), 2 * count + 1))
+                block[:, here] = sign * bends / half**2 / size
+                block[:, -1] = -1.0
+                upper.append(block)
+        noses = [bends[0] / half**2 / size for half in halves]
+        equal.append(np.concatenate([noses[0], -noses[1], [0.0]]))
+        right.append(0.0)
+        cost = np.zeros(2 * count + 1)
+        cost[-1] = 1.0
+        other = optimize.linprog(
+            cost, A_ub=np.vstack(upper), b_ub=np.zeros(4 * len(u)), A_eq=np.array(equal), b_eq=np.array(right)
+        )
+        if other.status == 0:
+            tried += 1
+            assert least <= other.fun * size * LIFT * 1.001
+    assert tried > 2
+
+
 def test_a_side_by_its_powers_keeps_its_acceleration_at_the_nose():
     known = LobeSide.of(LIFT, math.radians(66), (2, 8, 14, 20, 26), None)
     first, second = sides_of_card(LIFT, SideCard(known=known), side_card(((1.27, 118.0),), 2.0), HALF_TURN)

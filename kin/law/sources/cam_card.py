@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from functools import cache, lru_cache
 from itertools import combinations, pairwise
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -41,6 +42,7 @@ _NEAREST = 10  # halvings of the greatest difference of a card
 _FARTHEST = 720.0  # degrees of the crank
 _CLOSE = 1e-4  # of a peak: places with no greater acceleration than so are no new ones
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_LEVELS = 7  # halvings of the acceleration at the nose that two sides have in common
 _LEAST_WEIGHT = 1e-12  # of a mixture: less is rounding
 
 
@@ -279,20 +281,76 @@ def _solved(
 ) -> list[tuple[_Family, Array]] | None:
     """The mixtures of least peak acceleration that meet the sides' crossings; None where none do.
 
-    Each side has the angle that is best of it alone; where the sides then have no acceleration at the nose in common,
-    that which is best with one that they can have.
+    The peak of two sides is that of the worse one, so none is below what the worse one has alone, over the angle that
+    is best of it. Where the other can have the same acceleration at the nose with no greater peak, nothing is lower.
+    Elsewhere the one in common is halved between those that are best of each: on the way from a side's own its least
+    peak rises. All pairs of angles that turn up are tried with any acceleration in common, and the best is taken.
     """
+    alone = [_side(lift, card, nose, most) for card in sides]
+    best = _joined(lift, sides, alone, nose)
+    bound = max(side.peak for side in alone) * (1.0 + _CLOSE)
+    if len(sides) == 1 or best.peak <= bound:
+        return best.solved
+    ends = [side.nose for side in alone]
+    if math.isinf(best.peak):
+        reach = _common_noses(lift, sides, most, 0.0)
+        if reach is None:
+            return None
+        ends = [min(max(level, reach[0]), reach[1]) for level in ends]
 
-    def tried(level: float | None) -> list[tuple[_Family, Array]] | None:
-        halves = [_search(lift, card, level, most) for card in sides]
-        programme = _programme(lift, sides, halves, nose)
-        peak, weights = programme.least_peak(_first_cuts(len(sides)))
-        return list(zip(programme.families, weights, strict=True)) if math.isfinite(peak) else None
+    def tried(level: float) -> list[_Side]:
+        return [_side(lift, card, level, most) for card in sides]
 
-    solved = tried(nose)
-    if solved is None and len(sides) > 1 and (level := _common_nose(lift, sides, most, 0.0)) is not None:
-        return tried(level)
-    return solved
+    worse = max(range(len(sides)), key=lambda i: alone[i].peak)
+    best = min(best, _joined(lift, sides, tried(ends[worse]), None), key=_peak)
+    for _ in range(_LEVELS):
+        if best.peak <= bound:
+            break
+        level = 0.5 * (ends[0] + ends[1])
+        own = tried(level)
+        best = min(best, _joined(lift, sides, own, None), key=_peak)
+        ends[own[0].peak > own[1].peak] = level
+    if bound < best.peak < math.inf:
+        best = min(best, _joined(lift, sides, tried(best.nose), None), key=_peak)
+    return best.solved
+
+
+_peak = itemgetter(0)
+
+
+class _Side(NamedTuple):
+    """A side by itself: the angle that is best of it, and over that the least peak and its acceleration at the nose."""
+
+    half: float
+    peak: float
+    nose: float
+
+
+def _side(lift: float, card: SideCard, nose: float | None, most: float) -> _Side:
+    """The best of one side alone, or with a given acceleration at the nose."""
+    half = _search(lift, card, nose, most)
+    programme = _programme(lift, [card], [half], nose)
+    peak, weights = programme.least_peak(_first_cuts(1))
+    bends = programme.families[0].accelerations(slice(1))[0]
+    return _Side(half, peak, float(bends @ weights[0]) if weights else math.nan)
+
+
+class _Joined(NamedTuple):
+    """Least peak of all sides over their angles, their acceleration at the nose, and their mixtures; None without."""
+
+    peak: float
+    nose: float
+    solved: list[tuple[_Family, Array]] | None
+
+
+def _joined(lift: float, sides: Sequence[SideCard], own: Sequence[_Side], nose: float | None) -> _Joined:
+    """What sides have together over their angles."""
+    programme = _programme(lift, sides, [side.half for side in own], nose)
+    peak, weights = programme.least_peak(_first_cuts(len(sides)))
+    if not weights:
+        return _Joined(math.inf, math.nan, None)
+    bends = programme.families[0].accelerations(slice(1))[0]
+    return _Joined(peak, float(bends @ weights[0]), list(zip(programme.families, weights, strict=True)))
 
 
 def _demand_order(lift: float, card: SideCard, most: float) -> None:
@@ -356,10 +414,10 @@ def _search(lift: float, card: SideCard, nose: float | None, most: float, within
     return _best(_angles(card, most, within or 0.0), merit)
 
 
-def _common_nose(lift: float, sides: Sequence[SideCard], most: float, within: float) -> float | None:
-    """An acceleration at the nose, by rad^2, of the lift, that two sides can have, each over an angle of its own.
+def _common_noses(lift: float, sides: Sequence[SideCard], most: float, within: float) -> tuple[float, float] | None:
+    """Least and greatest acceleration at the nose, by rad^2, of the lift, that two sides can have in common.
 
-    It is the middle of what both reach; None where they have none in common.
+    Each has it over an angle of its own; None where they have none in common.
     """
     least, greatest = -math.inf, math.inf
     for card in sides:
@@ -370,7 +428,7 @@ def _common_nose(lift: float, sides: Sequence[SideCard], most: float, within: fl
         if not reach:
             return None
         least, greatest = max(least, min(reach)), min(greatest, max(reach))
-    return 0.5 * (least + greatest) if least <= greatest else None
+    return (least, greatest) if least <= greatest else None
 
 
 def _angles(card: SideCard, most: float, within: float) -> list[float]:
@@ -461,9 +519,10 @@ def _weights_within(
 ) -> list[tuple[_Family, Array]] | None:
     """Mixtures that meet all crossings within so many degrees of the crank; None where there are none."""
     if len(sides) > 1:
-        nose = _common_nose(lift, sides, most, within)
-        if nose is None:
+        reach = _common_noses(lift, sides, most, within)
+        if reach is None:
             return None
+        nose = 0.5 * (reach[0] + reach[1])
     mixtures = []
     for card in sides:
         programme = _programme(lift, [card], [_search(lift, card, nose, most, within)], nose, within)
