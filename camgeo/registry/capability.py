@@ -272,6 +272,11 @@ def no_remedy(_recipe: Recipe, _figure: str, _value: float, _bound: float, /) ->
     return ""
 
 
+def no_lines(_report: dict[str, Any], /) -> str:
+    """Tell nothing."""
+    return ""
+
+
 def no_panel(_report: dict[str, Any], /) -> str:
     """Show nothing."""
     return ""
@@ -335,6 +340,7 @@ class Capability:
     Of what is shown and written:
 
     remarks   by the core's group of remarks behind which they stand, see `remarks_of`: (recipe, design) -> remarks
+    lines     a table for the terminal beside those of checks and files, from the report
     panel     HTML on the page, from the report
     plots     on the page, over a turn
     tables    forms of CSV by their words
@@ -365,6 +371,7 @@ class Capability:
     look: Callable[[Recipe, Design, Sequence[FileResult], Sequence[Check], Clock], Results] = no_opinion
     examine: Callable[[Recipe, Design, Sequence[FileResult], Clock], Results] = no_results
     remarks: Mapping[str, Callable[[Recipe, Design], Sequence[Remark]]] = EMPTY
+    lines: Callable[[dict[str, Any]], str] = no_lines
     panel: Callable[[dict[str, Any]], str] = no_panel
     plots: Callable[[Recipe, Design], Sequence[Plot]] = no_plots
     tables: Callable[[], Mapping[str, Form]] = no_tables

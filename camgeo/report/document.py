@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import UNIT_NAMES, in_units, pounds
+from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import sign, title, unit_text, verb, words
 from camgeo.report.listed import listed
@@ -364,6 +365,8 @@ def table(report: dict[str, Any]) -> str:
             )
         )
     text += "\n\n" + aligned(rows)
+    tables = (capability.lines(report) for capability in registry.in_order(registry.loaded()))
+    text += "".join(f"\n\n{lines}" for lines in tables if lines)
     if report["skipped"]:
         text += f"\n\nskipped (the JSON says why): {', '.join(item['what'] for item in report['skipped'])}"
     return f"{text}\n\n{_times(report['stages'])}"

@@ -11,6 +11,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from camgeo.cams.family import ExactCam
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
@@ -22,6 +24,7 @@ from camgeo.curve.moved import Spline, moved
 from kin.made.corrected import Corrected
 from kin.made.smooth import POINTS_A_SPAN, Smooth, fit
 from kin.numeric.angles import degrees
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -43,17 +46,22 @@ if TYPE_CHECKING:
     from kin.made.points import Deviations
 
 
+LOOKS = 1440  # places round a contour at which curves are looked at
+
+
 @dataclass(frozen=True, eq=False)
 class RunMade:
     """What the points of a run tell: the number of points on each surface by its name, and its smoothed deviation.
 
     `curves` are means of those of the run's files; they are on the same spans in all runs, so that they can be added.
     `error` is the greatest stated for its files, expanded (k = 2), mm: it is common to all points and does not average.
+    `scatter` is the standard deviation of the files' curves about their mean, mm, all round; None of a single file.
     """
 
     files: tuple[str, ...]
     points: Mapping[str, int]
     curves: Mapping[str, Smooth]
+    scatter: Mapping[str, float | None]
     error: float = 0.0
 
 
@@ -88,12 +96,20 @@ def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
 
 def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:
     """A run out of its files."""
-    points, curves = {}, {}
+    points, curves, scatter = {}, {}, {}
     for name, count in spans.items():
         own = [file for file in files if name in file.deviations]
+        each = [file.smooth(name, count) for file in own]
         points[name] = sum(len(file.deviations[name].e) for file in own)
-        curves[name] = Smooth.total([file.smooth(name, count) for file in own]).times(1.0 / len(own))
-    return RunMade(tuple(file.name for file in files), points, curves)
+        curves[name] = Smooth.total(each).times(1.0 / len(own))
+        scatter[name] = _scatter(each) if len(own) > 1 else None
+    return RunMade(tuple(file.name for file in files), points, curves, scatter)
+
+
+def _scatter(curves: Sequence[Smooth]) -> float:
+    """Standard deviation of curves about their mean, all round, mm."""
+    rows = np.stack([curve.rows(equal_steps(LOOKS))[0] for curve in curves])
+    return float(np.sqrt(np.mean(np.var(rows, axis=0, ddof=1))))
 
 
 def _spans(surface: str, files: Sequence[_FilePoints]) -> int:

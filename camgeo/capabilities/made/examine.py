@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.correction import runs_made
+from camgeo.capabilities.made.correction import LOOKS, runs_made
 from camgeo.capabilities.made.judge import follower_motion
 from camgeo.capabilities.made.keys import CORRECT, Made
 from camgeo.measures.units import UNIT_NAMES
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
-LOOKS = 1440  # places round a contour at which a curve is looked at
-
 
 def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
     """Give the section `made`; nothing without points. Raises RecipeErrors for points that are none of this part."""
@@ -39,34 +37,41 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
     with clock.stage("made"):
         runs = runs_made(recipe, design)
     totals = {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
+    error = sum(run.error for run in runs)
     entry = {
         "unit": UNIT_NAMES[recipe.units],
-        "runs": [_run(recipe, run) for run in runs],
+        "runs": [_run(recipe, design, run) for run in runs],
+        "systematic": [_surface(recipe, design, name, total, error) for name, total in totals.items()],
         "corrections": [
-            _correction(recipe, design, totals, sum(run.error for run in runs), corrected)
-            for corrected in _corrected_files(recipe).items()
+            _correction(recipe, design, totals, error, corrected) for corrected in _corrected_files(recipe).items()
         ],
     }
     return Results({"made": entry})
 
 
-def _run(recipe: Recipe, run: RunMade) -> dict[str, Any]:
-    """The smoothed deviation of a run: its greatest and mean size, and expanded uncertainty."""
-    t = equal_steps(LOOKS)
+def _run(recipe: Recipe, design: Design, run: RunMade) -> dict[str, Any]:
+    """What a run shows on each surface; of several files also their standard deviation about the mean."""
     surfaces = []
     for name, curve in run.curves.items():
-        e = curve.rows(t)[0]
-        surfaces.append(
-            {
-                "name": name,
-                "points": run.points[name],
-                "spans": curve.spans,
-                "greatest": float(e[np.argmax(np.abs(e))]) / recipe.mm,
-                "rms": float(np.sqrt(np.mean(e**2))) / recipe.mm,
-                "uncertainty": math.hypot(COVERAGE * float(curve.deviations(t).max()), run.error) / recipe.mm,
-            }
-        )
+        entry = {"points": run.points[name], "spans": curve.spans, **_surface(recipe, design, name, curve, run.error)}
+        if (scatter := run.scatter[name]) is not None:
+            entry["files_differ_by"] = scatter / recipe.mm
+        surfaces.append(entry)
     return {"files": list(run.files), "surfaces": surfaces}
+
+
+def _surface(recipe: Recipe, design: Design, name: str, curve: Smooth, error: float) -> dict[str, Any]:
+    """The smoothed deviation of a surface: its greatest, where, its mean size, and expanded uncertainty."""
+    t = equal_steps(LOOKS)
+    e = curve.rows(t)[0]
+    worst = int(np.argmax(np.abs(e)))
+    return {
+        "name": name,
+        "greatest": float(e[worst]) / recipe.mm,
+        "at_deg": degrees(float(design.exact.gauges[name].shaft_angle(t[worst : worst + 1])[0])),
+        "rms": float(np.sqrt(np.mean(e**2))) / recipe.mm,
+        "uncertainty": math.hypot(COVERAGE * float(curve.deviations(t).max()), error) / recipe.mm,
+    }
 
 
 def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:

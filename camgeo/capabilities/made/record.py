@@ -65,6 +65,18 @@ def _examine(recipe: Recipe, design: Design, _: Sequence[FileResult], clock: Clo
     return examine(recipe, design, clock)
 
 
+def _lines(report: dict[str, Any]) -> str:
+    from camgeo.capabilities.made.run_table import lines
+
+    return lines(report)
+
+
+def _panel(report: dict[str, Any]) -> str:
+    from camgeo.capabilities.made.run_table import panel
+
+    return panel(report)
+
+
 def _shown(report: dict[str, Any], everything: bool) -> str:
     from camgeo.capabilities.made.text import shown
 
@@ -90,6 +102,8 @@ CAPABILITY = Capability(
     profile=_profile,
     checks=_checks,
     examine=_examine,
+    lines=_lines,
+    panel=_panel,
     judges=FileJudge(_claims, OPTIONS, _judge, _judge_shaft, _shown),
     alteration=Alteration(option=CORRECT, offered=offered, check=check_corrected, alter=_corrected),
 )

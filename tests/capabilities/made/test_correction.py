@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 
 import numpy as np
@@ -183,6 +184,29 @@ def test_a_file_of_a_run_has_its_own_unit_probe_and_placing(tmp_path):
     assert surface["uncertainty"] == pytest.approx(np.hypot(plain_surface["uncertainty"], 0.002))
     half = camgeo.export(written(tmp_path, ROLLER, [entry], "{dxf: {correct: 0.5}}"), tmp_path / "half")["made"]
     assert half["corrections"][0]["uncertainty"] == pytest.approx(np.hypot(correction["uncertainty"], 0.001))
+
+
+def test_runs_are_told_with_the_scatter_of_their_files(tmp_path, capsys):
+    """Of two files that differ by 0.002 sin(5 t) the standard deviation about their mean is half of that, 0.001."""
+    runs = runs_of(tmp_path, ROLLER, bump(0.02), lambda t: bump(0.02)(t) + 0.002 * np.sin(5.0 * t), bump(0.004))
+    runs = [f"[{runs[0][1:-1]}, {runs[1][1:-1]}]", runs[2]]
+    recipe = written(tmp_path, ROLLER, runs, "html, {dxf: {correct: 0.5}}")
+    assert main(["export", str(recipe), "--out", str(tmp_path / "out"), "-v"]) == 0
+    told = capsys.readouterr().out
+    section = json.loads((tmp_path / "out" / "part" / "report.json").read_text("utf-8"))["made"]
+    ((first,), (second,)) = (run["surfaces"] for run in section["runs"])
+    assert first["files_differ_by"] == pytest.approx(0.001, rel=0.02)
+    assert "files_differ_by" not in second
+    (total,) = section["systematic"]
+    assert total["greatest"] == pytest.approx(first["greatest"] + second["greatest"], rel=1e-3)
+    assert total["at_deg"] == pytest.approx(np.degrees(np.radians(50.0)), abs=2.0)
+    assert section["corrections"][0]["greatest"] == pytest.approx(-0.5 * total["greatest"])
+    assert re.search(r"run0-1\.csv, run1-1\.csv +1440 +\+0\.02\d* +\d+\.\d\d deg .* 0\.0\d+\n", told)
+    assert re.search(r"\nsum +\+0\.02\d* ", told)
+    assert re.search(r"part-correct\.dxf: 0\.5 of the sum +-0\.01\d* ", told)
+    page = (tmp_path / "out" / "part" / "part.html").read_text("utf-8")
+    assert '<h2 id="runs-head">Parts that were made</h2>' in page
+    assert '<th scope="row">run0-1.csv, run1-1.csv</th><td></td><td>1440</td>' in page
 
 
 def test_without_a_corrected_file_points_are_only_told(tmp_path):
