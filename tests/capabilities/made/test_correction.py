@@ -201,7 +201,7 @@ def test_runs_are_told_with_the_scatter_of_their_files(tmp_path, capsys):
     assert total["greatest"] == pytest.approx(first["greatest"] + second["greatest"], rel=1e-3)
     assert total["at_deg"] == pytest.approx(np.degrees(np.radians(50.0)), abs=2.0)
     assert section["corrections"][0]["greatest"] == pytest.approx(-0.5 * total["greatest"])
-    assert re.search(r"run0-1\.csv, run1-1\.csv +1440 +\+0\.02\d* +\d+\.\d\d deg .* 0\.0\d+\n", told)
+    assert re.search(r"run0-1\.csv, run1-1\.csv +1440 +\+0\.0\d+ +\d+\.\d\d deg .* 0\.0\d+\n", told)
     assert re.search(r"\nsum +\+0\.02\d* ", told)
     assert re.search(r"part-correct\.dxf: 0\.5 of the sum +-0\.01\d* ", told)
     page = (tmp_path / "out" / "part" / "part.html").read_text("utf-8")
