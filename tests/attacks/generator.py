@@ -44,6 +44,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     drives.driven,
     drives.tabled_for_a_drive,
     measured.probed,  # needs: made
+    measured.corrected,  # needs: made
     ground.ground,
     ground.tabled_for_a_grinder,
     ground.pressed,

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from support.measured import RECIPES, bump, nothing, points, surfaces, turned
+from support.measured import RECIPES, bump, nothing, points, surfaces, table, turned
 
 from attacks.outcome import Attack
+from kin.read.files import read_drawing
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
     from random import Random
 
     from attacks.outcome import Done
+    from kin.numeric.arrays import Array
 
 KINDS = (
     "roller on a stem",
@@ -25,6 +28,7 @@ KINDS = (
     "tilted flat",
     "flat on an arm",
     "knife edge on a stem",
+    "double roller",
 )
 HARMS = (
     "",
@@ -43,6 +47,10 @@ HARMS = (
     "one",
     "swap",
     "constant",
+)
+LONG = 60.0  # seconds: several discs, each fitted and judged
+CORNERED = (
+    "yoke"  # its radius of curvature jumps, where a correction leaves a corner: no spline has it, no face may reach
 )
 OPTIONS = (
     ["--align", "rotation"],
@@ -66,7 +74,7 @@ OPTIONS = (
 
 
 @cache
-def _surfaces(kind: str) -> list[tuple[int, object, object]]:
+def _surfaces(kind: str) -> list[tuple[int, Any, Any]]:
     return surfaces(RECIPES[kind])
 
 
@@ -137,6 +145,57 @@ def _corrected(rng: Random, number: int, kind: str, file: tuple[str, str]) -> At
     recipe = RECIPES[kind].partition("\nexport:")[0]
     recipe += f"\nmade: {{points: [{run}]}}\nexport: {{files: [{plain}, {{dxf: {{as: arcs, correct: {share}}}}}]}}\n"
     return Attack(f"corrected {number}", ("export", "cam.yaml"), {"cam.yaml": recipe.encode(), name: text.encode()})
+
+
+def corrected(rng: Random, number: int) -> Attack:
+    """A sound export of any kind, corrected by sound points of runs: it holds, and lies where the sum says."""
+    kind = rng.choice([kind for kind in RECIPES if kind != CORNERED])
+    share, text = round(rng.uniform(0.0, 1.5), rng.choice([0, 1, 4])), RECIPES[kind].partition("\nexport:")[0]
+    waves, phase, high = rng.choice([1, 2, 3, 5]), rng.uniform(0.0, 6.0), rng.uniform(0.001, 0.015)
+
+    def off(t: Array) -> Array:
+        wave: Array = high * np.cos(waves * t - phase)
+        return wave
+
+    def off_by(factor: float) -> Callable[[Array], Array]:
+        return lambda t: factor * off(t)
+
+    runs = [1.0] if rng.random() < 0.5 else [0.75, 0.25]
+    files: dict[str, bytes] = {}
+    for run, part_of_it in enumerate(runs):
+        rows: dict[int, list[Array]] = {}
+        for disc, part, one in _surfaces(kind):
+            rows.setdefault(disc, []).append(points(part, one, off_by(part_of_it), 0.0003))
+        for disc, places in rows.items():
+            files[f"run{run}-{disc + 1}.csv"] = table(np.concatenate(places)).encode()
+    listed = ", ".join(
+        f"[{', '.join(name for name in files if name.startswith(f'run{run}-'))}]" for run in range(len(runs))
+    )
+    form = rng.choice(["dxf: {as: arcs, ", "dxf: {as: spline, ", "svg: {"])
+    text += f"\nmade: {{points: [{listed}]}}\nexport: {{files: [{{{form}correct: {share}}}}}]}}\n"
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        if done.status != 0:
+            return [f"verdict: {done.status} of a sound correction of {kind} by {share}"]
+        surfaces_of = _surfaces(kind)
+        if len(surfaces_of) > 1:
+            return []
+        ((_, part, one),) = surfaces_of
+        (file,) = [*(folder / "out").rglob("*.dxf"), *(folder / "out").rglob("*.svg")]
+        mirror = np.array([1.0, -1.0 if part.mirrored else 1.0])
+        worst = np.inf
+        for chain in read_drawing(file).chains:  # the contour is one of them
+            feet = one.gauge.envelope.feet(chain.contour.sample(4) * mirror)
+            worst = min(worst, float(np.abs(one.side * feet.excess + share * off(feet.parameter)).max()))
+        return [f"contour: {worst:.4g} mm from where the sum says"] if worst > 0.003 else []
+
+    return Attack(
+        f"corrected {kind} {number}",
+        ("export", "cam.yaml"),
+        {"cam.yaml": text.encode(), **files},
+        judge=judge,
+        seconds=LONG,
+    )
 
 
 def _started(rng: Random, number: int, kind: str, file: tuple[str, str]) -> Attack:
