@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from support.measured import disc, points, surfaces
 
+from camgeo.recipe.recipe import read
+from camgeo.synthesis.design import designed
+from kin.follower.follower import unled
 from kin.law.sources.laws import NAMES
 from kin.made.point_motion import SurfaceRun, measured_motion
 from kin.made.recognised import recognised
@@ -16,8 +19,9 @@ READING = 0.01
 
 def motion_of(text, noise=0.0005, deviation=lambda t: 0.0 * t):
     ((_, part, surface),) = surfaces(text)
-    run = SurfaceRun(surface.gauge, surface.side, points(part, surface, deviation, noise), None)
-    return measured_motion([run])
+    contact = designed(read(text.encode(), "part.yaml")).exact.follower.contacts[0]
+    still = unled([contact], surface.side)
+    return measured_motion([SurfaceRun(still, surface.side, points(part, surface, deviation, noise), None)])
 
 
 def told(text, noise=0.0005):
@@ -99,4 +103,21 @@ def test_the_circle_of_a_level_is_that_on_which_the_follower_stands():
     motion = motion_of(disc(ROLLER))
     for larger in (-0.5, 0.0, 0.7):
         level = np.sqrt((50.0 + larger) ** 2 - 36.0) - np.sqrt(50.0**2 - 36.0)
-        assert motion.lifted_circle(level) == pytest.approx(larger, abs=1e-7)
+        assert motion.lifted_circle(level) == pytest.approx(larger, abs=1e-9)
+
+
+def test_what_a_long_wave_hides_is_what_it_moves():
+    """Refitted with a wave of height 0.01 mm at six phases, levels move by what is told at most, and come near it."""
+    text = disc(ROLLER)
+    clean = recognised(motion_of(text, 0.0), READING, "mm")
+    hidden = clean.hidden
+    moved = []
+    for phase in np.radians(np.arange(0.0, 180.0, 30.0)):
+        wavy = motion_of(text, 0.0, lambda t, phase=phase: 0.01 * np.cos(hidden.waves * t - phase))
+        other = recognised(wavy, READING, "mm")
+        moved.append(np.abs(other.levels - clean.levels) / 0.01)
+        left = np.sqrt(np.mean(other.residual**2)) / (0.01 / np.sqrt(2.0))
+        assert left >= np.sqrt(1.0 - hidden.share**2) - 0.05
+    assert 0.9 < hidden.share <= 1.0
+    assert (np.max(moved, axis=0) < 1.05 * hidden.levels).all()
+    assert (np.max(moved, axis=0) > 0.8 * hidden.levels).all()
