@@ -32,6 +32,9 @@ OFFSETS = (-2.0, -1.0, 0.0, 1.0, 2.0)
 FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 BESIDE = 3.0  # steps about a break of the motion, where differences mix both sides
+STEPS = 24  # of Gauss and Newton's method
+STILL = 1e-13  # rad
+UNEXPLAINED = 0.25  # of the square of an error: less than that is left by what it comes from
 RAISED = 1e-4  # mm: metal raised by as much tells how the motion depends on it
 COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 
@@ -94,9 +97,39 @@ class Errors:
     @property
     def phase(self) -> tuple[float, Array]:
         """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
-        turn = float(self.phase_weights @ self.rows[0])
-        remaining = self.rows[0] + turn * self.intended[1]
+        turn, remaining = self._settled(0.0)
+        rest = float(remaining @ remaining)
+        if rest > UNEXPLAINED * float(self.remaining @ self.remaining):  # a turn of many degrees
+            made = np.fft.rfft(self.intended[0] + self.rows[0])
+            likeness = np.fft.irfft(made * np.conj(np.fft.rfft(self.intended[0])), len(self.shaft))
+            other = self._settled(math.remainder(int(np.argmax(likeness)) * TURN / len(self.shaft), TURN))
+            if float(other[1] @ other[1]) < UNEXPLAINED * rest:
+                return other
+        return turn, remaining
+
+    def _settled(self, turn: float) -> tuple[float, Array]:
+        """The turn of least squares near one, rad, and what remains without it (n,): Gauss and Newton."""
+        made = self.intended[0] + self.rows[0]
+        for _ in range(STEPS):
+            position, velocity = self._intended(self.shaft - turn)
+            column, remaining = velocity.mean() - velocity, made - position
+            square = float(column @ column)
+            step = float(column @ remaining) / square if square > 0.0 else 0.0
+            turn += step
+            if abs(step) < STILL:
+                break
+        remaining = made - self._intended(self.shaft - turn)[0]
         return turn, remaining - remaining.mean()
+
+    def _intended(self, shaft: Array) -> tuple[Array, Array]:
+        """Intended position and velocity at shaft angles (n,): Hermite's cubics between those known, at equal steps."""
+        step = TURN / len(self.shaft)
+        place = np.mod((shaft - self.shaft[0]) / step, len(self.shaft))
+        first = np.minimum(place.astype(np.intp), len(self.shaft) - 1)
+        u, then = place - first, (first + 1) % len(self.shaft)
+        (a, b), (p, q) = self.intended[0][[first, then]], step * self.intended[1][[first, then]]
+        c, d = 3.0 * (b - a) - 2.0 * p - q, 2.0 * (a - b) + p + q
+        return a + u * (p + u * (c + u * d)), (p + u * (2.0 * c + 3.0 * u * d)) / step
 
     @property
     def phase_weights(self) -> Array:

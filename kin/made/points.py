@@ -246,8 +246,11 @@ def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
             raise UnlikePointsError(f"{seen}: measure all round the cam, from its axis")
 
 
-def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool) -> None:
-    """Raise UnlikePointsError for points that lie far from the contours, saying what they look like."""
+def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable: bool = True) -> None:
+    """Raise UnlikePointsError for points that lie far from the contours, saying what they look like.
+
+    `aligned` says that they are turned already, `shiftable` that they may be shifted.
+    """
     far, size = _off(surfaces, surfaces[0].placing), _size(surfaces)
     if far <= FAR * size:
         return
@@ -274,15 +277,17 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool) -> None:
                 continue
             left = _off(scaled, placing)
             if math.hypot(*placing.shift) <= SHIFT * size and left <= BETTER * min(far, size):
-                words = _likeness(placing, factor, size, mirrored=mirrored, aligned=aligned)
+                words = _likeness(placing, factor, size, (mirrored, aligned, shiftable))
                 looks.append((left * (MIRRORED if mirrored else 1.0), words))
     if looks:
         raise UnlikePointsError(f"{told}: {min(looks)[1]}")
     raise UnlikePointsError(f"{told}, however they are turned or mirrored: they look like those of another cam")
 
 
-def _likeness(placing: Placing, factor: float, size: float, *, mirrored: bool, aligned: bool) -> str:
+def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, bool, bool]) -> str:
+    """What points look like, by their placing; `about` is whether they are mirrored, turned already, may be shifted."""
     words, remedies = [], []
+    mirrored, aligned, shiftable = about
     if factor != 1.0:
         large = max(factor, 1.0 / factor)
         words.append(f"{large:.6g} times too {'small' if factor > 1.0 else 'large'}")
@@ -296,7 +301,7 @@ def _likeness(placing: Placing, factor: float, size: float, *, mirrored: bool, a
     x, y = placing.shift
     if math.hypot(x, y) > 1e-3 * size:
         words.append(f"shifted by ({x:.3g}, {y:.3g}) mm")
-        remedies.append("`--align best-fit`")
+        remedies.append("`--align best-fit`" if shiftable else "measure them about the axis of the bearings")
     elif abs(turn) > 0.05 and not aligned:
         remedies.append("`--align rotation`")
     return f"they look {', '.join(words)}: {', then '.join(remedies)}"

@@ -45,6 +45,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     drives.tabled_for_a_drive,
     measured.probed,  # needs: made
     measured.corrected,  # needs: made
+    measured.of_a_shaft,  # needs: camshaft, made
     ground.ground,
     ground.tabled_for_a_grinder,
     ground.pressed,

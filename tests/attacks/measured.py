@@ -136,6 +136,14 @@ def probed(rng: Random, number: int) -> Attack:
     return Attack(f"points {number}", tuple(words), {"cam.yaml": recipe.encode(), name: text.encode()}, judge=judge)
 
 
+# needs: camshaft
+def of_a_shaft(rng: Random, number: int) -> Attack:
+    """Points of a camshaft."""
+    from attacks import shaft_points
+
+    return shaft_points.of_a_shaft(rng, number)
+
+
 def _corrected(rng: Random, number: int, kind: str, file: tuple[str, str]) -> Attack:
     """An export that is corrected by points as those of an earlier run."""
     name, text = file

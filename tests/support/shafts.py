@@ -98,8 +98,9 @@ def shaft_points(
 
 
 def written(path: Path, rows: list[tuple[str, float, float, float]], columns: str = HEAD) -> Path:
-    """A file of the columns that are named, of `HEAD`."""
-    chosen = [HEAD.split(",").index(name) for name in columns.split(",")]
+    """A file of the columns that are named, of `HEAD` or without their units."""
+    known = HEAD.replace("_mm", "").split(",")
+    chosen = [known.index(name.removesuffix("_mm")) for name in columns.split(",")]
     cells = (",".join(str(row[k]) if k == 0 else f"{row[k]:.9f}" for k in chosen) for row in rows)
     path.write_text("\n".join([columns, *cells]) + "\n", "utf-8")
     return path

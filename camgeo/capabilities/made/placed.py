@@ -85,7 +85,7 @@ def points_of_tables(
     scale, remarks = scale_of(recipe, tables, probing.units)
     if any(table.measured == "lift" for table in tables):
         lifts, placed = _of_lifts(parts, tables, scale, probing)
-        return Points((_disc(recipe, parts[0], placed, ""),), lifts, tuple(remarks), scale)
+        return Points((_disc(recipe, parts[0], placed, replace(probing, align="")),), lifts, tuple(remarks), scale)
     if probing.face is not None:
         raise CallError("a face is of an indicator, and these are places: leave it out; a ball has a radius")
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
@@ -94,7 +94,7 @@ def points_of_tables(
         for disc, rows in by_disc(names, table, path, first + place):
             pieces[disc].append((place, rows, scale))
     discs = [
-        _disc(recipe, part, sorted_out(part, piece, probing), probing.align) if piece else DiscPoints(part)
+        _disc(recipe, part, sorted_out(part, piece, probing), probing) if piece else DiscPoints(part)
         for part, piece in zip(parts, pieces, strict=True)
     ]
     return Points(tuple(discs), None, tuple(remarks), scale)
@@ -128,9 +128,10 @@ def demand_points(missing: Sequence[str]) -> None:
         raise CallError(f"points of {' and '.join(missing)} are missing: give a file for each disc")
 
 
-def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align: str) -> DiscPoints:
+def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], probing: Probing) -> DiscPoints:
     """Place the points of a disc by the unknowns of `align`, and average those that were measured again."""
     _demand_outside(recipe, surfaces)
+    align = probing.align
     points = [one.points for one in surfaces]
     demand_round(points)
     placing = Placing()
@@ -139,7 +140,8 @@ def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], align
         if align != "g":
             placing = settled([one.placed(placing) for one in points], align)
         points = [one.placed(placing) for one in points]
-    demand_alike(points, aligned=bool(align))
+    known = Placing(probing.alone) if probing.alone else placing
+    demand_alike([one.placed(known) for one in points], aligned=bool(align), shiftable=probing.alone is None)
     placed = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
     return DiscPoints(part, tuple(placed), placing)
 

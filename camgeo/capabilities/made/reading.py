@@ -56,12 +56,14 @@ class Probing:
     ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
     face    width of an indicator's flat face, mm
     units   mm in a unit of files whose headings state none; None for that of the recipe
+    alone   turn, rad, by which a cam on a shaft is known to stand off the others; None for a part of its own
     """
 
     align: str = ""
     ball: float | None = None
     face: float | None = None
     units: float | None = None
+    alone: float | None = None
 
 
 @dataclass(frozen=True)

@@ -15,14 +15,17 @@ import numpy as np
 from camgeo.capabilities.made.judge import expanded, part_of_points
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
-from camgeo.capabilities.made.reading import label_of, sorted_out, tables_of
+from camgeo.capabilities.made.reading import label_of, places_of, sorted_out, tables_of
 from camgeo.capabilities.made.refusal import as_call_errors
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
+from kin.contour.arcs import turned
 from kin.made.motion import Influence
-from kin.made.points import turned_at
+from kin.made.points import FACTORS, turned_at
+from kin.made.shaft_alike import LOOKS, Radii, radii, turned_alone
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 from kin.read.points import LEAST_POINTS
 
@@ -34,10 +37,15 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.reading import Call
     from camgeo.registry.capability import ShaftCam
     from kin.made.motion import Errors
-    from kin.numeric.arrays import Indices
+    from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
 MOST_NAMES = 8  # told one by one
+SHIFTED = "shifted along the shaft: count z from the recipe's zero, {0:+.6g} {1}"
+TURNED_OVER = "measured from the other end: z is {0:.6g} {1} less the column, and y turned round"
+TWO = 2
+TURNED = math.radians(0.25)  # from which on a cam is said to be turned, where that is certain
+CERTAIN = 4.0  # times the uncertainty
 WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of what is written
 
 
@@ -117,15 +125,21 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> S
         with as_call_errors(paths):
             late = _common(measured, scale, call)
         measured = [one.turned(-late) for one in measured]
-    alone = replace(call, probing=replace(call.probing, align=""))
-    results = [_judged(one, alone) for one in measured]
+    alone = {} if lifts else _turned_alone(cams, measured, scale, call)
+    results = [
+        _judged(one, replace(call, probing=replace(call.probing, align="", alone=alone.get(one.cam.name, 0.0))))
+        for one in measured
+    ]
     phases = _phases(measured, [result.motion for result in results], call)
     names = {one.cam.name for one in measured}
     return ShaftMade(
         tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True)),
         tuple(cam.name for cam in cams if cam.name not in names),
         late,
-        tuple(_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names])),
+        (
+            *_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names]),
+            *_turned_remarks(measured, phases),
+        ),
     )
 
 
@@ -193,7 +207,29 @@ def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: floa
         met = " and ".join(cam.name for cam, there in zip(cams, on[:, at].tolist(), strict=True) if there)
         raise CallError(f"{here}, where {met} meet: give a column lobe too")
     nearest = min(cams, key=lambda cam: max(cam.low - height[at], height[at] - cam.high))
-    raise CallError(f"{here}, which is on no lobe; the nearest is {span(nearest)}")
+    looks = _heights_alike(cams, height) if by_label is None else ""
+    raise CallError(f"{here}, which is on no lobe; the nearest is {span(nearest)}{looks}")
+
+
+def _heights_alike(cams: Sequence[ShaftCam], height: Array) -> str:
+    """What heights look like of which some are on no cam: where all would be on one if scaled, turned or shifted."""
+    levels = np.unique(np.round(height, 3))
+    low, high = np.array([[cam.low, cam.high] for cam in cams]).T
+
+    def fit(values: Array) -> bool:
+        on = (values[:, None] >= low - WITHIN) & (values[:, None] <= high + WITHIN)
+        return bool(on.any(axis=1).all())
+
+    for factor, unit in FACTORS.items():
+        if fit(factor * levels):
+            words = "small" if factor > 1.0 else "large"
+            return f"; they look {max(factor, 1.0 / factor):.6g} times too {words}: `--units {unit}`"
+    mm, name = cams[0].recipe.mm, UNIT_NAMES[cams[0].recipe.units]
+    for sign, looks in ((1.0, SHIFTED), (-1.0, TURNED_OVER)):
+        for shift in sorted((0.5 * (low + high) - sign * levels[0]).tolist(), key=abs):
+            if fit(sign * levels + shift):
+                return "; they look " + looks.format(shift / mm, name)
+    return ""
 
 
 def _by_label(cams: Sequence[ShaftCam], name: str, table: PointTable) -> Indices:
@@ -252,6 +288,34 @@ def _common(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
     return turned_at(surfaces).turn
 
 
+def _turned_alone(
+    cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, call: Call
+) -> dict[str, float]:
+    """Turn, rad, of each cam that stands off the others; raises CallError for what looks like no such shaft."""
+    contours = []
+    for cam in cams:
+        (surface,) = intents(cam.recipe, cam.design)[0].surfaces
+        contours.append(radii(turned(surface.gauge.envelope.points(equal_steps(LOOKS)), np.array(cam.at))))
+    points = [
+        np.concatenate([places_of(table, scale, mirrored=one.cam.recipe.rotation == "ccw")[0] for table in one.tables])
+        for one in measured
+    ]
+    names = [cam.name for cam in cams]
+    owner = np.array([names.index(one.cam.name) for one in measured], dtype=np.intp)
+    order = np.argsort([cam.low for cam in cams])
+    other_end = np.empty_like(order)
+    other_end[order] = order[::-1]
+    found = np.stack(
+        [radii(turned(places, np.array(one.cam.at))) for places, one in zip(points, measured, strict=True)]
+    )
+    with as_call_errors(list(dict.fromkeys(path for one in measured for path in one.paths))):
+        alone = turned_alone(
+            Radii(found - (call.probing.ball or 0.0), np.stack(contours), owner, names, other_end),
+            aligned=bool(call.probing.align),
+        )
+    return {measured[rank].cam.name: turn for rank, turn in alone.items()}
+
+
 # --- phases -----------------------------------------------------------------------------------------------------------
 
 
@@ -275,6 +339,16 @@ def _on_shaft(part: Influence, at: float) -> Influence:
     """What adds to a cam's phase, its axes turned by an angle, in those of the shaft."""
     c, s = math.cos(at), math.sin(at)
     return part._replace(shifted=np.array([[c, -s], [s, c]]) @ part.shifted)
+
+
+def _turned_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> list[str]:
+    """Cams that stand off the others by far more than is uncertain: of two alone, off the recipe."""
+    middle = float(np.median([phase.late for phase in phases])) if len(phases) > TWO else 0.0
+    return [
+        f"{one.cam.name} looks turned by {math.degrees(phase.late - middle):.3g} degrees against the others"
+        for one, phase in zip(measured, phases, strict=True)
+        if abs(phase.late - middle) > max(TURNED, CERTAIN * phase.uncertainty)
+    ]
 
 
 def _remarks(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -295,3 +296,92 @@ def test_what_is_to_be_measured_is_judged_at_its_digits(more, tmp_path):
 def test_steps_of_what_is_to_be_measured(files, told, tmp_path, capsys):
     assert main(["export", str(camshaft(tmp_path, files=files)), "--out", str(tmp_path / "out")]) == 2
     assert told in capsys.readouterr().err
+
+
+OFF = r"points.csv: the points lie \S+ mm off the contours on average: "
+UP = "measure it with the upper end up, as the file is drawn, or turn y round"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "columns", "message"),
+    [
+        (lambda n, z, x, y: (n, z, x, -y), "z_mm,x_mm,y_mm", f"{OFF}the shaft looks mirrored: {UP}"),
+        (
+            lambda n, z, x, y: (n, z, y, x),
+            "z_mm,x_mm,y_mm",
+            f"{OFF}the shaft looks mirrored, turned by -90 degrees: {UP}, then `--align rotation`",
+        ),
+        (
+            lambda n, z, x, y: (n, 92.0 - z, x, -y),
+            "z_mm,x_mm,y_mm",
+            f"{OFF}the shaft looks measured from its other end: count z from the recipe's end, and turn y round",
+        ),
+        (
+            lambda n, z, x, y: ({"flat": "arm", "arm": "flat"}.get(n, n), z, x, y),
+            "lobe,x_mm,y_mm",
+            f"{OFF}those of flat look like arm, those of arm look like flat: look at the column that tells them",
+        ),
+        (
+            lambda n, z, x, y: (n, z, x / 25.4, y / 25.4),
+            "lobe,x,y",
+            f"{OFF}they look 25.4 times too small: `--units inch`",
+        ),
+        (
+            lambda n, z, x, y: (n, z / 25.4, x / 25.4, y / 25.4),
+            "z,x,y",
+            "z is 1.06299213 mm, which is .*, 20 to 34 mm; they look 25.4 times too small: `--units inch`",
+        ),
+        (
+            lambda n, z, x, y: (n, z + 50.0, x, y),
+            "z_mm,x_mm,y_mm",
+            "z is 77 mm, .*; they look shifted along the shaft: count z from the recipe's zero, -50 mm",
+        ),
+        (
+            lambda n, z, x, y: (n, 150.0 - (21.0 if n == "flat" else z), x, -y),
+            "z_mm,x_mm,y_mm",
+            "on no lobe; .*; they look measured from the other end: z is 150 mm less the column, and y turned round",
+        ),
+        (
+            lambda n, z, x, y: (n, z, x + 1.5, y),
+            "z_mm,x_mm,y_mm",
+            r"they look shifted by \(.*\) mm: measure them about the axis of the bearings",
+        ),
+    ],
+)
+def test_points_that_are_not_of_this_shaft_are_told_what_they_look_like(wrong, columns, message, tmp_path, capsys):
+    recipe = camshaft(tmp_path)
+    rows = [wrong(*row) for row in shaft_points(recipe, count=120)]
+    file = written(tmp_path / "points.csv", rows, columns)
+    assert main(["verify", str(recipe), str(file)]) == 2
+    (line,) = (line for line in capsys.readouterr().err.splitlines() if not line.endswith(" s ..."))
+    assert re.search(message, line)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "options"),
+    [
+        (lambda n, z, x, y: (n, z, y, x), lambda n, z, x, y: (n, z, x, -y), {"align": "rotation"}),
+        (lambda n, z, x, y: (n, 92.0 - z, x, -y), lambda n, z, x, y: (n, 92.0 - z, x, -y), {}),
+        (lambda n, z, x, y: (n, z, x / 25.4, y / 25.4), lambda *row: row, {"units": "inch"}),
+    ],
+)
+def test_what_is_told_helps(wrong, right, options, tmp_path):
+    recipe = camshaft(tmp_path)
+    rows = [right(*wrong(*row)) for row in shaft_points(recipe, count=120)]
+    columns = "lobe,x,y" if "units" in options else "z_mm,x_mm,y_mm"
+    report = camgeo.verify(recipe, written(tmp_path / "points.csv", rows, columns), spans=12, **options)
+    assert all(lobe["discs"][0]["profile"] < 1e-6 for lobe in lobes_of(report).values())
+
+
+@pytest.mark.parametrize("late", [2.0, -30.0])
+def test_a_lobe_that_stands_elsewhere_is_judged_and_told(late, tmp_path):
+    """It is the part that is wrong, not its points: a turn of one lobe is none of the shaft."""
+    recipe = camshaft(tmp_path, limits=LIMITS)
+    file = written(tmp_path / "points.csv", shaft_points(recipe, {"roller": Planted(late=late)}, count=180))
+    report = camgeo.verify(recipe, file, spans=36, probe_error=0.001)
+    assert report["made"]["verdicts"]["made-motion, roller"] == "failed"
+    assert report["made"]["verdicts"]["made-motion, flat"] == "ok"
+    remark = next(text for text in report["made"]["remarks"] if "against the others" in text)
+    told = re.fullmatch(r"roller looks turned by (\S+) degrees against the others", remark)
+    assert told is not None
+    assert float(told[1]) == pytest.approx(late, rel=0.01)
