@@ -35,26 +35,7 @@ OPTIONS = (
 )
 SOUND = ("lobe,z_mm,x_mm,y_mm", "z_mm,x_mm,y_mm", "lobe,x_mm,y_mm")
 COLUMNS = (*SOUND, *SOUND, "x_mm,y_mm", "z,x,y", "lobe,x,y", "lobe,z,x")
-HARMS = (
-    "",
-    "",
-    "",
-    "",
-    "",
-    "",
-    "mirror",
-    "end",
-    "swap",
-    "one",
-    "few",
-    "turn",
-    "shift",
-    "unknown",
-    "word",
-    "inch",
-    "ecc",
-    "lifts",
-)
+HARMS = (*[""] * 14, "mirror", "end", "swap", "one", "few", "turn", "shift", "unknown", "word", "inch", "ecc", "lifts")
 
 
 @cache
