@@ -73,7 +73,7 @@ def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
     planted = {"arm": Planted(late=0.2)}
     file = written(tmp_path / "points.csv", shaft_points(recipe, planted, late=77.0, count=180), "z_mm,x_mm,y_mm")
     assert main(["verify", str(recipe), str(file)]) == 2
-    assert "they look turned by 77 degrees: `--align rotation`" in capsys.readouterr().err
+    assert "the shaft looks turned by 77.1 degrees: `--align rotation`" in capsys.readouterr().err
     report = camgeo.verify(recipe, file, align="rotation", spans=36)
     assert report["made"]["turned_late_deg"] == pytest.approx(77.0, abs=0.2)
     phases = [lobe["phase"] for lobe in lobes_of(report).values()]
@@ -154,7 +154,7 @@ def test_a_file_for_each_lobe_and_lobes_that_are_missing_are_said(tmp_path, caps
         ),
         (
             "z_mm,x_mm,y_mm",
-            lambda row: (row[0], row[1] + 8.0, *row[2:]),
+            lambda row: (row[0], 35.0 if row[0] == "flat" else row[1], *row[2:]),
             "points.csv: line 2: z is 35 mm, which is on no lobe; the nearest is flat, 20 to 34 mm",
         ),
         (
