@@ -7,7 +7,7 @@ Speed is processor time, the least of several repeats, as a ratio too: to bare k
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
 OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `screen` holds
 estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what it measured
-stands in `camgeo.capabilities.sweep.estimate_errors`. `accuracy` does so for four-bars.
+stands in `camgeo.capabilities.sweep.screen`. `accuracy` does so for four-bars.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from camgeo.cams.flat_faced import breadth_of
 from camgeo.capabilities.sweep.certify import error_of
 from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.keys import Sweep
-from camgeo.capabilities.sweep.rebuilt import recipe_with
+from camgeo.capabilities.sweep.single_designs import recipe_with
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.linkage import mechanism_of
@@ -107,9 +107,9 @@ def speed() -> None:
     base = least(lambda: bare(places))[0]
     print(f"{'bare kinematics, whole arrays':52} {DESIGNS / base:9.0f}")
     for name, recipe, ranges, values, figures in cases:
-        evaluator = Evaluator.of(recipe, tuple(ranges), figures=figures, samples=ANGLES)
-        evaluator.found(values[:64])  # what is found once is found
-        seconds, base = least(lambda e=evaluator, v=values: e.found(v), lambda: bare(places))
+        evaluator = Evaluator.prepare(recipe, tuple(ranges), figures=figures, samples=ANGLES)
+        evaluator.evaluate(values[:64])  # what is found once is found
+        seconds, base = least(lambda e=evaluator, v=values: e.evaluate(v), lambda: bare(places))
         print(f"{name:52} {DESIGNS / seconds:9.0f}, {base / seconds:5.2f} times bare kinematics")
 
 
@@ -187,7 +187,7 @@ def accuracy() -> None:
         for name, value in one.items():
             wanted.setdefault(name, []).append(math.degrees(value))
     print(f"{'greatest error, deg':20}" + "".join(f"{n:>9} angles" for n in COUNTS))
-    found = [Evaluator.of(CAM_2A, tuple(PLACES), samples=n).found(values).figures for n in COUNTS]
+    found = [Evaluator.prepare(CAM_2A, tuple(PLACES), samples=n).evaluate(values).figures for n in COUNTS]
     for name, exact in wanted.items():
         print(f"{name:20}" + "".join(f"{np.abs(figures[name] - exact).max():16.1e}" for figures in found))
     print(f"{'dwell, median':20}" + "".join(f"{np.median(np.abs(f['dwell'] - wanted['dwell'])):16.1e}" for f in found))
@@ -244,9 +244,9 @@ def estimates() -> dict[str, float]:
     found = {}
     for name, (text, ranges) in CAMS.items():
         recipe = load_text(cam_text(text.replace("LAW", "cycloidal"), ranges), "0.yaml")
-        evaluator, many = Evaluator.of(recipe, tuple(ranges), screened=True), drawn(ranges)
-        evaluator.found(many[:64])
-        found[name] = DESIGNS / least(lambda e=evaluator, v=many: e.found(v))[0]
+        evaluator, many = Evaluator.prepare(recipe, tuple(ranges), screened=True), drawn(ranges)
+        evaluator.evaluate(many[:64])
+        found[name] = DESIGNS / least(lambda e=evaluator, v=many: e.evaluate(v))[0]
     return found
 
 
@@ -260,17 +260,17 @@ def screen() -> None:
         evaluators, spent, exact_spent, looked = [], 0.0, 0.0, 0
         for number, law in enumerate(laws):
             recipe = load_text(cam_text(text.replace("LAW", law), ranges), f"{number}.yaml")
-            evaluator = Evaluator.of(recipe, tuple(ranges), screened=True)
+            evaluator = Evaluator.prepare(recipe, tuple(ranges), screened=True)
             if isinstance(evaluator.screen, str):
                 raise SystemExit(f"{name}, {law}: {evaluator.screen}")
             evaluators.append(evaluator)
             rows = drawn(ranges, each * (number + 1) // len(laws))[each * number // len(laws) :]
             many = drawn(ranges, 4 * DESIGNS // len(laws) + 1)
-            spent += least(lambda e=evaluator, v=many: e.found(v))[0] / len(many)
+            spent += least(lambda e=evaluator, v=many: e.evaluate(v))[0] / len(many)
             start = time.process_time()
-            exact = replace(evaluator, screened=False).found(rows)
+            exact = replace(evaluator, screened=False).evaluate(rows)
             exact_spent += time.process_time() - start
-            estimates = evaluator.found(rows)
+            estimates = evaluator.evaluate(rows)
             looked += len(rows)
             count += len(rows)
             for figure, values in exact.figures.items():

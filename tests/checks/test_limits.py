@@ -16,7 +16,7 @@ from support.cases import examples, few
 from support.starters import OF_CAMS
 from support.sweepers import evaluate  # needs: sweep
 
-from camgeo.capabilities.sweep.figures import REASONS, asked_of  # needs: sweep
+from camgeo.capabilities.sweep.figures import REASONS, figure_names  # needs: sweep
 from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
 from camgeo.measures.figures import of_design
@@ -683,7 +683,7 @@ def test_a_sweep_limits_and_ranks_by_the_pressure_angle() -> None:
 # needs: sweep
 def test_a_sweep_has_the_figures_of_its_limits() -> None:
     recipe = loaded(ROLLER + SWEEP)
-    own = {name: value_of(name)[0] for name in asked_of(recipe) if HAVE.get(name) == ROLLER}
+    own = {name: value_of(name)[0] for name in figure_names(recipe) if HAVE.get(name) == ROLLER}
     found = evaluate(recipe, ("cam.delta.cos.1",), np.array([[625.0]])).figures
     assert len(own) == 4
     for name, value in own.items():

@@ -435,8 +435,8 @@ def test_a_guide_without_a_stem() -> None:
 # needs: dynamics, sweep
 @pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
-    from camgeo.capabilities.sweep.ask import Ask
-    from camgeo.capabilities.sweep.figures import figures as searched
+    from camgeo.capabilities.sweep.figures import compute_figures as searched
+    from camgeo.capabilities.sweep.task import Task
 
     text = disc("kind: roller, radius: 9, offset: 6", more=TRAIN + "\n")
     text += """\
@@ -449,8 +449,8 @@ sweep:
   rank: roller-speed
 """
     recipe = load_text(text, "cam.yaml")
-    ask = Ask.of(recipe)
-    columns = searched(ask.scene(ask.figures), ask.plan.values(0, 3))
+    task = Task.from_recipe(recipe)
+    columns = searched(task.scene(task.figures), task.plan.values(0, 3))
     names = ["pressure-angle-return", "peak-acceleration-at-speed", "jam-margin", "roller-speed"]
     for i, base in enumerate((30, 35, 40)):
         found = figures(text.replace("base_radius: 36", f"base_radius: {base}"), *names)

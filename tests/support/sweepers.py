@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.ask import Ask
 from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.gather import REASON
 from camgeo.capabilities.sweep.job import Job
-from camgeo.capabilities.sweep.keys import varied
+from camgeo.capabilities.sweep.keys import varied_fields
 from camgeo.capabilities.sweep.plan import Axis, Plan, steps
-from camgeo.capabilities.sweep.search import Means
+from camgeo.capabilities.sweep.search import Procedures
+from camgeo.capabilities.sweep.task import Task
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -52,9 +52,9 @@ export: {{tolerance: 0.01, files: [dxf]}}
 """
 
 
-def ask(comment="", *, margin=1.0, rank="dwell", refine="false", path="four-bar.yaml"):
+def task(comment="", *, margin=1.0, rank="dwell", refine="false", path="four-bar.yaml"):
     text = FOUR_BAR.format(comment=comment, margin=margin, rank=rank, refine=refine)
-    return Ask.of(read(text.encode(), path))
+    return Task.from_recipe(read(text.encode(), path))
 
 
 def hills(scene, values):
@@ -81,18 +81,18 @@ def fail(_scene, _values):
     raise AssertionError("a chunk was computed that was there")
 
 
-def sink(_ask, values):
+def sink(_task, values):
     """Polish by going to one place, which is better than all."""
     return {**values, "cam.shaft[0]": 15.0}, {"dwell": 60.0 + round(values["linkage.rocker"]) / 100.0, "margin": 3.0}
 
 
-def measured(_ask, values):
+def measured(_task, values):
     """What `hills` says, and a figure that it goes without."""
     figures = hills("", values)
     return {"dwell": figures["dwell"] + 1.0, "dwell-relative": 0.5 * figures["dwell"], "margin": figures["margin"]}
 
 
-MEANS = Means(hills, measured, sink, ("", "binds"))
+PROCEDURES = Procedures(hills, measured, sink, ("", "binds"))
 
 
 class Aside(str):
@@ -127,9 +127,9 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 def evaluate(recipe, paths, values, **how):
     """Figures of designs in which the fields at `paths` have the values (m, k), as `Evaluator` gives them."""
-    return Evaluator.of(recipe, paths, **how).found(values)
+    return Evaluator.prepare(recipe, paths, **how).evaluate(values)
 
 
 def compute(recipe, values):
     """Figures of designs with the values (m, k) of a recipe's sweep."""
-    return evaluate(recipe, tuple(axis.path for axis in varied(recipe)), values).figures
+    return evaluate(recipe, tuple(axis.path for axis in varied_fields(recipe)), values).figures

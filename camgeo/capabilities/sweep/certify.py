@@ -1,4 +1,4 @@
-"""From estimates to certified designs: the exact design of each one that a sweep keeps, the next where one falls."""
+"""Certifying designs selected by estimates: each is computed exactly, and the next one where it fails."""
 
 from __future__ import annotations
 
@@ -16,140 +16,149 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.ask import Ask
-    from camgeo.capabilities.sweep.gather import Gathered
+    from camgeo.capabilities.sweep.gather import Selection
+    from camgeo.capabilities.sweep.task import Task
     from camgeo.recipe.limits import Limit
     from kin.numeric.arrays import Array, Indices, Mask
 
-    Spread = Callable[[Callable[[int], "Exact"], Sequence[int]], Iterable[tuple[int, "Exact"]]]
+    Spread = Callable[[Callable[[int], "ExactDesign"], Sequence[int]], Iterable[tuple[int, "ExactDesign"]]]
 
-_ROOM = 2.0  # times the greatest error measured: estimates that miss a bound by less are looked at too
+_SAFETY = 2.0  # times the greatest error measured: estimates that miss a bound by less are computed exactly too
 
 
-class Exact(NamedTuple):
-    """Figures of an exact design, and why it is not kept: a reason for having none, or the figure of a limit."""
+class ExactDesign(NamedTuple):
+    """Exact figures of a design, mm and degrees; why it is rejected: of REASONS, or the figure of a limit."""
 
     figures: dict[str, float]
     fault: str
 
 
-def _room(name: str, value: float) -> float:
-    """By how much an estimate of a figure near a value may be off."""
+def _allowance(name: str, value: float) -> float:
+    """Greatest error, in the figure's unit, to be expected of an estimate near a value."""
     estimate = estimates().get(name)
-    error = None if estimate is None else estimate.error
-    if estimate is None or error is None:
+    if estimate is None or estimate.error is None:
         return 0.0
-    return _ROOM * error * (1.0 if estimate.in_degrees else abs(value))
+    return _SAFETY * estimate.error * (1.0 if estimate.in_degrees else abs(value))
 
 
 def slack(limit: Limit) -> float:
-    """By how much an estimate may miss a limit and is looked at all the same."""
-    return max(_room(limit.figure, bound) for bound in (limit.at_least, limit.at_most) if bound is not None)
+    """Amount, in the figure's unit, by which estimates may miss a limit while the exact figure may keep it."""
+    return max(_allowance(limit.figure, bound) for bound in (limit.at_least, limit.at_most) if bound is not None)
 
 
 def error_of(name: str, estimate: float, exact: float) -> float:
-    """By how much an estimate is off: in degrees of an angle, else as a share of the value."""
+    """Error of an estimate, at least 0: in degrees of an angle, else as a share of the exact value."""
     if estimate == exact or np.isnan(estimate):
         return 0.0
     return abs(estimate - exact) / (1.0 if estimates()[name].in_degrees else max(abs(exact), 1e-300))
 
 
-def certified(
-    ask: Ask, found: Gathered, spread: Spread, apart: Callable[[Array, Array], Mask], tell: Callable[[int], None]
-) -> Gathered:
-    """The table with the exact figures of designs that hold in front.
+def certify(
+    task: Task,
+    selection: Selection,
+    spread: Spread,
+    are_apart: Callable[[Array, Array], Mask],
+    progress: Callable[[int], None],
+) -> Selection:
+    """The selection with certified designs in front: their exact figures keep the limits.
 
-    Designs are worked out in the order of their estimates, until as many hold as the sweep keeps; then, as many at the
-    most, those whose estimates are as good as the last of these but for the error of an estimate. `apart` (n,) says of
-    values (n, axes) which lie apart from a design (axes,); only such are kept. Where no design is within the limits the
-    nearest one is looked at.
+    Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps; then,
+    as many at the most, those estimated as good as the last of these but for the error of an estimate. `are_apart`
+    (n,) says of values (n, axes) which lie apart from a design (axes,); only such are certified. Where no design is
+    within the limits the nearest one is computed. `progress` is called with the number certified.
     """
-    if not found.rows and (near := found.nearest) is not None:
-        unknown = {name: np.full(1, np.nan) for name in found.figures}
-        found = replace(found, index=np.array([near.index]), values=near.values[None], figures=unknown)
-    left: Indices = np.arange(found.rows)
-    more, seen = ask.sweep.keep, dict[int, Exact]()
-    holding: list[int] = []
+    if not selection.rows and (near := selection.nearest) is not None:
+        unknown = {name: np.full(1, np.nan) for name in selection.figures}
+        selection = replace(selection, index=np.array([near.index]), values=near.values[None], figures=unknown)
+    left: Indices = np.arange(selection.rows)
+    spare, exact_designs = task.sweep.keep, dict[int, ExactDesign]()
+    places: list[int] = []  # in the table, of the certified designs
     while len(left):
-        batch = left[: ask.sweep.keep - len(holding)]
-        if not len(batch) and more:
-            batch, more = _as_good(ask, found, left, [seen[place].figures for place in holding]), more - 1
+        batch = left[: task.sweep.keep - len(places)]
+        if not len(batch) and spare:
+            kept = [exact_designs[place].figures for place in places]
+            batch, spare = _next_candidate(task, selection, left, kept), spare - 1
         if not len(batch):
             break
         left = np.setdiff1d(left, batch)
-        for place, exact in sorted(spread(partial(_exactly, ask, found), batch.tolist())):
-            seen[place] = exact
-            if not exact.fault and apart(found.values[holding], found.values[place]).all():
-                holding.append(place)
-                left = left[apart(found.values[left], found.values[place])]
-                tell(min(len(holding), ask.sweep.keep))
-    off = {name: max((_off(found, name, seen)), default=0.0) for name in found.figures}
-    fell = Counter(exact.fault for exact in seen.values() if exact.fault)
-    certificate = Certificate(len(holding), dict(sorted(fell.items())), off)
-    nearest = None if holding else _nearest(ask, found, seen)
-    return replace(_table(ask, found, seen, holding), nearest=nearest, certificate=certificate)
+        for place, design in sorted(spread(partial(_compute_exactly, task, selection), batch.tolist())):
+            exact_designs[place] = design
+            if not design.fault and are_apart(selection.values[places], selection.values[place]).all():
+                places.append(place)
+                left = left[are_apart(selection.values[left], selection.values[place])]
+                progress(min(len(places), task.sweep.keep))
+    rejected = Counter(design.fault for design in exact_designs.values() if design.fault)
+    errors = {
+        name: max(
+            (
+                error_of(name, float(estimate[place]), design.figures[name])
+                for place, design in exact_designs.items()
+                if design.figures
+            ),
+            default=0.0,
+        )
+        for name, estimate in selection.figures.items()
+    }
+    certificate = Certificate(len(places), dict(sorted(rejected.items())), errors)
+    nearest = None if places else _nearest(task, selection, exact_designs)
+    return replace(_reorder(task, selection, exact_designs, places), nearest=nearest, certificate=certificate)
 
 
-def _off(found: Gathered, name: str, seen: Mapping[int, Exact]) -> list[float]:
-    return [
-        error_of(name, float(found.figures[name][place]), exact.figures[name])
-        for place, exact in seen.items()
-        if exact.figures
-    ]
-
-
-def _as_good(ask: Ask, found: Gathered, left: Indices, holding: Sequence[Mapping[str, float]]) -> Indices:
-    """The first of the places left, if it is estimated as good as the last of the designs that are kept so far."""
-    rank, way = ask.ranking.rank, 1.0 if ask.ranking.most else -1.0
-    worst = sorted(way * figures[rank] for figures in holding)[-ask.sweep.keep]
-    better = ask.ranking.score(found.figures)[left] >= worst - _room(rank, worst)
+def _next_candidate(task: Task, selection: Selection, left: Indices, kept: Sequence[Mapping[str, float]]) -> Indices:
+    """First of the places left whose estimate may beat the last design that the sweep keeps; empty without one."""
+    rank, sign = task.ranking.rank, 1.0 if task.ranking.most else -1.0
+    worst = sorted(sign * figures[rank] for figures in kept)[-task.sweep.keep]
+    better = task.ranking.score(selection.figures)[left] >= worst - _allowance(rank, worst)
     first: Indices = left[better][:1]
     return first
 
 
-def _exactly(ask: Ask, found: Gathered, place: int) -> Exact:
-    """The exact design at a place of the table."""
-    computed = ask.exactly(found.values[[place]])
+def _compute_exactly(task: Task, selection: Selection, place: int) -> ExactDesign:
+    """Exact design at a place of the selection."""
+    computed = task.exact_figures(selection.values[[place]])
     if computed.reason[0]:
-        return Exact({}, REASONS[computed.reason[0]])
-    figures = {name: computed.figures[name] for name in found.figures}
-    broken = [limit.figure for limit in ask.ranking.limits if not ask.ranking.held(limit, figures)[0]]
-    return Exact({name: float(column[0]) for name, column in figures.items()}, broken[0] if broken else "")
+        return ExactDesign({}, REASONS[computed.reason[0]])
+    figures = {name: computed.figures[name] for name in selection.figures}
+    broken = [limit.figure for limit in task.ranking.limits if not task.ranking.held(limit, figures)[0]]
+    return ExactDesign({name: float(column[0]) for name, column in figures.items()}, broken[0] if broken else "")
 
 
-def _nearest(ask: Ask, found: Gathered, seen: Mapping[int, Exact]) -> Nearest | None:
-    """Of designs that were worked out and do not hold the one that misses the limits by least."""
-    nearest, missed = None, np.inf
-    for place, exact in seen.items():
-        figures = {name: np.array([value]) for name, value in exact.figures.items()}
-        misses = [float(ask.ranking.miss(limit, figures)[0]) for limit in ask.ranking.limits if figures]
-        if misses and max(misses) < missed:
-            missed = max(misses)
-            worst = ask.ranking.limits[misses.index(missed)]
-            index, values = int(found.index[place]), found.values[place]
-            nearest = Nearest(index, values, worst, exact.figures[worst.figure])
-    return nearest if nearest is not None else found.nearest
+def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
+    """Of the exact designs, all rejected, that which misses the limits by least."""
+    nearest, least = selection.nearest, np.inf
+    for place, design in exact_designs.items():
+        figures = {name: np.array([value]) for name, value in design.figures.items()}
+        misses = [float(task.ranking.miss(limit, figures)[0]) for limit in task.ranking.limits if figures]
+        if misses and max(misses) < least:
+            least = max(misses)
+            worst = task.ranking.limits[misses.index(least)]
+            index, values = int(selection.index[place]), selection.values[place]
+            nearest = Nearest(index, values, worst, design.figures[worst.figure])
+    return nearest
 
 
-def _table(ask: Ask, found: Gathered, seen: Mapping[int, Exact], holding: Sequence[int]) -> Gathered:
-    """The designs that hold, best first, and behind them others whose estimates keep the limits."""
-    figures = {name: column.copy() for name, column in found.figures.items()}
-    inside = np.ones(found.rows, dtype=np.bool_)
-    for limit in ask.ranking.limits:
-        inside &= ask.ranking.held(limit, found.figures)
-    for place in holding:
-        for name, value in seen[place].figures.items():
+def _reorder(
+    task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign], places: Sequence[int]
+) -> Selection:
+    """The selection with certified designs first, best first, then others whose estimates keep the limits."""
+    figures = {name: column.copy() for name, column in selection.figures.items()}
+    inside = np.ones(selection.rows, dtype=np.bool_)
+    for limit in task.ranking.limits:
+        inside &= task.ranking.held(limit, selection.figures)
+    for place in places:
+        for name, value in exact_designs[place].figures.items():
             figures[name][place] = value
-    score = ask.ranking.score(figures)
-    first = sorted(holding, key=lambda place: (-score[place], found.index[place]))
-    behind = [place for place in range(found.rows) if (inside[place] if place not in seen else not seen[place].fault)]
-    order = np.array([*first, *(place for place in behind if place not in holding)], dtype=np.int64)
-    fallen = sum(bool(inside[place]) for place, exact in seen.items() if exact.fault)
-    gained = sum(not inside[place] for place in holding)
+    score = task.ranking.score(figures)
+    first = sorted(places, key=lambda place: (-score[place], selection.index[place]))
+    faults = {place: design.fault for place, design in exact_designs.items()}
+    others = [place for place in range(selection.rows) if (not faults[place] if place in faults else inside[place])]
+    order = np.array([*first, *(place for place in others if place not in places)], dtype=np.int64)
+    lost = sum(bool(inside[place]) for place, fault in faults.items() if fault)
+    gained = sum(not inside[place] for place in places)
     return replace(
-        found,
-        counts=replace(found.counts, kept=found.counts.kept - fallen + gained),
-        index=found.index[order],
-        values=found.values[order],
+        selection,
+        counts=replace(selection.counts, kept=selection.counts.kept - lost + gained),
+        index=selection.index[order],
+        values=selection.values[order],
         figures={name: column[order] for name, column in figures.items()},
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
@@ -14,15 +14,14 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.capabilities.sweep.ask import Ask
     from camgeo.capabilities.sweep.run import Listener
-    from camgeo.capabilities.sweep.search import Means, Outcome
+    from camgeo.capabilities.sweep.search import Outcome, Procedures
+    from camgeo.capabilities.sweep.task import Task
     from camgeo.checks.remedies import Entry
 
 EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
-_SAID = 5  # best designs that -v lists
-Number = TypeVar("Number", int, float)
+_LISTED = 5  # best designs that -v lists
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,27 +40,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
-    from camgeo.capabilities.sweep.ask import EXACT, Ask
+    """Sweep one recipe; return the exit status.
+
+    0 a design keeps the limits, 1 none does, 2 a wrong recipe, 3 the surroundings fail, 130 interrupted.
+    """
+    from camgeo.capabilities.sweep.task import EXACT, Task
     from camgeo.recipe.loading import load
     from camgeo.schema.errors import RecipeErrors
 
     try:
-        ask = Ask.of(load(arguments.recipe))
-        outcome, problem, status = _searched(ask, arguments)
+        task = Task.from_recipe(load(arguments.recipe))
+        outcome, problem, status = _search(task, arguments)
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG
     if outcome is None:
-        _complain(ask, problem)
+        _complain(task, problem)
         return status
     report = outcome.report
     if outcome.work.damaged:
-        _complain(ask, f"{outcome.work.damaged} damaged chunks were computed again")
+        _complain(task, f"{outcome.work.damaged} damaged chunks were computed again")
     for left_out in report["skipped"]:
-        _complain(ask, f"without {left_out['what']}: {left_out['why']}")
-    if report["screen"] and report["screen"].get("why") and ask.plan.count > EXACT:
-        _complain(ask, f"every design was worked out exactly, as none can be estimated: {report['screen']['why']}")
+        _complain(task, f"without {left_out['what']}: {left_out['why']}")
+    if report["screen"] and report["screen"].get("why") and task.plan.count > EXACT:
+        _complain(task, f"every design was worked out exactly, as none can be estimated: {report['screen']['why']}")
     if arguments.json:
         from camgeo.report.document import encoded
 
@@ -73,19 +75,20 @@ def run(arguments: argparse.Namespace) -> int:
     return status
 
 
-def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
-    """Outcome, or what went wrong, and the exit status."""
+def _search(task: Task, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
+    """Outcome or None, a message of what went wrong, and the exit status."""
     from camgeo.capabilities.sweep.engines import EngineError
     from camgeo.capabilities.sweep.job import VersionsError
-    from camgeo.capabilities.sweep.run import How
+    from camgeo.capabilities.sweep.run import Engine
     from camgeo.capabilities.sweep.search import search
     from camgeo.common.errors import SurroundingsError
 
-    progress = Progress(ask.recipe.name, _EVERY)
-    how = How(arguments.jobs, arguments.scheduler)
+    progress = Progress(task.recipe.name, _EVERY)
+    engine = Engine(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:
-        outcome = search(ask, Path(arguments.out), how, means(), fresh=arguments.fresh, listener=_teller(progress))
+        out, listener = Path(arguments.out), _progress_listener(progress)
+        outcome = search(task, out, engine, procedures(), fresh=arguments.fresh, listener=listener)
     except KeyboardInterrupt:
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
@@ -96,40 +99,40 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     except SurroundingsError as error:
         return None, str(error), SURROUNDINGS
     except OSError as error:
-        where = error.filename or Path(arguments.out) / ask.recipe.name
-        return None, f"{where}: {error.strerror or error}; {resume}", SURROUNDINGS
+        path = error.filename or Path(arguments.out) / task.recipe.name
+        return None, f"{path}: {error.strerror or error}; {resume}", SURROUNDINGS
     finally:
         progress.clear()
     return outcome, "", OK if outcome.report["ok"] else FAILED
 
 
-def means() -> Means:
-    """What computes, measures and polishes designs of a recipe."""
-    from camgeo.capabilities.sweep.ask import Ask
-    from camgeo.capabilities.sweep.figures import REASONS, figures
+def procedures() -> Procedures:
+    """Functions that compute, measure and polish designs of a recipe."""
+    from camgeo.capabilities.sweep.figures import REASONS, compute_figures
     from camgeo.capabilities.sweep.refine import polish
-    from camgeo.capabilities.sweep.search import Means
+    from camgeo.capabilities.sweep.search import Procedures
+    from camgeo.capabilities.sweep.task import Task
 
-    return Means(figures, Ask.measured, polish, REASONS)
-
-
-def _complain(ask: Ask, text: str) -> None:
-    complain(f"camgeo: {ask.recipe.name}: {text}")
+    return Procedures(compute_figures, Task.measure, polish, REASONS)
 
 
-def _teller(progress: Progress) -> Listener:
-    """Progress with the time left, from the speed so far."""
+def _complain(task: Task, text: str) -> None:
+    complain(f"camgeo: {task.recipe.name}: {text}")
 
-    def tell(what: str, count: int, total: int, seconds: float) -> None:
+
+def _progress_listener(progress: Progress) -> Listener:
+    """Listener that shows progress, with speed and time left by the speed so far."""
+
+    def show(what: str, count: int, total: int, seconds: float) -> None:
         left = f", {duration(seconds / count * (total - count))} left" if count else ""
         speed = f", {count / seconds:,.0f} a second" if count > seconds > 0.0 else ""
         progress(f"{count:,} of {total:,} {what}{speed}{left}")
 
-    return tell
+    return show
 
 
 def duration(seconds: float) -> str:
-    """Time left, as coarse as it is uncertain: 40 s, 12 min, 3 h 20 min."""
+    """Time in words, coarser the longer it is: 40 s, 12 min, 3 h 20 min."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
@@ -137,55 +140,59 @@ def duration(seconds: float) -> str:
 
 
 def summary(report: Entry, folder: Path) -> str:
-    """What was found, or why nothing was, in a line; `failing` overlap, as a design may break several limits."""
+    """Best design of a report, or why there is none, in a line with the folder of its files.
+
+    The numbers of designs that break a limit overlap, as one may break several.
+    """
     counts, rank, run = report["counts"], report["sweep"]["rank"], report["run"]
     speed = f", {run['designs_per_second']:,.0f} a second" if run["designs_per_second"] else ""
-    looked = f"{counts['computed']:,} designs{speed}"
+    computed = f"{counts['computed']:,} designs{speed}"
     if report["ok"]:
-        best = report["best"][0]
-        value = _value(report, rank, best["figures"][rank])
-        return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
-    reasons = [_stuck(report)] if counts["not_turning"] else []
+        value = _with_unit(report, rank, report["best"][0]["figures"][rank])
+        return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {computed}; {folder}"
+    reasons = [_not_turning(report)] if counts["not_turning"] else []
     reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
-    near = _nearest(report) if report["nearest"] is not None else ""
-    return f"{report['recipe']}: no design is within the limits, of {looked}: {', '.join(reasons)}{near}; {folder}"
+    near = "" if report["nearest"] is None else _nearest(report)
+    return f"{report['recipe']}: no design is within the limits, of {computed}: {', '.join(reasons)}{near}; {folder}"
 
 
 def _nearest(report: Entry) -> str:
-    """The design that misses the limits by least, as a share of each, and what it misses."""
+    """The design that misses the limits by least, as a share of each, and the limit that it misses."""
     near = report["nearest"]
     bounds = report["sweep"]["limits"][near["breaks"]]
     least = "at_least" in bounds and near["value"] < bounds["at_least"]
-    asked = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
-    values = ", ".join(f"{path} {_as_told(value)}" for path, value in near["values"].items())
+    bound = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
     figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
-    return f"; nearest: {values}, with {figure} where {asked} is required"
+    return f"; nearest: {_values(near)}, with {figure} where {bound} is required"
 
 
-def _stuck(report: Entry) -> str:
-    """How many designs have no figures, and why."""
+def _not_turning(report: Entry) -> str:
+    """Number of designs without figures, and the reasons."""
     counts = report["counts"]
-    why = ", ".join(f"{reason} {number:,}" for reason, number in counts["reasons"].items())
-    return f"{counts['not_turning']:,} do not turn" + (f" ({why})" if why else "")
+    reasons = ", ".join(f"{reason} {number:,}" for reason, number in counts["reasons"].items())
+    return f"{counts['not_turning']:,} do not turn" + (f" ({reasons})" if reasons else "")
 
 
-def _as_told(value: float | str) -> str:
-    return value if isinstance(value, str) else f"{value:.6g}"
+def _values(design: Entry) -> str:
+    """Values of a design by their paths, in a line."""
+    return ", ".join(
+        f"{path} {value if isinstance(value, str) else f'{value:.6g}'}" for path, value in design["values"].items()
+    )
 
 
-def _value(report: Entry, figure: str, value: float) -> str:
+def _with_unit(report: Entry, figure: str, value: float) -> str:
+    """Value of a figure with its unit."""
     return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
 
 
 def _table(report: Entry) -> str:
-    """The counts and the first of the best designs."""
+    """The counts and the first of the best designs, in lines."""
     counts = report["counts"]
-    lines = [f"  {_stuck(report)}"]
+    lines = [f"  {_not_turning(report)}"]
     lines += [f"  {number:,} break the limit of {figure}" for figure, number in counts["failing"].items()]
     if counts["rows"] < counts["kept"]:
         lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
-    for design in report["best"][:_SAID]:
-        values = ", ".join(f"{path} {_as_told(value)}" for path, value in design["values"].items())
-        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in design["figures"].items())
-        lines.append(f"  {design['file']}: {values}\n    {figures}")
+    for design in report["best"][:_LISTED]:
+        figures = ", ".join(f"{name} {_with_unit(report, name, value)}" for name, value in design["figures"].items())
+        lines.append(f"  {design['file']}: {_values(design)}\n    {figures}")
     return "\n".join(lines)

@@ -28,11 +28,11 @@ class Contours(NamedTuple):
     """m contours.
 
     slope     tangent of the pressure angle
-    distance  of the contour from the shaft, squared
-    bend      curvature of the base curve, 1/mm, of a round touch; None of a face
-    radius    of curvature of the contour, of a face; None of a round touch
-    contact   place on a face, mm; None of a round touch
-    spin      turns of a roller per turn of the shaft; None of a face and of a point
+    distance  of the contour from the shaft, squared, mm^2
+    bend      curvature of the centre's path, 1/mm, for a round touch; None for a face
+    radius    of curvature of the contour, mm, for a face; None for a round touch
+    contact   place along a face, mm; None for a round touch
+    spin      turns of a roller per turn of the shaft; None for a face and a point
     outside   (m,) whether the shaft lies outside
     lean      (m, 1) tangent of the pressure angle at which an eccentric stem begins to rise
     """
@@ -48,8 +48,8 @@ class Contours(NamedTuple):
     lean: Array | None = None
 
 
-def _round(b: Array, a: Array, rates: tuple[Array, Array, Array | float]) -> tuple[Array, Array]:
-    """Speed of the centre, and curvature of its path; `rates` are b', a' and tau'."""
+def _centre_path(b: Array, a: Array, rates: tuple[Array, Array, Array | float]) -> tuple[Array, Array]:
+    """Speed of the centre, mm/rad, and curvature of its path, 1/mm; `rates` are b', a' and tau'."""
     b1, a1, travel = rates
     square = a * a + b * b
     speed = np.sqrt(square)
@@ -57,17 +57,18 @@ def _round(b: Array, a: Array, rates: tuple[Array, Array, Array | float]) -> tup
 
 
 def _spin(sizes: Sizes, side: Side, speed: Array, travel: Array | float) -> Array | None:
+    """Turns of a roller per turn of the shaft; None for a point."""
     return side * speed / sizes["radius"] - travel if (sizes["radius"] > 0.0).all() else None
 
 
 def _stem(sizes: Sizes, side: Side, rows: Array) -> Contours:
-    """A round touch on a stem: the centre at d + S along its line, d^2 = Rp^2 - e^2."""
+    """Contours for a round touch on a stem: the centre at d + S along its line, d^2 = Rp^2 - e^2."""
     e, radius = sizes["offset"], side * sizes["radius"]
     prime = sizes["base"] + radius
     foot = np.sqrt(np.maximum((prime - e) * (prime + e), 0.0))
     b, a = foot + rows[0], rows[1] - e
     sound = ((prime > np.abs(e)) & (b.min(axis=1, keepdims=True) > 0.0))[:, 0]
-    speed, bend = _round(b, a, (rows[1], rows[2], 1.0))
+    speed, bend = _centre_path(b, a, (rows[1], rows[2], 1.0))
     share = radius / speed
     distance = (b - share * b) ** 2 + (e + share * a) ** 2
     lean = np.abs(e) / np.maximum(foot, 1e-300)
@@ -75,7 +76,7 @@ def _stem(sizes: Sizes, side: Side, rows: Array) -> Contours:
 
 
 def _arm(sizes: Sizes, side: Side, rows: Array) -> Contours:
-    """A round touch on an arm: psi = rest + S at the pivot, between the shaft and the arm."""
+    """Contours for a round touch on an arm: psi = rest + S at the pivot, between the shaft and the arm."""
     pivot, length, sense, radius = sizes["pivot"], sizes["length"], sizes["side"], side * sizes["radius"]
     prime = sizes["base"] + radius
     low, high = (prime - pivot + length) * (prime + pivot - length), pivot + length - prime
@@ -88,7 +89,7 @@ def _arm(sizes: Sizes, side: Side, rows: Array) -> Contours:
     a = length * rows[1] - sense * (pivot * cosine - length)
     travel = 1.0 + sense * rows[1]
     rates = pivot * cosine * rows[1], length * rows[2] + sense * b * rows[1], travel
-    speed, bend = _round(b, a, rates)
+    speed, bend = _centre_path(b, a, rates)
     # N = E(psi - 90 deg, in the arm's sense)(b - i a)/sigma, seen from the line to the pivot
     share = radius / speed
     x = pivot - length * cosine - share * (sine * b - sense * cosine * a)
@@ -97,7 +98,7 @@ def _arm(sizes: Sizes, side: Side, rows: Array) -> Contours:
 
 
 def _stem_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG001 - a table of one signature
-    """A face on a stem, its normal turned ahead of travel by the tilt."""
+    """Contours for a face on a stem, its normal turned ahead of travel by the tilt."""
     base, tilt, e = sizes["base"], sizes["tilt"], sizes["offset"]
     sine, cosine = np.sin(tilt), np.cos(tilt)
     p, q = base + cosine * rows[0], cosine * rows[1]
@@ -110,7 +111,7 @@ def _stem_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG0
 
 
 def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG001
-    """A face on an arm, nearer the cam than its parallel through the pivot."""
+    """Contours for a face on an arm, nearer the cam than its parallel through the pivot."""
     pivot, nearer, sense = sizes["pivot"], sizes["nearer"], sizes["side"]
     share = (sizes["base"] + nearer) / pivot
     reached = (share > 0.0) & (share < 1.0)
@@ -125,17 +126,17 @@ def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG00
 
 
 def plate(rows: Array) -> Contours:
-    """A plate by its support function under a face at right angles to its way."""
+    """Contours of plates by their support functions (p, p', p''), under a face at right angles to its travel."""
     p, q = rows[0], rows[1]
     outside = p.min(axis=1) < -EDGE * p.max(axis=1)
     sound = np.ones(len(p), dtype=np.bool_)
     return Contours(sound, 0.0 * p, p * p + q * q, radius=p + rows[2], contact=q, outside=outside)
 
 
-MAKERS: dict[tuple[str, bool], Callable[[Sizes, Side, Array], Contours]] = {
+GUIDED: dict[tuple[str, bool], Callable[[Sizes, Side, Array], Contours]] = {
     ("mm", True): _stem,
     ("deg", True): _arm,
     ("mm", False): _stem_face,
     ("deg", False): _arm_face,
 }
-"""What makes contours, by the unit of the guide's motion and whether the touch is round."""
+"""Contours of guided followers, by the unit of the guide's motion and whether the touch is round."""

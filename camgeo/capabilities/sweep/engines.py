@@ -1,14 +1,13 @@
-"""Who computes the chunks: this process, several on this machine, or the workers of a Dask scheduler.
+"""Computing chunks in this process, in several on this machine, or by the workers of a Dask scheduler.
 
-Each engine is an iterator over (chunk, bytes of its file), in whatever order they land. It hands a worker its next
-chunk only when it is about to come free, so an end that comes early wastes little.
+Results are iterators over (chunk number, bytes of its file), in any order. A worker gets its next chunk only when it is
+about to be free, so a sweep that is stopped early wastes little.
 """
 
 from __future__ import annotations
 
 import time
 from contextlib import contextmanager
-from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.capabilities.sweep.job import VersionsError, result, versions
@@ -25,25 +24,20 @@ Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 T = TypeVar("T")
 R = TypeVar("R")
 
-_TRIED = 0.5  # seconds of work after which it is clear how long the rest takes
-_PAYS = 2.0  # seconds of remaining work from which more processes pay
-_PATIENCE = 10.0  # seconds for a scheduler to answer
+_TRIAL = 0.5  # seconds of work after which it is clear how long the rest takes
+_WORTHWHILE = 2.0  # seconds of remaining work from which more processes save time
+_TIMEOUT = 10.0  # seconds for a scheduler to answer
 _NO_ADDRESS = "is not the address of a Dask scheduler, such as tcp://host:8786"
-_CHATTY = frozenset({"distributed", "tornado", "asyncio"})  # whose loggers print what is said here in our words
-_WORKERLESS = 6  # times as long for its first worker to come
+_LOGGERS = frozenset({"distributed", "tornado", "asyncio"})  # which print errors that are raised here in plain words
+_MOST_TIMEOUTS = 6  # in a row, until the scheduler's first worker comes
 
 
 class EngineError(CamgeoError):
-    """The chunks cannot be computed for want of something around the run; what has landed stays."""
+    """Workers or a scheduler are missing or lost, so that chunks cannot be computed; those written stay."""
 
 
-def here(job: Job, numbers: Sequence[int], count: int) -> Results:
-    """Compute chunks on this machine, in `count` processes where they pay."""
-    return spread(partial(result, job, key=job.key), numbers, count)
-
-
-def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Give each item, as it is done, with what a function of a module makes of it, `count` at once.
+def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
+    """Each item, as it is done, with the function's result, `count` at once; the function is one of a module.
 
     Raises EngineError where a process is killed.
     """
@@ -56,54 +50,54 @@ def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Gener
 
 
 def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Give each item with what a function makes of it: one after another here, and `count` at once where that pays.
+    """Each item with the function's result: one after another here, or `count` at once in processes of their own.
 
-    It pays where what is left takes longer than starting processes, by the time of what is done.
+    Processes are started once the time of the items done shows that the others take longer than that.
     """
     started = time.perf_counter()
     for done, item in enumerate(items):
         spent = time.perf_counter() - started
-        if count > 1 and done and spent > _TRIED and spent / done * (len(items) - done) > _PAYS:
-            yield from at_once(function, items[done:], count)
+        if count > 1 and done and spent > _TRIAL and spent / done * (len(items) - done) > _WORTHWHILE:
+            yield from in_processes(function, items[done:], count)
             return
         yield item, function(item)
 
 
 def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
-    """Let the workers of the Dask scheduler at `address` compute; they need camgeo, and no shared disk.
+    """Chunks computed by the workers of the Dask scheduler at `address`, which need camgeo, and no shared disk.
 
     Raises ModuleNotFoundError without the package distributed, VersionsError for workers of other versions, and
-    EngineError where the scheduler does not answer or goes away, has no workers or such without camgeo, or a chunk is
-    lost again and again.
+    EngineError where the scheduler does not answer or goes away, has no workers or some without camgeo, or a chunk
+    kills its workers again and again.
     """
     from distributed import Client, wait
 
-    first_of: Callable[..., Any] = wait
-    with _quiet(), _connected(Client, address) as client, _lost(address):
-        _demand_versions(client.run(versions, job.plan, on_error="return"), versions(job.plan))
+    wait_for: Callable[..., Any] = wait
+    with _quiet(), _connected(Client, address) as client, _connection_errors(address):
+        _require_versions(client.run(versions, job.plan, on_error="return"), versions(job.plan))
         key, left = job.key, list(reversed(numbers))
         running: dict[Any, int] = {}
-        alone = 0
+        timeouts = 0
         while left or running:
-            room = workers.AHEAD * max(1, sum(client.nthreads().values())) - len(running)
-            for _ in range(min(room, len(left))):
+            places = workers.AHEAD * max(1, sum(client.nthreads().values())) - len(running)
+            for _ in range(min(places, len(left))):
                 number = left.pop()
                 # not pure: a result is kept on our disk and nowhere else
                 running[client.submit(result, job, number, key, pure=False)] = number
             try:
-                with client.as_current():  # `wait` asks for it, and it is no business of other threads
-                    done = first_of(list(running), timeout=_PATIENCE, return_when="FIRST_COMPLETED").done
+                with client.as_current():  # `wait` needs it; set for this thread alone
+                    done = wait_for(list(running), timeout=_TIMEOUT, return_when="FIRST_COMPLETED").done
             except TimeoutError:
-                alone = 0 if client.nthreads() else alone + 1
-                if alone >= _WORKERLESS:
+                timeouts = 0 if client.nthreads() else timeouts + 1
+                if timeouts >= _MOST_TIMEOUTS:
                     raise EngineError(f"the scheduler at {address} has no workers") from None
                 continue
             for future in done:
                 yield running.pop(future), future.result()
 
 
-def _demand_versions(workers: Mapping[str, dict[str, str] | Exception], ours: dict[str, str]) -> None:
-    """Refuse workers of other versions, and those without camgeo, which the first chunk would end without a word."""
+def _require_versions(workers: Mapping[str, dict[str, str] | Exception], ours: dict[str, str]) -> None:
+    """Raise VersionsError for workers of other versions, EngineError for those without camgeo: else chunks are lost."""
     for worker, theirs in workers.items():
         if isinstance(theirs, Exception):
             raise EngineError(f"the worker at {worker} cannot run camgeo: {theirs}")
@@ -114,10 +108,10 @@ def _demand_versions(workers: Mapping[str, dict[str, str] | Exception], ours: di
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep distributed from printing lines of its own: whatever stops the run is raised."""
+    """Keep distributed from printing lines of its own: errors that stop the run are raised."""
     import logging
 
-    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] in _CHATTY]
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] in _LOGGERS]
     before = [logger.disabled for logger in loggers]
     for logger in loggers:
         logger.disabled = True
@@ -130,36 +124,36 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - distributed has no types
-    """A client of the scheduler, closed in the end; what it still had in hand is then dropped by the scheduler."""
-    _heard(address)  # first: a client that finds nobody takes half a minute to say so, or for ever
+    """A client of the scheduler, closed in the end; the scheduler then drops the chunks it still had."""
+    _require_scheduler(address)  # first: a client without a scheduler takes half a minute to fail, or for ever
     try:
-        opened = client(address, timeout=_PATIENCE, set_as_default=False)
+        opened = client(address, timeout=_TIMEOUT, set_as_default=False)
     except OSError as error:
         raise EngineError(f"the server at {address} is not a Dask scheduler") from error
     with opened:
         yield opened
 
 
-def _heard(address: str) -> None:
-    """Make sure that a scheduler listens at an address such as tcp://host:8786; raises EngineError otherwise."""
+def _require_scheduler(address: str) -> None:
+    """Raise EngineError unless a scheduler listens at the address, such as tcp://host:8786."""
     import asyncio
     import socket
     import struct
 
     from distributed.comm import get_address_host_port
 
-    parted: Callable[[str], tuple[str, int]] = get_address_host_port
+    host_and_port: Callable[[str], tuple[str, int]] = get_address_host_port
     try:
-        socket.create_connection(parted(address), _PATIENCE).close()  # at once: `rpc` tries again until its time is up
+        socket.create_connection(host_and_port(address), _TIMEOUT).close()  # `rpc` would try again for so long
     except ValueError as error:
         raise EngineError(f"{address} {_NO_ADDRESS}") from error
     except OSError as error:
         why = f": {error.strerror}" if error.strerror else ""
         raise EngineError(f"no Dask scheduler answers at {address}{why}") from error
     try:
-        kind = asyncio.run(asyncio.wait_for(_kind_of(address), _PATIENCE))
+        kind = asyncio.run(asyncio.wait_for(_node_type(address), _TIMEOUT))
     except TimeoutError:
-        text = f"the server at {address} does not answer as a Dask scheduler does: no answer in {_PATIENCE:g} s"
+        text = f"the server at {address} does not answer as a Dask scheduler does: no answer in {_TIMEOUT:g} s"
         raise EngineError(text) from None
     except (MemoryError, struct.error):  # its first bytes were read as a length
         raise EngineError(f"the server at {address} speaks another protocol than a Dask scheduler") from None
@@ -169,18 +163,18 @@ def _heard(address: str) -> None:
         raise EngineError(f"the server at {address} is not a Dask scheduler, but a {kind}")
 
 
-async def _kind_of(address: str) -> str:
-    """What a node of Dask calls itself: Scheduler, Worker, Nanny."""
+async def _node_type(address: str) -> str:
+    """Type of a node of Dask, in its own words: Scheduler, Worker, Nanny."""
     from distributed import rpc
 
-    reach: Callable[..., Any] = rpc
-    async with reach(address, timeout=_PATIENCE) as node:
+    connect: Callable[..., Any] = rpc
+    async with connect(address, timeout=_TIMEOUT) as node:
         return str((await node.identity())["type"])
 
 
 @contextmanager
-def _lost(address: str) -> Iterator[None]:
-    """Say in our words that the scheduler went away, or that its workers die of a chunk."""
+def _connection_errors(address: str) -> Iterator[None]:
+    """Raise EngineError in place of Dask's errors for a lost scheduler, or a chunk that kills its workers."""
     from concurrent.futures import CancelledError
 
     from distributed.scheduler import KilledWorker

@@ -24,14 +24,16 @@ MOST_AXES = 20
 MOST_VALUES = 1000  # listed for one axis
 MOST_STEPS = 1_000_000  # of one axis
 MOST_DESIGNS = 100_000_000
+KEEP = 10  # best designs, where the recipe gives no number
+SAMPLES = 360  # angles of a design, likewise
+_VARIABLE = ("cam.", "linkage.")  # sections that figures depend on
 
 
 @dataclass(frozen=True)
-class Axis:
-    """One number or word that a sweep varies, by its path in the recipe; all values as the recipe writes them.
+class VariedField:
+    """One number or word that a sweep varies, by its path in the recipe; all values in the recipe's units.
 
-    `values` are those listed, or `words`; where there are none the axis runs from `low` to `high`, over a grid in
-    `steps` values.
+    It takes the listed `values` or `words`; without any it runs from `low` to `high`, in a grid in `steps` values.
     """
 
     path: str
@@ -44,13 +46,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A search among designs: `count` of them, or of a grid (count None) every combination of the axes' values.
+    """A search among designs: `count` of them, or in a grid (count None) every combination of the fields' values.
 
-    `rank` is the figure to be best in, `keep` the number of best designs that become recipes, `angles` the number of
-    angles at which a design is sampled, `refine` whether the best are polished.
+    `rank` is the figure by which designs are ranked, `keep` the number of best designs that become recipes, `angles`
+    the number of angles at which a design is sampled, `refine` whether the best are polished.
     """
 
-    vary: tuple[Axis, ...]
+    vary: tuple[VariedField, ...]
     method: Literal["grid", "random", "sobol"]
     count: int | None
     seed: int
@@ -61,19 +63,19 @@ class Sweep:
     refine: bool
 
 
-def varied(recipe: Recipe) -> tuple[Axis, ...]:
-    """Give what the sweep of a recipe varies; nothing without one."""
+def varied_fields(recipe: Recipe) -> tuple[VariedField, ...]:
+    """Fields that the sweep of a recipe varies; none without a sweep."""
     sweep = recipe.of(Sweep)
     return () if sweep is None else sweep.vary
 
 
-def swept() -> dict[str, Figure]:
-    """Give the figures that a sweep knows, by name."""
+def sweep_figures() -> dict[str, Figure]:
+    """Figures by which designs can be limited and ranked, by name."""
     return {name: figure for name, figure in FIGURES.items() if figure.swept}
 
 
-def _range_of(unit: Kind | None) -> Table:
-    """Give the table of a range of numbers of some kind."""
+def _range_table(unit: Kind | None) -> Table:
+    """Keys of a range: `from`, `to` and `steps`, its ends numbers with a unit of this kind."""
     steps = "number of values, both ends included; for a grid"
     return Table(
         (
@@ -84,69 +86,64 @@ def _range_of(unit: Kind | None) -> Table:
     )
 
 
-RANGE = _range_of(None)
+RANGE = _range_table(None)
 
 
 def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read the axes of a sweep as they stand, each with the path of its number and its own place (`at`).
+    """Axes of a sweep as written, each with the `path` of its number and its own place (`at`); None after a fault.
 
-    Whether there is a number at that path shows only when the whole recipe has been read.
+    Whether a number stands at that path is checked in `check_sweep`, once the whole recipe has been read.
     """
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
         return None
-    given = entries(node)
-    if not given:
+    nodes = entries(node)
+    if not nodes:
         reader.fault(node.mark, path, "nothing varies", None, reader.wanted(field))
         return None
-    if len(given) > MOST_AXES:
-        reader.fault(node.mark, path, f"more than {MOST_AXES} axes", str(len(given)), "leave some out")
+    if len(nodes) > MOST_AXES:
+        reader.fault(node.mark, path, f"more than {MOST_AXES} axes", str(len(nodes)), "leave some out")
         return None
     axes = []
-    for name, below in ((name, join(path, name)) for name in given):
-        listed = _words(reader, given[name], name, below)
-        axis = {"words": listed} if listed else _axis(reader, given[name], below, _varied(reader, name))
+    for name, entry in nodes.items():
+        place = join(path, name)
+        words = _read_words(reader, entry, name, place)
+        varied = reader.numbers.get(name) or field_at(reader.root, name, reader.kinds)
+        kind = Kind.LENGTH if varied is None else varied.unit or varied.kind  # without a field the path is at fault
+        axis = {"words": words} if words else _read_numbers(reader, entry, place, kind)
         if axis is not None:
-            axes.append({"path": name, "at": below, **axis})
+            axes.append({"path": name, "at": place, **axis})
     return axes
 
 
-def _varied(reader: Reader, path: str) -> Kind:
-    """Say what the number at a path is, whose unit its values may carry; a length where the path itself is at fault."""
-    field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
-    return Kind.LENGTH if field is None else field.unit or field.kind
-
-
-def _words(reader: Reader, node: Node, path: str, place: str) -> tuple[str, ...]:
-    """Give the words of a list for a field that holds one; none where it is no such list, or no such field."""
-    if not isinstance(node, Sequence) or path in reader.numbers:
-        return ()
-    if path not in dict(scalars(reader.source.root)):
+def _read_words(reader: Reader, node: Node, path: str, place: str) -> tuple[str, ...]:
+    """Words listed for a field that holds a word; none for another node, or another field."""
+    if not isinstance(node, Sequence) or path in reader.numbers or path not in dict(scalars(reader.source.root)):
         return ()
     words = [item.text for item in node.items if isinstance(item, Scalar) and not is_empty(item)]
     reader.marks.update({join(place, i): item.mark for i, item in enumerate(node.items)})
     return tuple(words) if len(words) == len(node.items) <= MOST_VALUES else ()
 
 
-def _axis(reader: Reader, node: Node, path: str, unit: Kind) -> Values | None:
-    """Read a range or a list of values of a number of some kind, as the recipe writes them."""
-    either_way = Field("", Kind.OWN, "", form=_AXIS)
+def _read_numbers(reader: Reader, node: Node, path: str, unit: Kind) -> Values | None:
+    """A range, or a tuple `values`, of numbers with a unit of this kind, in the recipe's units; None after a fault."""
+    range_or_list = Field("", Kind.OWN, "", form=_AXIS)
     if isinstance(node, Sequence):
-        items = reader.items(either_way, node, path, MOST_VALUES)
-        part = Field("", Kind.NUMBER, "", unit=unit)
-        values = [reader.field(part, item, join(path, i)) for i, item in enumerate(items)]
+        items = reader.items(range_or_list, node, path, MOST_VALUES)
+        number = Field("", Kind.NUMBER, "", unit=unit)
+        values = [reader.field(number, item, join(path, i)) for i, item in enumerate(items)]
         return {"values": tuple(values)} if values and None not in values else None
     if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a range", described(node), reader.wanted(either_way))
+        reader.fault(node.mark, path, "not a range", described(node), reader.wanted(range_or_list))
         return None
-    read = reader.table(_range_of(unit), node, path)
-    return read if {"from", "to"} <= read.keys() else None
+    axis = reader.table(_range_table(unit), node, path)
+    return axis if {"from", "to"} <= axis.keys() else None
 
 
 def _vary_schema(_: Field) -> Schema:
     items = {"anyOf": [number_schema(unit=Kind.MOTION), {"type": "string"}]}
     values = {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_VALUES}
-    axis = {"anyOf": [table_schema(_range_of(Kind.MOTION)), values]}
+    axis = {"anyOf": [table_schema(_range_table(Kind.MOTION)), values]}
     return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
 
 
@@ -160,97 +157,51 @@ _AXIS = Form("a range", "a range such as {from: 95, to: 110, steps: 16}, or a li
 
 
 def fields() -> tuple[Field, ...]:
-    """Give the key `sweep` of a recipe."""
-    return (
-        Field(
-            "sweep",
-            Kind.TABLE,
-            "a search among designs",
-            after="dwell",
-            table=Table(
-                (
-                    Field(
-                        "vary",
-                        Kind.OWN,
-                        "numbers and words of cam and linkage by their paths, each with its range or values",
-                        required=True,
-                        form=_VARY,
-                    ),
-                    Field(
-                        "method",
-                        Kind.CHOICE,
-                        "how the designs are chosen",
-                        default="grid",
-                        choices=("grid", "random", "sobol"),
-                    ),
-                    Field("count", Kind.INTEGER, "number of designs; not for a grid", at_least=1, at_most=MOST_DESIGNS),
-                    Field("seed", Kind.INTEGER, "seed of random and sobol", default="0", at_least=0, at_most=2**32 - 1),
-                    Field(
-                        "limits",
-                        Kind.OWN,
-                        "figures that a design must keep within bounds",
-                        default="none",
-                        form=limits_form(swept=True),
-                    ),
-                    Field(
-                        "rank",
-                        Kind.CHOICE,
-                        "figure by which the designs are ranked",
-                        required=True,
-                        choices=tuple(swept()),
-                    ),
-                    Field(
-                        "keep",
-                        Kind.INTEGER,
-                        "number of best designs that become recipes",
-                        default="10",
-                        at_least=1,
-                        at_most=1000,
-                    ),
-                    Field(
-                        "angles",
-                        Kind.INTEGER,
-                        "number of angles at which a design is sampled",
-                        default="360",
-                        at_least=24,
-                        at_most=36_000,
-                    ),
-                    Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
-                )
-            ),
-        ),
+    """The key `sweep` of a recipe, with the keys below it."""
+    vary = "numbers and words of cam and linkage by their paths, each with its range or values"
+    methods, figures = ("grid", "random", "sobol"), tuple(sweep_figures())
+    limits, best = "figures that a design must keep within bounds", "number of best designs that become recipes"
+    angles = "number of angles at which a design is sampled"
+    table = (
+        Field("vary", Kind.OWN, vary, required=True, form=_VARY),
+        Field("method", Kind.CHOICE, "how the designs are chosen", default="grid", choices=methods),
+        Field("count", Kind.INTEGER, "number of designs; not for a grid", at_least=1, at_most=MOST_DESIGNS),
+        Field("seed", Kind.INTEGER, "seed of random and sobol", default="0", at_least=0, at_most=2**32 - 1),
+        Field("limits", Kind.OWN, limits, default="none", form=limits_form(swept=True)),
+        Field("rank", Kind.CHOICE, "figure by which the designs are ranked", required=True, choices=figures),
+        Field("keep", Kind.INTEGER, best, default=f"{KEEP}", at_least=1, at_most=1000),
+        Field("angles", Kind.INTEGER, angles, default=f"{SAMPLES}", at_least=24, at_most=36_000),
+        Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
     )
-
-
-_VARIED = ("cam.", "linkage.")  # what figures depend on
+    return (Field("sweep", Kind.TABLE, "a search among designs", after="dwell", table=Table(table)),)
 
 
 def check_sweep(values: Values, reader: Reader) -> None:
-    """Note the faults of the sweep of a recipe, where there is one that was read."""
+    """Add the faults of a recipe's sweep to the reader's errors; nothing without a sweep that could be read."""
     sweep: Values | None = values.get("sweep")
     if sweep is None:
         return
-    _figures(sweep, reader)
+    _check_figures(sweep, reader)
     axes: list[Values] = sweep.get("vary", [])
-    design = [path for path in reader.numbers if path.startswith(_VARIED)]
+    numbers = [path for path in reader.numbers if path.startswith(_VARIABLE)]
     counts = Counter(id(scalar) for _, scalar in scalars(reader.source.root))
     shared = {path for path, scalar in scalars(reader.source.root) if counts[id(scalar)] > 1}
     for axis in axes:
         path = axis["path"]
-        if "words" in axis and path.startswith(_VARIED) and path not in shared:
-            _listed(axis, reader)
-        elif path not in design and not (path in shared and "words" in axis):
-            _no_number(axis, design, reader)
+        if "words" in axis and path.startswith(_VARIABLE) and path not in shared:
+            _check_words(axis, reader)
+        elif path not in numbers and not (path in shared and "words" in axis):
+            _report_absent(axis, numbers, reader)
         elif path in shared:
             remedy = "write the number out wherever it is meant"
             reader.fault_at(axis["at"], "a number that an alias shares with other fields", None, remedy)
         else:
-            _values(axis, reader)
-    _method(sweep, axes, reader)
+            _check_values(axis, reader)
+    _check_method(sweep, axes, reader)
 
 
-def _listed(axis: Values, reader: Reader) -> None:
-    """Note words that stand twice, and those of the fields that say which other keys there are."""
+def _check_words(axis: Values, reader: Reader) -> None:
+    """Note words listed twice, and fields on which other keys depend: the kinds of cam and linkage."""
     path, words = axis["path"], axis["words"]
     if path.endswith(("cam.kind", "linkage.kind")):
         reader.fault_at(axis["at"], f"another {path[:-5]} has other keys", None, "give it a recipe of its own")
@@ -259,43 +210,44 @@ def _listed(axis: Values, reader: Reader) -> None:
             reader.fault_at(f"{axis['at']}[{i}]", "listed twice", shown(word), "leave one of the two out")
 
 
-def _figures(sweep: Values, reader: Reader) -> None:
+def _check_figures(sweep: Values, reader: Reader) -> None:
+    """Note figures of `limits` and `rank` that the recipe's designs do not have."""
     limits: list[Values] = sweep.get("limits", [])
-    asked = [(limit["at"], limit["figure"]) for limit in limits]
+    figures = [(limit["at"], limit["figure"]) for limit in limits]
     if "rank" in sweep:
-        asked.append(("sweep.rank", sweep["rank"]))
-    given = set(reader.marks) - ({"part.density"} if "linkage" in reader.marks else set())  # designs are not weighed
-    for path, name in asked:
+        figures.append(("sweep.rank", sweep["rank"]))
+    weighed = "linkage" not in reader.marks  # designs with a linkage have no mass
+    fields = set(reader.marks) if weighed else set(reader.marks) - {"part.density"}
+    for path, name in figures:
         needs = FIGURES[name].needs
-        if not needs.there(reader.offers, given):
+        if not needs.there(reader.offers, fields):
             remedy = f"give {needs.words}, or take another figure"
             reader.fault_at(path, f"{name} needs {needs.words}", None, remedy)
 
 
-def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
-    """Say why there is nothing to vary at a path."""
-    path, at = axis["path"], axis["at"]
+def _report_absent(axis: Values, numbers: list[str], reader: Reader) -> None:
+    """Note why nothing can be varied at a path; `numbers` are the paths of those that can."""
+    path, place = axis["path"], axis["at"]
     if any(error.path == path for error in reader.errors):  # a number, but a faulty one
         return
-    such = f", such as {design[0]}" if design else ""
+    such = f", such as {numbers[0]}" if numbers else ""
     if path in reader.numbers:
-        reader.fault_at(at, "no figure of a design depends on it", None, f"vary numbers of cam and linkage{such}")
+        reader.fault_at(place, "no figure of a design depends on it", None, f"vary numbers of cam and linkage{such}")
     elif path in reader.marks:
-        within = next((one for one in design if one.startswith((f"{path}.", f"{path}["))), None)
+        within = next((number for number in numbers if number.startswith((f"{path}.", f"{path}["))), None)
         remedy = f"give the path of a number in it, such as {within}" if within else f"give the path of a number{such}"
-        if path in dict(scalars(reader.source.root)) and path.startswith(_VARIED):
+        if path in dict(scalars(reader.source.root)) and path.startswith(_VARIABLE):
             remedy = "list the words that it takes, such as [cycloidal, modified-sine]"
-        reader.fault_at(at, "no number stands there", None, remedy)
-    elif _is_absent(path, reader) and path.startswith(_VARIED):
-        reader.fault_at(at, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
+        reader.fault_at(place, "no number stands there", None, remedy)
+    elif _is_absent(path, reader) and path.startswith(_VARIABLE):
+        reader.fault_at(place, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
     else:
-        reader.fault_at(
-            at, "unknown field", shown(axis["path"]), suggestion(path, design) or f"give the path of a number{such}"
-        )
+        remedy = suggestion(path, numbers) or f"give the path of a number{such}"
+        reader.fault_at(place, "unknown field", shown(path), remedy)
 
 
 def _is_absent(path: str, reader: Reader) -> bool:
-    """Tell whether a field is known but not given, and not an entry that a given list does not have."""
+    """Whether a known field has no value in the recipe; False for an entry beyond the end of a list."""
     end = path.find("]")
     while end >= 0:
         entry = path[: end + 1]
@@ -305,29 +257,29 @@ def _is_absent(path: str, reader: Reader) -> bool:
     return field_at(reader.root, path, reader.kinds) is not None
 
 
-def _values(axis: Values, reader: Reader) -> None:
-    """Note values that the field itself would refuse."""
-    path, at = axis["path"], axis["at"]
+def _check_values(axis: Values, reader: Reader) -> None:
+    """Note values that the varied field itself refuses, and ranges that do not rise."""
+    path, entry = axis["path"], axis["at"]
     field = reader.numbers[path]
     whole = field.kind is Kind.INTEGER
     if "values" in axis:
-        given = {f"{at}[{i}]": value for i, value in enumerate(axis["values"])}
+        values = {f"{entry}[{i}]": value for i, value in enumerate(axis["values"])}
     else:
-        given = {f"{at}.{end}": axis[end] for end in ("from", "to")}
+        values = {f"{entry}.{end}": axis[end] for end in ("from", "to")}
         if axis["from"] >= axis["to"]:
             remedy = "give a greater number, or a list of values"
-            reader.fault_at(f"{at}.to", "not above `from`", f"{axis['to']:.10g}", remedy)
+            reader.fault_at(f"{entry}.to", "not above `from`", f"{axis['to']:.10g}", remedy)
         if whole:
-            reader.fault_at(at, f"{path} takes whole numbers alone", None, "list them, such as [3, 5, 7]")
+            reader.fault_at(entry, f"{path} takes whole numbers alone", None, "list them, such as [3, 5, 7]")
             return
-    for place, value in given.items():
+    for place, value in values.items():
         problem = "not a whole number" if whole and value != math.floor(value) else field.out_of_bounds(value)
         if problem:
             reader.fault_at(place, problem, f"{value:.10g}", f"{path} takes {field.wanted()}")
 
 
-def _method(sweep: Values, axes: list[Values], reader: Reader) -> None:
-    """Note what the method lacks and what it has no use for, and a grid with too many designs."""
+def _check_method(sweep: Values, axes: list[Values], reader: Reader) -> None:
+    """Note keys that the method lacks or does not take, and a grid with too many designs."""
     method = sweep.get("method", "grid")
     if "sweep.method" in reader.marks and "method" not in sweep:
         return
@@ -347,26 +299,22 @@ def _method(sweep: Values, axes: list[Values], reader: Reader) -> None:
         if "steps" not in axis and f"{axis['at']}.steps" not in reader.marks:
             remedy = f"{reader.wanted(RANGE.field('steps'))}, or take the method random or sobol"
             reader.fault_at(axis["at"], "a grid needs steps", None, remedy)
-    listed = (axis.get("values") or axis.get("words") for axis in axes)
-    designs = math.prod(len(each) if each else axis.get("steps", 1) for each, axis in zip(listed, axes, strict=True))
+    lists = (axis.get("values") or axis.get("words") for axis in axes)
+    designs = math.prod(
+        len(values) if values else axis.get("steps", 1) for values, axis in zip(lists, axes, strict=True)
+    )
     if designs > MOST_DESIGNS:
         remedy = f"at most {MOST_DESIGNS} are looked at; take fewer steps, or the method sobol with a count"
         reader.fault_at("sweep.vary", "too many designs", str(designs), remedy)
 
 
-KEEP = 10  # designs of a sweep
-
-
-SAMPLES = 360  # angles at which a sweep looks at a design
-
-
 def build_sweep(values: Values) -> Sweep | None:
-    """Make the sweep of a recipe's values in which there is no fault, where there is one."""
+    """The sweep of a recipe without faults, lengths in the recipe's units; None without the key."""
     sweep: Values | None = values.get("sweep")
     if sweep is None:
         return None
     return Sweep(
-        vary=tuple(map(_range, sweep["vary"])),
+        vary=tuple(map(_varied_field, sweep["vary"])),
         method=sweep.get("method", "grid"),
         count=sweep.get("count"),
         seed=sweep.get("seed", 0),
@@ -378,9 +326,6 @@ def build_sweep(values: Values) -> Sweep | None:
     )
 
 
-def _range(axis: Values) -> Axis:
-    if "values" in axis:
-        return Axis(axis["path"], values=axis["values"])
-    if "words" in axis:
-        return Axis(axis["path"], words=axis["words"])
-    return Axis(axis["path"], axis["from"], axis["to"], axis.get("steps"))
+def _varied_field(axis: Values) -> VariedField:
+    lists = {name: axis[name] for name in ("values", "words") if name in axis}
+    return VariedField(axis["path"], axis.get("from", 0.0), axis.get("to", 0.0), axis.get("steps"), **lists)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Candidate:
-    """One of the best designs of a search: its recipe, what the search varied in it, and its figures.
+    """One of the best designs of a search: its recipe, the values that the search varied, and its figures.
 
     `values` are by the paths of the recipe's fields and in its units, `figures` by name. `polished` tells whether the
     values were improved beyond the grid of the search. `path` is the file of the recipe.
@@ -41,7 +41,7 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Search(Mapping[str, "JSON"]):
-    """What came of a search; as a mapping it is what sweep.json holds: `dict(search)`, `search["counts"]`.
+    """Outcome of a search; as a mapping the content of sweep.json: `dict(search)`, `search["counts"]`.
 
     `path` is the folder of its files, `<name>.rejected` where no design keeps the limits.
     """
@@ -86,7 +86,7 @@ class Search(Mapping[str, "JSON"]):
         return f"{type(self).__name__}({self.recipe.name!r}, {'ok' if self.ok else 'FAILED'}, {str(self.path)!r})"
 
     def __str__(self) -> str:
-        """Write on one line what the search came to."""
+        """The best design, or why there is none, in one line."""
         from camgeo.capabilities.sweep.command import summary
 
         return summary(self._document, self.path)
@@ -104,17 +104,17 @@ def search(
     """Search the designs that a recipe's `sweep` spans; the best become recipes in the folder `out`/<name>.
 
     `jobs` is the number of processes at once, as many as pay by default; `scheduler` the address of a Dask scheduler in
-    their place. What earlier runs have computed is kept unless `fresh` is true. `progress` hears of what is counted.
-    A search in which no design keeps the limits raises nothing: see `Search.ok`. Raises RecipeErrors where the recipe
-    has no sweep, or one that cannot be run, SurroundingsError where the disk, a package or a scheduler is not what it
-    should be, CallError for a number of processes below 1.
+    their place. What earlier runs computed is used again unless `fresh` is true. `progress` is called with lines such
+    as "64 of 825 designs". A search in which no design keeps the limits raises nothing: see `Search.ok`. Raises
+    RecipeErrors where the recipe has no sweep, or one that cannot be run, SurroundingsError where the disk, a package
+    or a scheduler is not what it should be, CallError for a number of processes below 1.
     """
-    from camgeo.capabilities.sweep.ask import Ask
-    from camgeo.capabilities.sweep.command import EXTRAS, means
+    from camgeo.capabilities.sweep.command import EXTRAS, procedures
     from camgeo.capabilities.sweep.engines import EngineError
     from camgeo.capabilities.sweep.job import VersionsError
-    from camgeo.capabilities.sweep.run import How
-    from camgeo.capabilities.sweep.search import search as searched
+    from camgeo.capabilities.sweep.run import Engine
+    from camgeo.capabilities.sweep.search import search as run_search
+    from camgeo.capabilities.sweep.task import Task
     from camgeo.files.errors import install
 
     recipe, folder = recipe_of(recipe), path_of("out", out)
@@ -130,8 +130,8 @@ def search(
             progress(f"{count:,} of {total:,} {what}")
 
     try:
-        ask = Ask.of(recipe)
-        outcome = searched(ask, folder, How(jobs, scheduler), means(), fresh=fresh, listener=listener)
+        task = Task.from_recipe(recipe)
+        outcome = run_search(task, folder, Engine(jobs, scheduler), procedures(), fresh=fresh, listener=listener)
     except ModuleNotFoundError as error:
         raise SurroundingsError(
             f"the package {error.name} is missing: {install(EXTRAS.get(error.name or '', 'sweep'))}", folder

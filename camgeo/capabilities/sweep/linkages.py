@@ -2,33 +2,32 @@
 
 A block holds m designs at n even relative angles, arrays (m, n), mm and rad; S and S1 are the support at theta and a
 quarter turn on. Everything but two angles a sample is algebra: theta_4 and its derivatives need AD^2 alone, and
-theta_3 is one arctangent of D X, so shaft angles need no unwrapping. `kin.linkage.four_bar` takes care of rounding
-near limit positions; here designs count that keep clear of them.
+theta_3 is one arctangent of D X, so shaft angles need no unwrapping. Rounding near limit positions, of which
+`kin.linkage.four_bar` takes care, is left out: designs so near to binding are no good ones.
 """
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kin.linkage.four_bar import Linkage
+    from kin.numeric.arrays import Array, Mask
 
-Array: TypeAlias = NDArray[np.float64]
-_Rows = TypeVar("_Rows")
+Arrays = TypeVar("Arrays", bound="Support | LoopArrays")
 
 
 class Lengths(NamedTuple):
-    """Dimensions of m linkages, each (m, 1), mm; a kind that has no such link leaves it 0."""
+    """Dimensions of m linkages, each (m, 1), mm; 0 for a link that the kind does not have."""
 
     ground: Array
     coupler: Array
@@ -48,27 +47,26 @@ class Support:
 
     @cached_property
     def p1(self) -> Array:
-        """Support a quarter turn on."""
+        """Support a quarter turn on, mm (m, n)."""
         return _quarter_on(self.p)
 
     @cached_property
     def dp1(self) -> Array:
-        """Its derivative."""
+        """Derivative of the support a quarter turn on."""
         return _quarter_on(self.dp)
 
     @cached_property
     def ddp1(self) -> Array:
-        """Its second derivative."""
+        """Second derivative of the support a quarter turn on."""
         return _quarter_on(self.ddp)
 
-    def part(self, rows: NDArray[np.bool_]) -> Support:
-        """Return some of the cams."""
-        part = Support(self.breadth[rows], self.p[rows], self.dp[rows], self.ddp[rows])
-        return _with_found(self, part, rows)
+    def part(self, rows: Mask) -> Support:
+        """The cams of some rows (m,)."""
+        return _copy_cached(self, Support(self.breadth[rows], self.p[rows], self.dp[rows], self.ddp[rows]), rows)
 
 
-def _with_found(whole: object, part: _Rows, rows: NDArray[np.bool_]) -> _Rows:
-    """Give a part of some designs what has been worked out for the whole."""
+def _copy_cached(whole: Arrays, part: Arrays, rows: Mask) -> Arrays:
+    """Put the rows of arrays that `whole` has computed and cached into the cache of its part; return the part."""
     for name, values in vars(whole).items():
         if name not in vars(part) and isinstance(values, np.ndarray):
             vars(part)[name] = values[rows]
@@ -76,19 +74,20 @@ def _with_found(whole: object, part: _Rows, rows: NDArray[np.bool_]) -> _Rows:
 
 
 def _quarter_on(values: Array) -> Array:
+    """Samples (m, n) a quarter turn on."""
     n = values.shape[1]
     return np.concatenate([values[:, n // 4 :], values[:, : n // 4]], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class LoopArrays:
-    """What the loops of a kind come down to, (m, n) each.
+    """Loops of m linkages of one kind at n relative angles, arrays (m, n).
 
-    `side` is -1 for crossed. `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are
-    positive where the loop closes, and vanish at its limits. Each kind gives `output`, `frame` (theta_3 but for a
-    constant, continuous round the turn) and their derivatives by the relative angle, the signed sine of the
-    `transmission` angle at D, None where that is always a right angle, and the sine of the `force` angle, at least 0
-    (`kin.linkage.forces`).
+    `side` is -1 for crossed. `x`, `y` are D in the frame's axes, mm, `q` is AD^2. `near` and `far` are positive where
+    the loop closes, and 0 at its limits. Each kind gives `output` (rad or mm), `frame` (theta_3 but for a constant,
+    continuous round the turn, rad), `rate`, `second`, `frame_rate`, `frame_second`, their first and second derivatives
+    by the relative angle, the signed sine of the `transmission` angle at D, None where that is always a right angle,
+    and the sine of the `force` angle, at least 0 (`kin.linkage.forces`).
     """
 
     side: float
@@ -100,22 +99,22 @@ class LoopArrays:
     near: Array
     far: Array
 
-    def part(self, rows: NDArray[np.bool_]) -> Self:
-        """Return some of the designs."""
+    def part(self, rows: Mask) -> Self:
+        """The loops of some rows (m,)."""
         lengths = Lengths(*(length[rows] for length in self.lengths))
         fields = (self.x, self.y, self.q, self.near, self.far)
         part = self.__class__(self.side, self.cams.part(rows), lengths, *(field[rows] for field in fields))
-        return _with_found(self, part, rows)
+        return _copy_cached(self, part, rows)
 
-    def signed(self, square: Array) -> Array:
-        """Root of a square, of the assembly's sign."""
+    def signed_root(self, square: Array) -> Array:
+        """Square root with the sign of the assembly."""
         root = np.sqrt(square)
         return root if self.side > 0 else -root
 
     @cached_property
     def root(self) -> Array:
-        """Signed root of near far: 2 r1 r4 sin theta_4, or r1 sin theta_4; a slider-crank has D_x."""
-        return self.signed(self.near * self.far)
+        """Signed root of near far, mm or mm^2: 2 r1 r4 sin theta_4, or r1 sin theta_4; of a slider-crank D_x."""
+        return self.signed_root(self.near * self.far)
 
     @cached_property
     def output(self) -> Array:
@@ -126,29 +125,29 @@ class LoopArrays:
 
 
 class InvertedLoop(LoopArrays):
-    """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; x and q stand empty."""
+    """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; `x` and `q` are not used."""
 
     dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker", "joint_offset")
 
     @classmethod
-    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Set the loops up."""
+    def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Loops of linkages with these lengths, driven by these cams."""
         r1, r4 = lengths.ground, lengths.rocker
         y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
         return cls(side, cams, lengths, y, y, y, y + (r1 - r4), (r1 + r4) - y)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
         return np.minimum(extreme(self.near), extreme(self.far))
 
     @cached_property
     def rate(self) -> Array:
-        """Its derivative."""
+        """theta_4'."""
         return self.cams.dp / self.root
 
     @cached_property
     def second(self) -> Array:
-        """Its second derivative."""
+        """theta_4''."""
         rate = self.rate
         return (self.cams.ddp - (self.lengths.rocker - self.y) * rate * rate) / self.root
 
@@ -169,12 +168,12 @@ class InvertedLoop(LoopArrays):
 
     @cached_property
     def transmission(self) -> None:
-        """A right angle throughout."""
+        """None: the angle at D is always a right angle."""
         return None
 
     @cached_property
     def force(self) -> Array:
-        """The force runs along the line through B and P = -S' u - S1' n, where the normals of the contacts meet."""
+        """Sine of the force angle: the force acts along B P, P = -S' u - S1' n, where the contacts' normals meet."""
         cams = self.cams
         along, across = cams.dp + self.root, cams.dp1 + (self.y - self.lengths.rocker)
         return np.abs(along) / _length(along, across)
@@ -185,14 +184,14 @@ class CouplerLoop(LoopArrays):
 
     @staticmethod
     def vector(cams: Support, lengths: Lengths, least: Array) -> tuple[Array, Array, Array, Array]:
-        """Give x, y, q, and near for the least AD at which the loop closes, (m, 1)."""
+        """Arrays x, y, q, and near, for the `least` AD at which the loop closes, mm (m, 1)."""
         y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
         x = (cams.breadth + lengths.coupler) - cams.p1
         yy = y * y
         return x, y, x * x + yy, (x - least) * (x + least) + yy
 
     def _beyond(self, least: Array, extreme: Callable[[Array], Array]) -> Array:
-        """AD - least from AD^2 - least^2; where that is negative it is a distance too, if not quite that one."""
+        """Least value of AD - least, mm (m,); where it is negative another negative length, as AD is not known."""
         near = extreme(self.near)
         return np.asarray(near / (np.sqrt(np.maximum(near + least * least, 0.0)) + least))
 
@@ -203,32 +202,32 @@ class CouplerLoop(LoopArrays):
 
     @property
     def half_second(self) -> Array:
-        """Half its second derivative."""
+        """Half the second derivative of AD^2."""
         cams = self.cams
         return cams.dp * cams.dp + cams.dp1 * cams.dp1 + self.y * cams.ddp - self.x * cams.ddp1
 
     @property
     def spin(self) -> Array:
-        """Derivative of the polar angle of D in the frame's axes, times Q, negative."""
+        """Minus the derivative of the polar angle of D in the frame's axes, times AD^2."""
         return self.x * self.cams.dp + self.y * self.cams.dp1
 
     @property
     def spin_rate(self) -> Array:
-        """Its derivative."""
+        """Derivative of `spin`."""
         return self.x * self.cams.ddp + self.y * self.cams.ddp1
 
     def turned(self, along: Array, across: Array) -> tuple[Array, Array]:
         """Vector (along, across) times the conjugate of X + iY.
 
-        It keeps clear of the ray on which the arctangent of `frame` jumps: D keeps to one side of AB, or of the
-        slide's foot, and X > 0.
+        It never crosses the ray on which the arctangent of `frame` jumps: D stays on one side of AB, or of the slide's
+        foot, and X > 0.
         """
         x, y = self.x, self.y
         return along * x + across * y, across * x - along * y
 
     @property
     def lever(self) -> tuple[Array, Array]:
-        """Vector to D from P = -S' u - S1' n, where the normals of the contacts meet: the force runs along it."""
+        """Vector to D from P = -S' u - S1' n, where the contacts' normals meet: the force acts along it."""
         return self.cams.dp + self.x, self.cams.dp1 + self.y
 
 
@@ -238,14 +237,14 @@ class FourBarLoop(CouplerLoop):
     dimensions: ClassVar[tuple[str, ...]] = ("ground", "coupler", "rocker", "joint_offset")
 
     @classmethod
-    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Set the loops up."""
+    def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Loops of linkages with these lengths, driven by these cams."""
         r1, r4 = lengths.ground, lengths.rocker
         x, y, q, near = cls.vector(cams, lengths, np.abs(r1 - r4))
         return cls(side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
         r1, r4 = self.lengths.ground[:, 0], self.lengths.rocker[:, 0]
         margin = self._beyond(np.abs(r1 - r4), extreme)
         far, most = extreme(self.far), r1 + r4
@@ -253,14 +252,14 @@ class FourBarLoop(CouplerLoop):
 
     @cached_property
     def rate(self) -> Array:
-        """Its derivative."""
+        """theta_4'."""
         rate = self.half_rate / self.root
         rate += rate
         return rate
 
     @cached_property
     def second(self) -> Array:
-        """Its second derivative."""
+        """theta_4''."""
         r1, r4 = self.lengths.ground, self.lengths.rocker
         rate, half = self.rate, self.half_second
         return (half + half - ((r1 * r1 + r4 * r4) - self.q) * rate * rate) / self.root
@@ -305,24 +304,24 @@ class FourBarLoop(CouplerLoop):
 
 
 class SliderLoop(CouplerLoop):
-    """The coupler's end D is on a slide, on the line at the height `offset`; far stands for near."""
+    """The coupler's end D is on a slide, on the line at the height `offset`; `far` equals `near`."""
 
     dimensions: ClassVar[tuple[str, ...]] = ("coupler", "offset", "joint_offset")
 
     @classmethod
-    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Set the loops up."""
+    def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Loops of linkages with these lengths, driven by these cams."""
         x, y, q, near = cls.vector(cams, lengths, np.abs(lengths.offset))
         return cls(side, cams, lengths, x, y, q, near, near)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
         return self._beyond(np.abs(self.lengths.offset[:, 0]), extreme)
 
     @cached_property
     def root(self) -> Array:
         """Root of near: D_x."""
-        return self.signed(self.near)
+        return self.signed_root(self.near)
 
     @property
     def output(self) -> Array:
@@ -331,12 +330,12 @@ class SliderLoop(CouplerLoop):
 
     @cached_property
     def rate(self) -> Array:
-        """Its derivative."""
+        """D_x'."""
         return self.half_rate / self.root
 
     @cached_property
     def second(self) -> Array:
-        """Its second derivative."""
+        """D_x''."""
         rate = self.rate
         return (self.half_second - rate * rate) / self.root
 
@@ -374,19 +373,15 @@ def _length(x: Array, y: Array) -> Array:
     return np.sqrt(x * x + y * y)
 
 
-# What computes each kind of linkage.
-ENGINES: dict[type, type[InvertedLoop | FourBarLoop | SliderLoop]] = {
-    FourBar: FourBarLoop,
-    InvertedSliderCrank: InvertedLoop,
-    SliderCrank: SliderLoop,
-}
+Loop: TypeAlias = InvertedLoop | FourBarLoop | SliderLoop
+LOOPS: dict[type, type[Loop]] = {FourBar: FourBarLoop, InvertedSliderCrank: InvertedLoop, SliderCrank: SliderLoop}
 
 
-def engine(linkage: Linkage) -> type[InvertedLoop | FourBarLoop | SliderLoop]:
-    """Return the loops of a linkage's kind."""
-    return ENGINES[type(linkage)]
+def loop_class(linkage: Linkage) -> type[Loop]:
+    """Class of the loops of a linkage's kind."""
+    return LOOPS[type(linkage)]
 
 
 def angles(n: int) -> Array:
-    """Relative angles of n samples, rad (n,)."""
-    return np.arange(n, dtype=np.float64) * (2.0 * math.pi / n)
+    """Relative angles of n even samples of a turn, rad (n,)."""
+    return np.arange(n, dtype=np.float64) * (TURN / n)

@@ -1,4 +1,4 @@
-"""The files of a sweep as bytes by name, and what is left out of them and why."""
+"""The files of a sweep as bytes by name, and those left out, with the reason."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.sweep.gather import MOST_ROWS
-from camgeo.capabilities.sweep.keys import swept
+from camgeo.capabilities.sweep.keys import sweep_figures
 from camgeo.capabilities.sweep.pictures import draw_best, draw_map
-from camgeo.capabilities.sweep.recipes import curve_of, loaded, recipe_text
+from camgeo.capabilities.sweep.recipes import curve_of, recipe_text
 from camgeo.capabilities.sweep.table import as_csv, as_parquet, columns, with_polished
 from camgeo.files.errors import install
 from camgeo.recipe.figures import FIGURES, OF_DWELL
+from camgeo.recipe.loading import read
 from camgeo.report.document import encoded
 from camgeo.report.listed import listed
 from camgeo.version import __version__
@@ -22,10 +23,10 @@ from kin.numeric.records import dataclass, field
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.capabilities.sweep.ask import Ask, Unit
-    from camgeo.capabilities.sweep.gather import Certificate, Gathered, Nearest
+    from camgeo.capabilities.sweep.gather import Certificate, Nearest, Selection
     from camgeo.capabilities.sweep.plan import Axis
     from camgeo.capabilities.sweep.recipes import Best
+    from camgeo.capabilities.sweep.task import Task, Unit
     from camgeo.checks.remedies import Entry
 
 REPORT = "sweep.json"
@@ -37,118 +38,113 @@ _DRAWN = 10  # best designs in the picture of curves
 
 @dataclass()
 class Files:
-    """Files made so far, and those left out with the reason."""
+    """Bytes of files by name, and entries `what`, `why` for those left out."""
 
-    made: dict[str, bytes] = field(default_factory=dict)
+    contents: dict[str, bytes] = field(default_factory=dict)
     skipped: list[dict[str, str]] = field(default_factory=list)
 
-    def make(self, names: Sequence[str], write: Callable[[], Sequence[bytes]]) -> None:
-        """Add files, unless a package is missing: then say so."""
+    def add(self, names: Sequence[str], write: Callable[[], Sequence[bytes]]) -> None:
+        """Add files of these names, or, where a package is missing, an entry that says so."""
         try:
-            self.made.update(zip(names, write(), strict=True))
+            self.contents.update(zip(names, write(), strict=True))
         except ModuleNotFoundError as error:
             why = f"the package {error.name} is missing: {EXTRA}"
             self.skipped.append({"what": ", ".join(names), "why": why})
 
 
 def outputs(
-    ask: Ask,
-    designs: Gathered,
-    best: Sequence[Best],
-    run: Entry,
-    reasons: Sequence[str] = (),
+    task: Task, designs: Selection, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
 ) -> tuple[dict[str, bytes], Entry]:
-    """All files of a sweep, `sweep.json` among them, and what that says. Only its `run` depends on how it was run.
+    """All files of a sweep, `sweep.json` among them, and that report. Its `run` alone depends on how it was computed.
 
-    `reasons` are the words for the numbers of why a design does not turn.
+    `reasons` are the words for the codes of why a design has no figures.
     """
     files = Files()
-    units = ask.units(designs.figures)
-    table, marks = with_polished(designs, best, ask.ranking)
-    told = {name: mark for name, mark in marks.items() if ask.sweep.refine or name != "polished"}
-    heads = columns(ask.plan, table, units, told)
-    files.make(TABLES[:1], lambda: [as_csv(heads)])
-    about = {"recipe": ask.recipe.name, "camgeo": __version__, "units": ask.recipe.units}
-    files.make(TABLES[1:], lambda: [as_parquet(heads, about)])
-    files.make(PICTURES[:2], lambda: _map(ask, designs, best))
+    units = task.units(designs.figures)
+    table, marks = with_polished(designs, best, task.ranking)
+    if not task.sweep.refine:
+        del marks["polished"]
+    heads = columns(task.plan, table, units, marks)
+    files.add(TABLES[:1], lambda: [as_csv(heads)])
+    about = {"recipe": task.recipe.name, "camgeo": __version__, "units": task.recipe.units}
+    files.add(TABLES[1:], lambda: [as_parquet(heads, about)])
+    files.add(PICTURES[:2], lambda: _map_pictures(task, designs, best))
     for design in best:
-        files.made[design.file] = recipe_text(ask, design).encode()
+        files.contents[design.file] = recipe_text(task, design).encode()
     if best:
-        files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
-    report = _report(ask, designs, best, reasons)
+        files.add(PICTURES[2:], lambda: _curve_pictures(task, best, files.contents))
+    report = _report(task, designs, best, reasons)
     report["counts"]["rows"] = table.rows
-    report["screen"] = None if ask.recipe.linkage is not None else _screen(ask, designs.certificate)
+    report["screen"] = None if task.recipe.linkage is not None else _screen(task, designs.certificate)
     for design in best:
         if design.why:
             files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
-    report["files"] = [listed(name, data) for name, data in files.made.items()]
+    report["files"] = [listed(name, data) for name, data in files.contents.items()]
     report["skipped"] = files.skipped
     report["run"] = run
-    files.made[REPORT] = encoded(report).encode()
-    return files.made, report
+    files.contents[REPORT] = encoded(report).encode()
+    return files.contents, report
 
 
-def _named(name: str, unit: str) -> str:
+def _label(name: str, unit: str) -> str:
+    """Label of an axis: `name (unit)`."""
     return f"{name} ({unit})" if unit else name
 
 
-def _map(ask: Ask, designs: Gathered, best: Sequence[Best]) -> list[bytes]:
+def _map_pictures(task: Task, designs: Selection, best: Sequence[Best]) -> list[bytes]:
     """The map as PNG and SVG."""
-    rank = ask.sweep.rank
-    unit = ask.units([rank])[rank]
-    paths = [axis.path for axis in ask.plan.axes]
+    rank = task.sweep.rank
+    unit = task.units([rank])[rank]
+    paths = [axis.path for axis in task.plan.axes]
     flat = len(paths) > 1
     counts = designs.counts
     notes = f"{counts.kept:,} of {counts.computed:,} designs kept"
     if FIGURES[rank].needs is OF_DWELL:
-        notes += f"; band of {_band(ask)}"
+        notes += f"; band of {_band(task)}"
     if len(paths) > 2:
-        notes += f"; each cell shows the best over {_and(paths[2:])}"
+        others = " and ".join(filter(None, (", ".join(paths[2:-1]), paths[-1])))
+        notes += f"; each cell shows the best over {others}"
     cells = designs.cells.scaled(1.0 / unit.divisor)
     places = [[b.values[paths[0]], b.values[paths[1]] if flat else b.figures[rank] / unit.divisor] for b in best]
     pictures = draw_map(
-        f"{ask.recipe.name}: {FIGURES[rank].about.split(',')[0]}",
+        f"{task.recipe.name}: {FIGURES[rank].about.split(',')[0]}",
         cells,
-        _named(rank, unit.name),
-        [_named(path, ask.axis_unit(path)) for path in paths[:2]],
+        _label(rank, unit.name),
+        [_label(path, task.axis_unit(path)) for path in paths[:2]],
         np.array(places).reshape(-1, 2),
         notes=notes,
     )
     return [pictures["png"], pictures["svg"]]
 
 
-def _band(ask: Ask) -> str:
-    """Band of the recipe's dwells, in words."""
-    if ask.recipe.dwell is None:
-        raise ValueError(f"{ask.recipe.name} has no dwell")
-    unit = ask.units(["swing"])["swing"]
-    band = ask.recipe.dwell.band
+def _band(task: Task) -> str:
+    """Band of the recipe's dwells, with its unit."""
+    if task.recipe.dwell is None:
+        raise ValueError(f"{task.recipe.name} has no dwell")
+    unit = task.units(["swing"])["swing"]
+    band = task.recipe.dwell.band
     return f"{(math.degrees(band) if unit.name == 'deg' else band / unit.divisor):.6g} {unit.name}"
 
 
-def _and(paths: Sequence[str]) -> str:
-    return paths[0] if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]}"
-
-
-def _curves(ask: Ask, best: Sequence[Best], files: dict[str, bytes]) -> list[bytes]:
+def _curve_pictures(task: Task, best: Sequence[Best], files: dict[str, bytes]) -> list[bytes]:
     """The best designs' curves as PNG and SVG."""
-    rank = ask.sweep.rank
-    unit = ask.units([rank])[rank]
+    rank = task.sweep.rank
+    unit = task.units([rank])[rank]
     curves, name = [], ""
     for design in best[:_DRAWN]:
-        recipe = loaded(files[design.file].decode(), design)
+        recipe = read(files[design.file], design.file)
         value = f"{design.figures[rank] / unit.divisor:.5g} {unit.name}".rstrip()
         curve, name = curve_of(recipe, f"best-{design.place}: {rank} {value}")
         curves.append(curve)
-    notes = f"shaded: the longest dwell of best-1, band of {_band(ask)}" if curves[0].dwell is not None else ""
+    notes = f"shaded: the longest dwell of best-1, band of {_band(task)}" if curves[0].dwell is not None else ""
     count = "the best design" if len(curves) == 1 else f"the best {len(curves)} designs"
-    pictures = draw_best(f"{ask.recipe.name}: {count}", curves, name, notes=notes)
+    pictures = draw_best(f"{task.recipe.name}: {count}", curves, name, notes=notes)
     return [pictures["png"], pictures["svg"]]
 
 
-def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
-    """What was asked and what came of it, figures in the recipe's units."""
-    sweep, counts, units = ask.sweep, designs.counts, ask.units(swept())
+def _report(task: Task, designs: Selection, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
+    """The report: the sweep, its counts and its best designs, figures in the recipe's units."""
+    sweep, counts, units = task.sweep, designs.counts, task.units(sweep_figures())
     bounds = {
         limit.figure: {
             name: value / units[limit.figure].divisor
@@ -158,15 +154,15 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
         for limit in sweep.limits
     }
     return {
-        "recipe": ask.recipe.name,
-        "about": ask.recipe.about,
+        "recipe": task.recipe.name,
+        "about": task.recipe.about,
         "camgeo": __version__,
-        "units": ask.recipe.units,
+        "units": task.recipe.units,
         "ok": counts.kept > 0,
         "sweep": {
-            "vary": {axis.path: _axis(axis) for axis in ask.plan.axes},
+            "vary": {axis.path: _axis(axis) for axis in task.plan.axes},
             "method": sweep.method,
-            "count": ask.plan.count,
+            "count": task.plan.count,
             "seed": None if sweep.method == "grid" else sweep.seed,
             "angles": sweep.angles,
             "limits": bounds,
@@ -177,7 +173,7 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
         },
         "figures": {
             name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in designs.figures}
-            for name in swept()
+            for name in sweep_figures()
             if name in designs.figures or any(name in design.figures for design in best)
         },
         "counts": {
@@ -191,13 +187,13 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
         },
         "nearest": None
         if designs.nearest is None
-        else _nearest(ask, designs.nearest, units[designs.nearest.limit.figure]),
+        else _nearest(task, designs.nearest, units[designs.nearest.limit.figure]),
         "best": [
             {
                 "file": design.file,
                 "index": design.index,
                 "polished": design.polished,
-                "values": ask.told(design.values),
+                "values": task.values_by_path(design.values.values()),
                 "figures": {name: value / units[name].divisor for name, value in design.figures.items()},
             }
             for design in best
@@ -205,34 +201,33 @@ def _report(ask: Ask, designs: Gathered, best: Sequence[Best], reasons: Sequence
     }
 
 
-def _screen(ask: Ask, certificate: Certificate | None) -> Entry:
-    """Whether figures are estimates, and if so what was worked out exactly and what estimates may be off by."""
+def _screen(task: Task, certificate: Certificate | None) -> Entry:
+    """Whether figures are estimates; if so, what was computed exactly, and the errors of the estimates."""
     if certificate is None:
-        return {"used": False, "why": ask.unscreened}
-    from camgeo.capabilities.sweep.estimate_errors import DESIGNS
-    from camgeo.capabilities.sweep.screen import estimates
+        return {"used": False, "why": task.unscreened}
+    from camgeo.capabilities.sweep.screen import DESIGNS, estimates
 
     return {
         "used": True,
         "estimates": "figures of designs that are not certified, from samples of their motion",
         "certified": certificate.designs,
-        "fell": certificate.fell,
+        "fell": certificate.rejected,
         "greatest_error": {
             name: {
                 "unit": "deg" if estimates()[name].in_degrees else "share of the value",
                 f"of {DESIGNS} random designs": estimates()[name].error,
-                "of the designs worked out here": off,
+                "of the designs worked out here": error,
             }
-            for name, off in certificate.off.items()
+            for name, error in certificate.errors.items()
         },
     }
 
 
-def _nearest(ask: Ask, near: Nearest, unit: Unit) -> Entry:
-    """The design that comes nearest to the limits where none keeps them, its figure in the recipe's unit."""
+def _nearest(task: Task, near: Nearest, unit: Unit) -> Entry:
+    """The design that misses the limits by least where none keeps them, its figure in the recipe's unit."""
     return {
         "index": near.index,
-        "values": {axis.path: axis.told(float(v)) for axis, v in zip(ask.plan.axes, near.values, strict=True)},
+        "values": task.values_by_path(near.values),
         "breaks": near.limit.figure,
         "value": near.value / unit.divisor,
         "unit": unit.name,

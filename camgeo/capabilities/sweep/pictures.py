@@ -1,7 +1,7 @@
 """Pictures of a sweep: the map of its figure, and the output curves of the best designs. PNG and SVG, as bytes.
 
-Drawn with matplotlib's own defaults, whatever the user's are, and without a date, so the same sweep gives the same
-bytes. Colours are separated by those who see few: viridis, and the set of Okabe and Ito.
+Drawn with matplotlib's own defaults, not the user's, and without a date, so the same sweep gives the same bytes.
+Colours differ for the colour-blind too: viridis, and the set of Okabe and Ito.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import textwrap
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,17 +23,15 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     from camgeo.capabilities.sweep.gather import Cells
-
-    Floats: TypeAlias = NDArray[np.float64]
+    from kin.numeric.arrays import Array
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
-_PLAIN = {OUTSIDE: ("#d9d9d9", "breaks a limit"), STUCK: ("#8c8c8c", "does not turn")}
+_GREYS = {OUTSIDE: ("#d9d9d9", "breaks a limit"), STUCK: ("#8c8c8c", "does not turn")}
 _DOTS = 150  # per inch, of the PNG
 _TITLE, _NOTES = 75, 100  # letters in a line
-_FEW = 60  # values up to which a curve shows each as a point
+_MOST_POINTS = 60  # values up to which a curve shows each as a point
 
 
 @dataclass(frozen=True)
@@ -41,21 +39,21 @@ class Curve:
     """A design's output over the shaft angle (degrees), and its longest dwell, (start, length) in degrees, if any."""
 
     label: str
-    shaft: Floats
-    output: Floats
+    shaft: Array
+    output: Array
     dwell: tuple[float, float] | None = None
 
 
 def draw_map(
-    title: str, cells: Cells, label: str, names: Sequence[str], best: Floats, *, notes: str = ""
+    title: str, cells: Cells, label: str, names: Sequence[str], best: Array, *, notes: str = ""
 ) -> dict[str, bytes]:
-    """The figure of the ranking over the cells' one or two axes: {"png": ..., "svg": ...}.
+    """Picture of the ranking's figure over the cells' one or two axes, as bytes: {"png": ..., "svg": ...}.
 
-    `label` and `names` are those of the figure and the axes, with units; `best` (n, 2) the places of the best designs,
-    the first first. Raises ModuleNotFoundError without matplotlib.
+    `label` is that of the figure and `names` are those of the axes, with units; `best` (n, 2) are the coordinates of
+    the best designs, best first. Raises ModuleNotFoundError without matplotlib.
     """
     flat = len(cells.axes) == 2
-    with _sheet() as (figure, axes):
+    with _blank() as (figure, axes):
         handles = _draw_cells(figure, axes, cells, label) if flat else _draw_curve(axes, cells)
         if len(best):
             x, y = best.T
@@ -69,15 +67,15 @@ def draw_map(
         for axis, ticks in zip(cells.axes, (axes.set_xticks, axes.set_yticks), strict=False):
             if axis.words:
                 ticks(list(axis.values), axis.words)
-        _head(axes, title, notes)
+        _add_title(axes, title, notes)
         if handles:
             figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
         return _encoded(figure)
 
 
 def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "") -> dict[str, bytes]:
-    """Output of the best designs over a turn of the shaft, the first drawn strongest, its dwell marked."""
-    with _sheet() as (figure, axes):
+    """Picture of the best designs' output over a turn, as bytes by kind; the first is boldest, its dwell shaded."""
+    with _blank() as (figure, axes):
         for number, curve in enumerate(curves):
             axes.plot(
                 curve.shaft,
@@ -99,19 +97,19 @@ def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "
         axes.set_xlabel("shaft angle (deg)")
         axes.set_ylabel(label)
         axes.grid(color="#e6e6e6", linewidth=0.6)
-        _head(axes, title, notes)
+        _add_title(axes, title, notes)
         figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize="small")
         return _encoded(figure)
 
 
 def _draw_cells(figure: Figure, axes: Axes, cells: Cells, label: str) -> list[Artist]:
-    """Cells of two axes in colour, those without a kept design in grey."""
+    """Draw cells of two axes in colour, those without a kept design in grey; return the legend's entries."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
     x, y = cells.edges
     handles: list[Artist] = []
-    for state, (colour, text) in _PLAIN.items():
+    for state, (colour, text) in _GREYS.items():
         where = np.where(cells.state == state, 1.0, np.nan).T
         if np.isfinite(where).any():
             axes.pcolormesh(x, y, where, cmap=ListedColormap([colour]), rasterized=True)
@@ -125,13 +123,13 @@ def _draw_cells(figure: Figure, axes: Axes, cells: Cells, label: str) -> list[Ar
 
 
 def _draw_curve(axes: Axes, cells: Cells) -> list[Artist]:
-    """The figure over one axis, broken where no design is kept; what becomes of those is drawn as a band of grey."""
+    """Draw the figure over one axis, where no design is kept a grey band; return the legend's entries."""
     x, best, state = cells.centres[0], cells.best[:, 0], cells.state[:, 0]
-    seen = state != NONE
-    marker = "." if len(x) <= _FEW else ""
-    axes.plot(x[seen], best[seen], "-", marker=marker, color=_COLOURS[0], linewidth=1.6)
+    filled = state != NONE
+    marker = "." if len(x) <= _MOST_POINTS else ""
+    axes.plot(x[filled], best[filled], "-", marker=marker, color=_COLOURS[0], linewidth=1.6)
     handles: list[Artist] = []
-    for kind, (colour, text) in _PLAIN.items():
+    for kind, (colour, text) in _GREYS.items():
         bands = [(cells.edges[0][i], cells.edges[0][i + 1] - cells.edges[0][i]) for i in np.flatnonzero(state == kind)]
         if bands:
             across = axes.get_xaxis_transform()
@@ -144,8 +142,8 @@ def _draw_curve(axes: Axes, cells: Cells) -> list[Artist]:
 
 
 @contextmanager
-def _sheet() -> Iterator[tuple[Figure, Axes]]:
-    """An empty picture under matplotlib's defaults."""
+def _blank() -> Iterator[tuple[Figure, Axes]]:
+    """An empty figure and its axes, under matplotlib's defaults."""
     prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -158,8 +156,9 @@ def _sheet() -> Iterator[tuple[Figure, Axes]]:
         yield figure, figure.add_subplot()
 
 
-def _head(axes: Axes, title: str, notes: str) -> None:
-    # broken into lines: whoever lays the picture out makes room for the longest
+def _add_title(axes: Axes, title: str, notes: str) -> None:
+    """Write the title above the axes, and the notes below it in small letters."""
+    # in several lines, as the layout leaves space for the longest
     title = textwrap.fill(title, _TITLE)
     lines = textwrap.wrap(notes, _NOTES)
     axes.set_title(title + "\n" * len(lines), loc="left", fontweight="bold", fontsize="medium")
@@ -168,7 +167,7 @@ def _head(axes: Axes, title: str, notes: str) -> None:
 
 
 def _encoded(figure: Figure) -> dict[str, bytes]:
-    """The picture as PNG and SVG, without date or program."""
+    """The picture as PNG and SVG, without date or program, by kind."""
     leave_out: dict[str, Mapping[str, None]] = {
         "png": {"Software": None},
         "svg": {"Date": None, "Creator": None},

@@ -1,8 +1,7 @@
-"""Which designs a sweep looks at: the values of each follow from its index alone.
+"""The designs of a sweep: the values of each follow from its index alone.
 
-So a design can be computed anywhere and at any time, and the cut into chunks is part of the plan: no engine and no
-number of workers changes it. That matters for the last bit too: vectorised arithmetic may round the last designs of an
-array otherwise than those in its middle.
+So a design can be computed anywhere and at any time. The division into chunks is part of the plan, and no engine or
+number of workers changes it: vectorised arithmetic may round the last designs of an array otherwise than others.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Floats: TypeAlias = NDArray[np.float64]
+    from kin.numeric.arrays import Array
 
 Method: TypeAlias = Literal["grid", "random", "sobol"]
 
@@ -32,9 +31,9 @@ _WORDS = 4  # random words that one step of Philox's counter gives
 
 @dataclass(frozen=True)
 class Axis:
-    """One field that is varied, in the recipe's units: it takes `values`, or where there are none any in low..high.
+    """One varied field, in the recipe's units: it takes `values`, or where there are none any in low..high.
 
-    Of a field that takes `words` the values count them from 0.
+    The values of a field that takes `words` are their indices.
     """
 
     path: str
@@ -45,15 +44,15 @@ class Axis:
 
     @property
     def range(self) -> float:
-        """What distances between values are shares of; words lie apart."""
+        """Difference of the ends, as the unit of distances between values; 1 for words, which so lie far apart."""
         return 1.0 if self.words else abs(self.high - self.low)
 
-    def told(self, value: float) -> float | str:
-        """A value as the recipe has it."""
+    def written(self, value: float) -> float | str:
+        """A value as the recipe writes it, a word by its index."""
         return self.words[int(value)] if self.words else value
 
-    def spread(self, share: Floats) -> Floats:
-        """Values for shares in [0, 1): equally likely ones of a list, else even between the ends."""
+    def spread(self, share: Array) -> Array:
+        """Values for shares in [0, 1): of a list each for an equal part, else even between the ends."""
         if self.values:
             return np.array(self.values)[(share * len(self.values)).astype(np.int64)]
         return self.low * (1.0 - share) + self.high * share
@@ -94,11 +93,11 @@ class Plan:
         return -(-self.count // self.chunk)
 
     def span(self, number: int) -> tuple[int, int]:
-        """First design of chunk `number`, and the one behind its last."""
+        """Index of the first design of chunk `number`, and that behind its last."""
         return number * self.chunk, min((number + 1) * self.chunk, self.count)
 
-    def values(self, first: int, last: int) -> Floats:
-        """Values of the designs first .. last - 1, shape (last - first, axes), in the recipe's units."""
+    def values(self, first: int, last: int) -> Array:
+        """Values of designs first .. last - 1, (last - first, axes), in the recipe's units. ValueError beyond them."""
         if not 0 <= first <= last <= self.count:
             raise ValueError(f"designs {first} to {last} of {self.count}")
         if self.method == "grid":
@@ -111,11 +110,11 @@ class Plan:
 
 
 def steps(low: float, high: float, count: int) -> tuple[float, ...]:
-    """`count` values at equal distances, both ends exact."""
+    """`count` values at equal distances from `low` to `high`, both ends exact."""
     return tuple(float(value) for value in np.linspace(low, high, count))
 
 
-def _random(first: int, last: int, width: int, seed: int) -> Floats:
+def _random(first: int, last: int, width: int, seed: int) -> Array:
     """Even numbers in [0, 1), shape (last - first, width), of which each depends on seed and place alone."""
     per = -(-width // _WORDS)
     words = np.random.Philox(key=seed, counter=first * per).random_raw((last - first) * per * _WORDS)
@@ -123,7 +122,7 @@ def _random(first: int, last: int, width: int, seed: int) -> Floats:
     return np.ldexp((rows >> np.uint64(11)).astype(np.float64), -53)
 
 
-def _sobol(first: int, last: int, width: int, seed: int) -> Floats:
+def _sobol(first: int, last: int, width: int, seed: int) -> Array:
     """Points first .. last - 1 of the scrambled sequence, shape (last - first, width).
 
     In Gray code order point i is a fixed point combined by exclusive or with one direction for each bit of i, so any

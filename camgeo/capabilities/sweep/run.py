@@ -1,13 +1,13 @@
-"""One sweep from its plan to its files: chunks, by any engine; what they come to; the best polished; the outputs.
+"""The chunks of a sweep: computed by any engine, kept on disk, and gathered in their order.
 
-What a sweep comes to depends on its job alone. The chunks it has are those on disk, whoever computed them and when, and
-everything behind them is computed here from those chunks in their order.
+The outcome of a sweep depends on its job alone, not on who computed its chunks, or when.
 """
 
 from __future__ import annotations
 
 import time
 from contextlib import closing
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.capabilities.sweep import engines
@@ -21,13 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from camgeo.capabilities.sweep.gather import Gathered, Ranking
+    from camgeo.capabilities.sweep.gather import Ranking, Selection
     from camgeo.recipe.limits import Limit
+    from kin.numeric.arrays import Array
 
-# hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
+# called with what is counted, how many are done, of how many, and the seconds they took
 Listener: TypeAlias = "Callable[[str, int, int, float], None]"
 
 FOLDER = "sweep"  # of a recipe's output folder, with a folder for each job in it
@@ -35,17 +33,17 @@ _SHORT = 16  # digits of the key that name the folder
 
 
 @dataclass(frozen=True)
-class How:
-    """Who computes: the scheduler at an address, else so many processes at most, else as many as there are cores."""
+class Engine:
+    """Who computes chunks: the scheduler at an address, else at most `jobs` processes, by default one a core."""
 
     jobs: int | None = None
     scheduler: str | None = None
 
     def results(self, job: Job, numbers: Sequence[int]) -> engines.Results:
-        """Chunks as they land."""
+        """Numbers of chunks and bytes of their files, as they are done."""
         if self.scheduler is not None:
             return engines.dask(job, numbers, self.scheduler)
-        return engines.here(job, numbers, self.processes)
+        return engines.spread(partial(result, job, key=job.key), numbers, self.processes)
 
     def __str__(self) -> str:
         if self.scheduler is not None:
@@ -56,13 +54,13 @@ class How:
 
     @property
     def processes(self) -> int:
-        """Processes of this machine for what is left to do here in the end."""
+        """Processes at most on this machine, also for what follows the chunks."""
         return self.jobs or workers.available()
 
 
 @dataclass(frozen=True)
 class Work:
-    """What this run did: designs computed and found on disk, chunk files that were damaged, and seconds spent."""
+    """What a run did: designs computed, designs reused from disk, damaged chunk files, and seconds spent."""
 
     computed: int
     reused: int
@@ -71,37 +69,40 @@ class Work:
 
 
 def chunks_of(job: Job, folder: Path) -> Chunks:
-    """Where the chunks of a job are kept, below the output folder of its recipe."""
+    """Chunks of a job, in a folder named by its key below the output folder of its recipe."""
     key = job.key
     return Chunks(folder / FOLDER / key[:_SHORT], key, job.plan)
 
 
-def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, listener: Listener | None = None) -> Work:
-    """Compute every chunk that is not on disk, each written as it lands.
+def compute(job: Job, chunks: Chunks, engine: Engine, *, fresh: bool = False, listener: Listener | None = None) -> Work:
+    """Compute every chunk that is not on disk, or all where `fresh`; each is written as soon as it is done.
 
-    Raises what the engine raises, and OSError; what has landed by then stays.
+    Raises what the engine raises, and OSError; chunks written by then stay.
     """
     chunks.open(fresh=fresh)
-    missing, damaged = chunks.sort_out()
+    missing, damaged = chunks.missing_chunks()
     started = time.perf_counter()
     sizes = {number: last - first for number in missing for first, last in (job.plan.span(number),)}
-    wanted, done = sum(sizes.values()), 0
+    total, done = sum(sizes.values()), 0
     if missing:
-        with closing(how.results(job, missing)) as results:
+        with closing(engine.results(job, missing)) as results:
             for number, data in results:
                 chunks.write(number, data)
                 done += sizes[number]
                 if listener is not None:
-                    listener("designs", done, wanted, time.perf_counter() - started)
-    return Work(done, job.plan.count - wanted, damaged, time.perf_counter() - started)
+                    listener("designs", done, total, time.perf_counter() - started)
+    return Work(done, job.plan.count - total, damaged, time.perf_counter() - started)
 
 
-def gathered(job: Job, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None) -> Gathered:
-    """What the chunks come to. One that was spoilt or taken away meanwhile is computed again."""
+def gather_chunks(
+    job: Job, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
+) -> Selection:
+    """The designs that a ranking selects, see `gather`. Chunks damaged or removed meanwhile are computed again."""
     return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 
 
-def _figures(job: Job, chunks: Chunks, number: int) -> Mapping[str, NDArray[np.float64]]:
+def _figures(job: Job, chunks: Chunks, number: int) -> Mapping[str, Array]:
+    """Figures (m,) by name of the designs of a chunk."""
     try:
         figures = chunks.read(number)
     except ChunkError:

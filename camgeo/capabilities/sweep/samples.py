@@ -1,9 +1,9 @@
 """A cam's motion and sizes as plain numbers, and how they follow the numbers of its recipe.
 
 A motion is sampled over the pieces between its breaks, each on an even grid of its own with both ends, and its
-derivatives are taken by the share of the piece. So strokes, harmonics and the shaft's place change them linearly and
-angles the widths of pieces alone, whatever the family: the numbers of a sweep are tried one by one, and those that turn
-out to act linearly are set by two products. The motion is worked out anew where the others change.
+derivatives are taken by the share of the piece. So strokes, harmonics and the shaft's place change them linearly, and
+angles change the widths of pieces alone, whatever the family. The numbers of a sweep are tried one by one: those that
+act linearly only move the samples by their slopes; for the others the motion is sampled anew.
 """
 
 from __future__ import annotations
@@ -18,19 +18,17 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from camgeo.cams.family import Cam, ExactCam
     from kin.numeric.arrays import Array, Indices, Mask
 
 ORDER = 3  # derivatives of the motion: figures need as many
-_LEAST = 12  # cells of a piece, however narrow
-_SAME = 1e-9  # of the greatest: a number that acts linearly is off by less
+_LEAST_CELLS = 12  # of a piece, however narrow
+_ROUNDING = 1e-9  # of the greatest value: where a number acts linearly the samples deviate by less
 _TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)  # shares of all ranges at which a design is looked for
-_MORE = 24  # and so many elsewhere
+_RANDOM_TRIALS = 24  # and so many elsewhere
 
 
-class Shot(NamedTuple):
+class CamSample(NamedTuple):
     """One cam: its sizes by name (mm, rad); widths of pieces (p,), rad; the motion by shares of pieces (4, n).
 
     `counts` (p,) are the cells of the pieces. A plate's motion is its support function, any other's the displacement.
@@ -41,16 +39,31 @@ class Shot(NamedTuple):
     rows: Array
     counts: tuple[int, ...]
 
-    @property
-    def shape(self) -> tuple[object, ...]:
-        """What shots must share to be compared."""
-        return tuple(self.sizes), self.counts
+    def comparable(self, other: CamSample) -> bool:
+        """Whether both have the same sizes, and as many cells in each piece."""
+        return tuple(self.sizes) == tuple(other.sizes) and self.counts == other.counts
+
+    def plus(self, other: CamSample, factor: float) -> CamSample:
+        """Sum of the sample and a factor times another that is comparable."""
+        sizes = {name: value + factor * other.sizes[name] for name, value in self.sizes.items()}
+        return CamSample(sizes, self.widths + factor * other.widths, self.rows + factor * other.rows, self.counts)
+
+    def equals(self, other: CamSample) -> bool:
+        """Whether two samples are the same but for rounding."""
+        if not self.comparable(other):
+            return False
+        sizes = np.array(list(self.sizes.values())), np.array(list(other.sizes.values()))
+        pairs = [sizes, (self.widths, other.widths), *zip(self.rows, other.rows, strict=True)]
+        return all(
+            np.allclose(a, b, rtol=0.0, atol=_ROUNDING * max(np.nanmax(np.abs(a)), 1e-300), equal_nan=True)
+            for a, b in pairs
+        )
 
 
-Shoot: TypeAlias = Callable[["Array"], "Shot | None"]
+Sampling: TypeAlias = Callable[["Array"], "CamSample | None"]
 
 
-class Sampled(NamedTuple):
+class MotionBatch(NamedTuple):
     """Cams of m designs: sizes by name (m, 1); the motion with its derivatives (4, g, n), where g is m or 1.
 
     `inside` (n - 2,) says which of the samples but the first and the last lie within a piece.
@@ -61,8 +74,8 @@ class Sampled(NamedTuple):
     inside: Mask
 
 
-def sizes_of(cam: Cam, exact: ExactCam) -> dict[str, float]:
-    """Radius of the base circle, and the numbers of the first contact's guide and touch."""
+def _sizes(cam: Cam, exact: ExactCam) -> dict[str, float]:
+    """Radius of the base circle, mm, and the numbers of the first contact's guide and touch, mm and rad, by name."""
     first = exact.follower.contacts[0]
     numbers = {**vars(first.guide), **vars(first.touch)}
     sizes = {name: float(value) for name, value in numbers.items() if isinstance(value, int | float)}
@@ -70,7 +83,7 @@ def sizes_of(cam: Cam, exact: ExactCam) -> dict[str, float]:
     return {"base": base, "radius": 0.0, **sizes}
 
 
-def shot_of(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> Shot:
+def sample_cam(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> CamSample:
     """Sample a cam at about so many angles of a turn, or by as many cells as `counts` say where it has as many pieces.
 
     Raises IntentError for a cam that does not exist.
@@ -82,7 +95,7 @@ def shot_of(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> Shot:
     begins = breaks if len(breaks) else np.zeros(1)
     widths = np.diff(np.append(begins, begins[0] + period))
     if len(counts) != len(widths):
-        counts = tuple(max(_LEAST, math.ceil(count * width / TURN)) for width in widths)
+        counts = tuple(max(_LEAST_CELLS, math.ceil(count * width / TURN)) for width in widths)
     share = np.concatenate([np.arange(n + 1) / n for n in counts])
     piece = np.repeat(np.arange(len(counts)), np.array(counts) + 1)
     theta = begins[piece] + share * widths[piece]
@@ -90,168 +103,132 @@ def shot_of(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> Shot:
     ends = share == 1.0
     rows = np.empty((ORDER + 1, len(theta)))
     rows[:, ~ends], rows[:, ends] = law(theta[~ends], ORDER, 1), law(theta[ends], ORDER, -1)
-    return Shot(sizes_of(cam, exact), widths, rows * widths[piece] ** np.arange(ORDER + 1)[:, None], counts)
-
-
-def _plus(shot: Shot, other: Shot, factor: float) -> Shot:
-    """One shot, and a factor times another."""
-    sizes = {name: value + factor * other.sizes[name] for name, value in shot.sizes.items()}
-    return Shot(sizes, shot.widths + factor * other.widths, shot.rows + factor * other.rows, shot.counts)
-
-
-def _times(shot: Shot, factor: float) -> Shot:
-    sizes = {name: factor * value for name, value in shot.sizes.items()}
-    return Shot(sizes, factor * shot.widths, factor * shot.rows, shot.counts)
-
-
-def _alike(one: Shot, other: Shot) -> bool:
-    """Whether two shots are the same but for rounding."""
-    if one.shape != other.shape:
-        return False
-    pairs = [(np.array(list(one.sizes.values())), np.array(list(other.sizes.values()))), (one.widths, other.widths)]
-    pairs += list(zip(one.rows, other.rows, strict=True))
-    return all(
-        np.allclose(a, b, rtol=0.0, atol=_SAME * max(np.nanmax(np.abs(a)), 1e-300), equal_nan=True) for a, b in pairs
-    )
+    return CamSample(_sizes(cam, exact), widths, rows * widths[piece] ** np.arange(ORDER + 1)[:, None], counts)
 
 
 @dataclass(frozen=True, eq=False)
 class Template:
-    """How a cam follows the numbers (k,) of a recipe: a centre, and the slope of all by each number that acts linearly.
+    """How a cam depends on the numbers (k,) of a recipe: a centre, and a slope by each number that acts linearly.
 
-    `anew` are the columns of the numbers for which the motion is worked out anew. `shoot` samples the cam with given
-    numbers, None where there is none.
+    `resampled` are the columns of the other numbers, for which the motion is sampled anew. `sample` gives the cam with
+    some numbers, None where there is none; `centre_cam` is that with the numbers `centre`.
     """
 
-    shoot: Shoot
+    sample: Sampling
     centre: Array
-    shot: Shot
-    slopes: dict[int, Shot]
-    anew: tuple[int, ...]
+    centre_cam: CamSample
+    slopes: dict[int, CamSample]
+    resampled: tuple[int, ...]
 
     @staticmethod
-    def of(anyhow: Callable[[Array, tuple[int, ...]], Shot | None], low: Array, high: Array) -> Template | None:
-        """Try the numbers between their ends (k,); None where no design turns up.
+    def fit(
+        sample_cells: Callable[[Array, tuple[int, ...]], CamSample | None], low: Array, high: Array
+    ) -> Template | None:
+        """Template for numbers between ends (k,); None where no design is met.
 
-        `anyhow` samples the cam with given numbers by given counts of cells, if any.
+        `sample_cells` samples the cam with some numbers, by the given counts of cells, if any.
         """
-        found = _centre(lambda values: anyhow(values, ()), low, high)
-        if found is None:
+        trials = (*(low + share * (high - low) for share in _TRIALS), *_random_numbers(low, high))
+        centres = ((numbers, sample_cells(numbers, ())) for numbers in trials)
+        centre, cam = next(((numbers, cam) for numbers, cam in centres if cam is not None), (low, None))
+        if cam is None:
             return None
-        centre, shot = found
-
-        def shoot(values: Array) -> Shot | None:
-            return anyhow(values, shot.counts)
-
-        slopes, anew = dict[int, Shot](), list[int]()
+        slopes, resampled = dict[int, CamSample](), list[int]()
+        template = Template(lambda numbers: sample_cells(numbers, cam.counts), centre, cam, slopes, ())
         for column in range(len(centre)):
-            slope = _slope(shoot, centre, shot, column, (low[column], high[column]))
+            slope = template._slope(column, low[column], high[column])
             if slope is None:
-                anew.append(column)
+                resampled.append(column)
             else:
                 slopes[column] = slope
-        template = Template(shoot, centre, shot, slopes, tuple(anew))
-        if anew or not template._adds_up(low, high):
-            moving = [column for column, slope in slopes.items() if slope.rows.any() or slope.widths.any()]
-            template = template._without(moving)
-        return template
+        if resampled or not template._slopes_add_up(low, high):
+            resampled += [column for column, slope in slopes.items() if slope.rows.any() or slope.widths.any()]
+            slopes = {column: slope for column, slope in slopes.items() if column not in resampled}
+        return Template(template.sample, centre, cam, slopes, tuple(sorted(resampled)))
 
-    def _without(self, columns: Sequence[int]) -> Template:
-        left = {column: slope for column, slope in self.slopes.items() if column not in columns}
-        return Template(self.shoot, self.centre, self.shot, left, tuple(sorted({*self.anew, *columns})))
+    def _slope(self, column: int, low: float, high: float) -> CamSample | None:
+        """Derivative of the cam by one number; None where it is not linear, or too few designs show it."""
+        seen: list[tuple[float, CamSample]] = []
+        for share in (0.0, 1.0, 0.7, 0.3, 0.55, 0.45):
+            numbers = self.centre.copy()
+            numbers[column] = low + share * (high - low)
+            step = float(numbers[column] - self.centre[column])
+            cam = self.sample(numbers) if step else None
+            if cam is None:
+                continue
+            if not cam.comparable(self.centre_cam):
+                return None
+            seen.append((step, cam))
+            if len(seen) == 3:
+                break
+        if len(seen) < 2:
+            return None
+        step, cam = seen[0]
+        change = cam.plus(self.centre_cam, -1.0)
+        factor, sizes = 1.0 / step, dict[str, float]()
+        for name, value in change.sizes.items():
+            slope = factor * value
+            sizes[name] = slope if abs(slope * step) > _ROUNDING * abs(self.centre_cam.sizes[name]) else 0.0
+        widths, rows = factor * change.widths, factor * change.rows
+        if np.abs(widths * step).max() <= _ROUNDING:
+            widths = 0.0 * widths
+        if np.abs(rows * step).max() <= _ROUNDING * np.abs(self.centre_cam.rows).max():
+            rows = 0.0 * rows
+        slopes = CamSample(sizes, widths, rows, cam.counts)
+        return slopes if all(cam.equals(self.centre_cam.plus(slopes, step)) for step, cam in seen) else None
 
-    def _adds_up(self, low: Array, high: Array) -> bool:
-        """Whether designs in which all numbers differ from the centre are as the slopes have them."""
-        for values in _places(low, high):
-            shot = self.shoot(values)
-            if shot is not None and (values != self.centre).any():
-                guess = self.shot
+    def _slopes_add_up(self, low: Array, high: Array) -> bool:
+        """Whether a design in which all numbers differ from the centre is the sum of the slopes."""
+        for numbers in _random_numbers(low, high):
+            cam = self.sample(numbers)
+            if cam is not None and (numbers != self.centre).any():
+                linear = self.centre_cam
                 for column, slope in self.slopes.items():
-                    guess = _plus(guess, slope, values[column] - self.centre[column])
-                return _alike(shot, guess)
+                    linear = linear.plus(slope, numbers[column] - self.centre[column])
+                return cam.equals(linear)
         return len(self.slopes) < 2
 
-    def sampled(self, values: Array) -> list[tuple[Indices, Sampled]]:
-        """Groups of the designs (m, k) by their rows, with their cams; without those that do not exist."""
-        if not self.anew:
-            return [(np.arange(len(values)), self._moved(self.shot, values))]
-        distinct, which = np.unique(values[:, self.anew], axis=0, return_inverse=True)
+    def sample_designs(self, values: Array) -> list[tuple[Indices, MotionBatch]]:
+        """Groups of the designs (m, k): their rows, and their cams. Designs that do not exist are in none."""
+        if not self.resampled:
+            return [(np.arange(len(values)), self._shift(self.centre_cam, values, self.centre))]
+        distinct, which = np.unique(values[:, self.resampled], axis=0, return_inverse=True)
         groups = []
-        for i, own in enumerate(distinct):
+        for i, shared in enumerate(distinct):
             numbers = self.centre.copy()
-            numbers[list(self.anew)] = own
-            shot = self.shoot(numbers)
+            numbers[list(self.resampled)] = shared
+            cam = self.sample(numbers)
             rows = np.flatnonzero(which.reshape(-1) == i)
-            if shot is None and self.slopes:  # beside the centre's sizes, not beside its own
+            if cam is None and self.slopes:  # it may exist beside the sizes of a design, if not beside the centre's
                 numbers = values[rows[0]]
-                shot = self.shoot(numbers)
-            if shot is not None:
-                groups.append((rows, self._moved(shot, values[rows], numbers)))
+                cam = self.sample(numbers)
+            if cam is not None:
+                groups.append((rows, self._shift(cam, values[rows], numbers)))
         return groups
 
-    def _moved(self, shot: Shot, values: Array, centre: Array | None = None) -> Sampled:
-        """The cams of designs from one of them by the slopes."""
-        by = {column: values[:, column] - (self.centre if centre is None else centre)[column] for column in self.slopes}
+    def _shift(self, cam: CamSample, values: Array, numbers: Array) -> MotionBatch:
+        """The cams of designs (m, k) from the cam with `numbers` (k,), by the slopes."""
+        steps = {column: values[:, column] - numbers[column] for column in self.slopes}
         sizes = {
-            name: value + sum((by[k] * self.slopes[k].sizes[name] for k in by), np.zeros(len(values)))
-            for name, value in shot.sizes.items()
+            name: value + sum((steps[k] * self.slopes[k].sizes[name] for k in steps), np.zeros(len(values)))
+            for name, value in cam.sizes.items()
         }
-        rows, widths = shot.rows[:, None, :], shot.widths[None]
+        rows, widths = cam.rows[:, None, :], cam.widths[None]
         for column, slope in self.slopes.items():
             if slope.rows.any():
-                rows = rows + by[column][None, :, None] * slope.rows[:, None, :]
+                rows = rows + steps[column][None, :, None] * slope.rows[:, None, :]
             if slope.widths.any():
-                widths = widths + by[column][:, None] * slope.widths
-        counts = np.array(shot.counts) + 1
-        piece = np.repeat(np.arange(len(counts)), counts)
-        width = widths[:, piece]
+                widths = widths + steps[column][:, None] * slope.widths
+        counts = np.array(cam.counts) + 1
+        width = widths[:, np.repeat(np.arange(len(counts)), counts)]
         rows = np.stack([rows[0] + 0.0 * width, rows[1] / width, rows[2] / width**2, rows[3] / width**3])
         inside = np.ones(counts.sum(), dtype=np.bool_)
         last = np.cumsum(counts) - 1
         inside[last] = inside[last + 1 - counts] = False
-        return Sampled({name: column[:, None] for name, column in sizes.items()}, rows, inside[1:-1])
+        return MotionBatch({name: column[:, None] for name, column in sizes.items()}, rows, inside[1:-1])
 
 
-def _places(low: Array, high: Array) -> list[Array]:
+def _random_numbers(low: Array, high: Array) -> list[Array]:
+    """Numbers (k,) between their ends, the same at each call."""
     rng = np.random.default_rng(3)
-    return [low + share * (high - low) for share in rng.random((_MORE, len(low)))]
-
-
-def _centre(shoot: Shoot, low: Array, high: Array) -> tuple[Array, Shot] | None:
-    """A design that exists, in the middle if possible."""
-    for values in (*(low + share * (high - low) for share in _TRIALS), *_places(low, high)):
-        shot = shoot(values)
-        if shot is not None:
-            return values, shot
-    return None
-
-
-def _slope(shoot: Shoot, centre: Array, shot: Shot, column: int, ends: tuple[float, float]) -> Shot | None:
-    """How a shot follows one number; None where not linearly, or too few designs show it."""
-    low, high = ends
-    seen: list[tuple[float, Shot]] = []
-    for share in (0.0, 1.0, 0.7, 0.3, 0.55, 0.45):
-        values = centre.copy()
-        values[column] = low + share * (high - low)
-        by = float(values[column] - centre[column])
-        moved = shoot(values) if by else None
-        if moved is None:
-            continue
-        if moved.shape != shot.shape:
-            return None
-        seen.append((by, moved))
-        if len(seen) == 3:
-            break
-    if len(seen) < 2:
-        return None
-    by, moved = seen[0]
-    slope = _times(_plus(moved, shot, -1.0), 1.0 / by)
-    sizes = {
-        name: value if abs(value * by) > _SAME * abs(shot.sizes[name]) else 0.0 for name, value in slope.sizes.items()
-    }
-    flat = np.abs(slope.rows * by).max() <= _SAME * np.abs(shot.rows).max()
-    still = np.abs(slope.widths * by).max() <= _SAME
-    slope = Shot(
-        sizes, 0.0 * slope.widths if still else slope.widths, 0.0 * slope.rows if flat else slope.rows, slope.counts
-    )
-    return slope if all(_alike(other, _plus(shot, slope, step)) for step, other in seen) else None
+    return [low + share * (high - low) for share in rng.random((_RANDOM_TRIALS, len(low)))]

@@ -1,7 +1,7 @@
 """Figures of many cams at once, without a linkage: estimates, from which a sweep chooses what it works out exactly.
 
-An extreme between two samples is that of the parabola through three of them. What the estimates may be off by was
-measured (`Estimated.error`, `benchmarks/sweep.py screen`); whatever a sweep keeps is certified by the exact design.
+An extreme between two samples is that of the parabola through three of them. How far the estimates are off was
+measured (`FigureEstimate.error`); whatever a sweep keeps is certified by the exact design.
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.sweep.cams import FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
-from camgeo.capabilities.sweep.contours import MAKERS, plate
-from camgeo.capabilities.sweep.estimate_errors import DEGREES, ERRORS
-from camgeo.capabilities.sweep.keys import varied
-from camgeo.capabilities.sweep.samples import Template, shot_of
+from camgeo.capabilities.sweep.contours import GUIDED, plate
+from camgeo.capabilities.sweep.keys import varied_fields
+from camgeo.capabilities.sweep.samples import Template, sample_cam
 from camgeo.recipe.figures import (
     BASE_RADIUS,
     CONTACT_TRAVEL,
@@ -45,51 +44,52 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.sweep.cams import Codes
     from camgeo.capabilities.sweep.contours import Contours
-    from camgeo.capabilities.sweep.samples import Sampled, Shot
+    from camgeo.capabilities.sweep.samples import CamSample, MotionBatch
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
 
+DESIGNS = 1000  # random ones on which the errors of the estimates were measured
 _BLOCK = 24_000  # samples of a block: two dozen arrays of them stay in a cache
 
 
 @dataclass(frozen=True, eq=False)
-class Cams:
-    """Cams of m designs, sampled: what figures are taken from."""
+class ScreenedCams:
+    """Sampled cams of m designs at n places each, from which figures are estimated."""
 
     recipe: Recipe
-    sampled: Sampled
+    motion: MotionBatch
     contours: Contours
     side: Side
 
     def most(self, rows: Array) -> Array:
         """Greatest value of rows (m, n) over the turn, (m,)."""
         left, middle, right = rows[:, :-2], rows[:, 1:-1], rows[:, 2:]
-        bent, leaning = 2.0 * middle - left - right, right - left
-        crest = self.sampled.inside & (bent > 0.0) & (np.abs(leaning) <= 2.0 * bent)
-        more = np.divide(leaning * leaning, 8.0 * bent, out=np.zeros_like(bent), where=crest)
+        bend, lean = 2.0 * middle - left - right, right - left
+        crest = self.motion.inside & (bend > 0.0) & (np.abs(lean) <= 2.0 * bend)
+        more = np.divide(lean * lean, 8.0 * bend, out=np.zeros_like(bend), where=crest)
         greatest: Array = np.maximum(rows.max(axis=1), (middle + more).max(axis=1))
         return greatest
 
     def least(self, rows: Array) -> Array:
-        """Least value."""
+        """Least value of rows (m, n) over the turn, (m,)."""
         return -self.most(-rows)
 
     def greatest(self, rows: Array) -> Array:
-        """Greatest absolute value."""
+        """Greatest absolute value of rows (m, n) over the turn, (m,)."""
         return np.maximum(self.most(rows), self.most(-rows))
 
     @property
     def scale(self) -> float:
-        """What positions are reported in: mm as they are, rad in degrees."""
+        """Factor from the motion's mm or rad to mm or degrees."""
         return 1.0 if self.recipe.cam.arrangement.unit == "mm" else math.degrees(1.0)
 
     @cached_property
     def bend(self) -> tuple[Array, Array]:
-        """Greatest curvature of a centre's path where the metal lies inside its bend, and outside, 1/mm; or 0."""
+        """Greatest curvature of a centre's path, 1/mm (m,), where the metal lies inside its bend, and outside; or 0."""
         rows = self.contours.bend
         if rows is None:
-            raise TypeError("no centre is led")
+            raise TypeError("no contact has a centre")
         ends = np.maximum(self.most(rows), 0.0), np.maximum(self.most(-rows), 0.0)
         return ends if self.side > 0 else ends[::-1]
 
@@ -102,28 +102,23 @@ class Cams:
             return 1.0 / self.bend[0]
 
     @property
-    def touch(self) -> Array:
-        """Radius of the touch, mm (m,)."""
-        return self.sampled.sizes["radius"][:, 0]
-
-    @property
     def undercut(self) -> Mask:
-        """Where the contour turns back."""
-        return ~(self.pitch > self.touch)
+        """Which cams have a contour that turns back, (m,)."""
+        return ~(self.pitch > self.size("radius"))
 
     @property
     def hollow(self) -> Array:
-        """Least radius of the metal's hollows, mm, infinite without one."""
+        """Least radius of curvature where the contour is concave, mm (m,); infinite where it is convex."""
         with np.errstate(divide="ignore"):
-            return 1.0 / self.bend[1] + self.touch
+            return 1.0 / self.bend[1] + self.size("radius")
 
     def size(self, name: str) -> Array:
-        """One of the sizes (m,)."""
-        return self.sampled.sizes[name][:, 0]
+        """Size of this name of each cam, mm or rad (m,)."""
+        return self.motion.sizes[name][:, 0]
 
     @property
     def reach(self) -> Array:
-        """Greatest distance of the contour from the shaft, of a ring the least, mm."""
+        """Greatest distance of the contour from the shaft, of a ring the least, mm (m,)."""
         return np.sqrt(self.most(self.contours.distance) if self.side > 0 else self.least(self.contours.distance))
 
     @property
@@ -138,18 +133,18 @@ class Cams:
 
     @property
     def contact(self) -> Array:
-        """Where a face is touched, mm (m, n)."""
+        """Place of the contact along a face, mm (m, n)."""
         rows = self.contours.contact
         if rows is None:
             raise TypeError("no contact travels along a face")
         return rows
 
     def peak(self, order: int, speed: float = 1.0) -> Array:
-        """Greatest derivative of the motion by the shaft angle, or at a speed, rad/s, by time."""
-        return self.scale * speed**order * self.greatest(self.sampled.rows[order])
+        """Greatest derivative of the motion by the shaft angle, or by time at a speed in rad/s; mm or degrees (m,)."""
+        return self.scale * speed**order * self.greatest(self.motion.rows[order])
 
     def spin(self) -> Array:
-        """Greatest speed of the roller."""
+        """Greatest speed of the roller, turns per turn of the shaft (m,)."""
         if self.contours.spin is None:
             raise TypeError("no roller turns")
         return self.greatest(self.contours.spin)
@@ -159,59 +154,78 @@ def _degrees(slope: Array) -> Array:
     return np.degrees(np.arctan(slope))
 
 
-_CORE: dict[str, Callable[[Cams], Array]] = {
-    "swing": lambda cams: cams.scale * (cams.most(cams.sampled.rows[0]) - cams.least(cams.sampled.rows[0])),
-    PEAKS[0]: lambda cams: cams.peak(1),
-    PEAKS[1]: lambda cams: cams.peak(2),
-    PEAKS[2]: lambda cams: cams.peak(3),
-    PRESSURE_ANGLE: lambda cams: _degrees(cams.greatest(cams.contours.slope)),
-    ON_RISE: lambda cams: _degrees(cams.most(cams.contours.slope)),
-    ON_RETURN: lambda cams: _degrees(cams.most(-cams.contours.slope)),
-    RADIUS: lambda cams: cams.pitch - cams.touch,
-    PITCH_RADIUS: lambda cams: cams.pitch,
-    HOLLOW_RADIUS: lambda cams: cams.hollow,
-    SIZE: lambda cams: np.sqrt(cams.most(cams.contours.distance)),
-    PIVOT_CLEARANCE: lambda cams: cams.side * (cams.size("pivot") - cams.reach),
-    CONTACT_TRAVEL: lambda cams: cams.most(cams.contact) - cams.least(cams.contact),
-    FACE_WIDTH: lambda cams: 2.0 * cams.greatest(cams.contact),
-    ROLLER_SPEED: Cams.spin,
-    BASE_RADIUS: lambda cams: cams.size("base"),
-    OFFSET: lambda cams: cams.size("offset"),
-    PIVOT: lambda cams: cams.size("pivot"),
+class FigureEstimate(NamedTuple):
+    """How a figure is estimated: `compute` gives it in mm and degrees (m,).
+
+    `error` is the greatest seen, in degrees where `in_degrees`, else as a share of the value; None for an exact figure.
+    """
+
+    compute: Callable[[ScreenedCams], Array]
+    error: float | None = None
+    in_degrees: bool = False
+
+
+def _swing(cams: ScreenedCams) -> Array:
+    return cams.scale * (cams.most(cams.motion.rows[0]) - cams.least(cams.motion.rows[0]))
+
+
+def _on_return(cams: ScreenedCams) -> Array:
+    return _degrees(cams.most(-cams.slope))
+
+
+def _pivot_clearance(cams: ScreenedCams) -> Array:
+    return cams.side * (cams.size("pivot") - cams.reach)
+
+
+_CORE: dict[str, FigureEstimate] = {
+    "swing": FigureEstimate(_swing, 8.3e-6),
+    PEAKS[0]: FigureEstimate(lambda cams: cams.peak(1), 1.3e-5),
+    PEAKS[1]: FigureEstimate(lambda cams: cams.peak(2), 5.5e-5),
+    PEAKS[2]: FigureEstimate(lambda cams: cams.peak(3), 6.3e-6),
+    PRESSURE_ANGLE: FigureEstimate(lambda cams: _degrees(cams.greatest(cams.slope)), 3.7e-4, in_degrees=True),
+    ON_RISE: FigureEstimate(lambda cams: _degrees(cams.most(cams.slope)), 3.7e-4, in_degrees=True),
+    ON_RETURN: FigureEstimate(_on_return, 3.7e-4, in_degrees=True),
+    RADIUS: FigureEstimate(lambda cams: cams.pitch - cams.size("radius"), 3.2e-4),
+    PITCH_RADIUS: FigureEstimate(lambda cams: cams.pitch, 3.2e-4),
+    HOLLOW_RADIUS: FigureEstimate(lambda cams: cams.hollow, 1.2e-3),
+    SIZE: FigureEstimate(lambda cams: np.sqrt(cams.most(cams.contours.distance)), 1.6e-6),
+    PIVOT_CLEARANCE: FigureEstimate(_pivot_clearance, 3.1e-5),
+    CONTACT_TRAVEL: FigureEstimate(lambda cams: cams.most(cams.contact) - cams.least(cams.contact), 1.0e-5),
+    FACE_WIDTH: FigureEstimate(lambda cams: 2.0 * cams.greatest(cams.contact), 4.2e-6),
+    ROLLER_SPEED: FigureEstimate(ScreenedCams.spin, 2.5e-6),
+    BASE_RADIUS: FigureEstimate(lambda cams: cams.size("base")),
+    OFFSET: FigureEstimate(lambda cams: cams.size("offset")),
+    PIVOT: FigureEstimate(lambda cams: cams.size("pivot")),
 }
-"""How a figure of the core is estimated, in mm and degrees (m,)."""
+"""Estimates of the core's figures, with the greatest error on DESIGNS designs (`benchmarks/sweep.py screen`).
 
-
-class Estimated(NamedTuple):
-    """How a figure is estimated, and the greatest error seen, as `camgeo.registry.capability.Estimate` has them."""
-
-    of: Callable[[Cams], Array]
-    error: float | None
-    in_degrees: bool
+The designs are of every follower on a stem and on an arm, in a disc and in a ring, of constant breadth and by a support
+function, with each law of the catalogue, at 360 angles.
+"""
 
 
 @cache
-def estimates() -> dict[str, Estimated]:
-    """Give every figure that is estimated, those of capabilities behind the core's."""
-    found = {name: Estimated(of, ERRORS.get(name), name in DEGREES) for name, of in _CORE.items()}
-    for capability in registry.in_order(registry.recorded()):
-        found |= {name: Estimated(*estimate) for name, estimate in capability.estimates().items()}
-    return found
+def estimates() -> dict[str, FigureEstimate]:
+    """Estimates by the names of their figures, those of capabilities after the core's."""
+    capabilities = registry.in_order(registry.recorded())
+    return _CORE | {
+        name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()
+    }
 
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """Estimates of the figures `names` of cams that differ at paths, from samples at about `count` angles."""
+    """Estimates the figures `names` of a sweep's cams, whose metal lies on `side` of their contours."""
 
     recipe: Recipe
     names: tuple[str, ...]
     side: Side
-    make: Callable[[Sampled], Contours]
+    contours: Callable[[MotionBatch], Contours]
     template: Template
 
     @staticmethod
-    def of(recipe: Recipe, paths: Sequence[str], names: Sequence[str], count: int) -> Screen | str:
-        """Prepare for a recipe's sweep; the reason in words where its designs cannot be screened."""
+    def prepare(recipe: Recipe, paths: Sequence[str], names: Sequence[str], count: int) -> Screen | str:
+        """Screen of cams that differ at `paths`, at about `count` angles; or the reason why there can be none."""
         if recipe.linkage is not None:
             return "it has a linkage"
         if unknown := [name for name in names if name not in estimates()]:
@@ -221,14 +235,14 @@ class Screen:
         if recipe.settled is not None:
             return "an angle of its motion is found for each design"
 
-        def shoot(values: Array, counts: tuple[int, ...]) -> Shot | None:
-            given = {path: float(value) for path, value in zip(paths, values, strict=True)}
+        def sample(values: Array, counts: tuple[int, ...]) -> CamSample | None:
+            numbers = {path: float(value) for path, value in zip(paths, values, strict=True)}
             try:
-                return shot_of(load_text(recipe.text_with(given), recipe.path).cam, count, counts)
+                return sample_cam(load_text(recipe.text_with(numbers), recipe.path).cam, count, counts)
             except (RecipeErrors, IntentError):
                 return None
 
-        ranges = {axis.path: axis for axis in varied(recipe)}
+        ranges = {axis.path: axis for axis in varied_fields(recipe)}
         ends = [(ranges[path].values or (ranges[path].low, ranges[path].high)) for path in paths]
         try:
             exact = recipe.cam.exact()
@@ -236,37 +250,37 @@ class Screen:
         except IntentError:
             return "the cam does not exist as the recipe has it"
         arrangement, offers = recipe.cam.arrangement, recipe.cam.arrangement.offers
-        maker = MAKERS[arrangement.unit, "roller" in offers] if "guided" in offers else None
-        if len(surfaces) > 1 or not surfaces[0].curve.closed or (maker is None and exact.plate is None):
+        guided = GUIDED[arrangement.unit, "roller" in offers] if "guided" in offers else None
+        if len(surfaces) > 1 or not surfaces[0].curve.closed or (guided is None and exact.plate is None):
             return "its contour is not sampled"
-        template = Template.of(shoot, np.array([min(end) for end in ends]), np.array([max(end) for end in ends]))
+        template = Template.fit(sample, np.array([min(end) for end in ends]), np.array([max(end) for end in ends]))
         if template is None:
             return "no design turned up in the midst of the ranges"
         side = surfaces[0].side
 
-        def make(sampled: Sampled) -> Contours:
-            if exact.plate is not None or maker is None:
-                return plate(sampled.rows)
-            return maker(sampled.sizes, side, sampled.rows)
+        def contours(motion: MotionBatch) -> Contours:
+            if exact.plate is not None or guided is None:
+                return plate(motion.rows)
+            return guided(motion.sizes, side, motion.rows)
 
-        return Screen(recipe, tuple(names), side, make, template)
+        return Screen(recipe, tuple(names), side, contours, template)
 
-    def found(self, values: Array) -> tuple[dict[str, Array], Codes]:
-        """Estimates by name, (m,) each, nan without a cam, and what is wrong (m,), of designs with values (m, k)."""
+    def estimate(self, values: Array) -> tuple[dict[str, Array], Codes]:
+        """Estimates by name, (m,) each, nan without a cam, and fault codes (m,), of designs with values (m, k)."""
         m = len(values)
         figures, faults = {name: np.full(m, np.nan) for name in self.names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
-        step = max(1, _BLOCK // self.template.shot.rows.shape[1])
+        step = max(1, _BLOCK // self.template.centre_cam.rows.shape[1])
         for first in range(0, m, step):
             block = values[first : first + step]
-            for index, sampled in self.template.sampled(block):
+            for index, motion in self.template.sample_designs(block):
                 rows = index + first
                 with np.errstate(all="ignore"):
-                    cams = Cams(self.recipe, sampled, self.make(sampled), self.side)
+                    cams = ScreenedCams(self.recipe, motion, self.contours(motion), self.side)
                     code = np.where(cams.undercut, UNDERCUT, FINE)
                     if cams.contours.outside is not None:
                         code[cams.contours.outside] = OUTSIDE
                     code[~cams.contours.sound] = IMPOSSIBLE
                     faults[rows] = code
                     for name in self.names:
-                        figures[name][rows] = np.where(code == FINE, estimates()[name].of(cams), np.nan)
+                        figures[name][rows] = np.where(code == FINE, estimates()[name].compute(cams), np.nan)
         return figures, faults

@@ -1,4 +1,4 @@
-"""A whole sweep: every chunk, what they come to, the best polished and written out, the files in their place."""
+"""A whole sweep: chunks computed and gathered, the best designs certified and polished, the files put in place."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.sweep.certify import certified, slack
+from camgeo.capabilities.sweep.certify import certify, slack
 from camgeo.capabilities.sweep.engines import spread
 from camgeo.capabilities.sweep.job import Job
 from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.capabilities.sweep.recipes import Best, recipe_text
 from camgeo.capabilities.sweep.refine import PolishError
-from camgeo.capabilities.sweep.run import chunks_of, compute, gathered
+from camgeo.capabilities.sweep.run import chunks_of, compute, gather_chunks
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
 from kin.numeric.records import dataclass, replace
@@ -25,30 +25,29 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from camgeo.capabilities.sweep.ask import Ask
-    from camgeo.capabilities.sweep.gather import Floats, Gathered
+    from camgeo.capabilities.sweep.gather import Selection
     from camgeo.capabilities.sweep.job import Compute
-    from camgeo.capabilities.sweep.run import How, Listener, Work
+    from camgeo.capabilities.sweep.run import Engine, Listener, Work
+    from camgeo.capabilities.sweep.task import Task
+    from kin.numeric.arrays import Array, Mask
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
-_AGAIN = 0.05
-_NEAR = 0.15  # of an axis's range in every value: polishing would lead designs nearer than that to one place
-_APART = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
+_PAUSE = 0.05  # seconds until the next attempt
+_START_DISTANCE = 0.15  # of an axis's range in every value: polishing would lead nearer designs to one place
+_SAME_DISTANCE = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
 
 
 Values: TypeAlias = dict[str, float]
-Polish: TypeAlias = "Callable[[Ask, Values], tuple[Values, Values]]"
+Polish: TypeAlias = "Callable[[Task, Values], tuple[Values, Values]]"
 """Values and figures, mm and degrees, of a design as good or better that breaks no limit; raises PolishError."""
-Measure: TypeAlias = "Callable[[Ask, Floats], Mapping[str, Floats]]"
+Measure: TypeAlias = "Callable[[Task, Array], Mapping[str, Array]]"
 """All figures (m,) of designs with values (m, axes), in mm and degrees: also what the search went without."""
 
 
 @dataclass(frozen=True)
-class Means:
-    """What computes the figures of designs, all those of a few, what polishes; the words for why one has none."""
+class Procedures:
+    """Functions that compute the figures of designs, all those of a few, and polish one; words for the reason codes."""
 
     compute: Compute
     measure: Measure
@@ -58,7 +57,7 @@ class Means:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a sweep: its report, and the folder of its files, a rejected one where no design is kept."""
+    """Report of a sweep, the folder of its files, `<name>.rejected` where no design is kept, and what the run did."""
 
     report: dict[str, Any]
     folder: Path
@@ -66,28 +65,35 @@ class Outcome:
 
 
 def search(
-    ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, listener: Listener | None = None
+    task: Task,
+    out: Path,
+    engine: Engine,
+    procedures: Procedures,
+    *,
+    fresh: bool = False,
+    listener: Listener | None = None,
 ) -> Outcome:
-    """Run the sweep of a recipe.
+    """Run the sweep of a recipe, and write its files below `out`.
 
     Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
     SurroundingsError for what is missing around the run; OSError for a disk that refuses.
     """
     started = time.perf_counter()
-    demand_extras(ask, how)
-    recipe_text(ask, Best(1, 0, False, _by_path(ask, ask.plan.values(0, 1)[0]), {}))  # told now if it cannot be written
-    demand_room(ask, out)
-    job = Job(ask.plan, ask.scene(ask.figures), means.compute)
-    chunks = chunks_of(job, out / ask.recipe.name)
-    work = compute(job, chunks, how, fresh=fresh, listener=listener)
-    found = gathered(job, chunks, ask.ranking, slack if ask.screened else None)
-    if ask.screened:
-        found = _certified(ask, found, how, listener)
-    best = best_of(ask, found, means, how, listener)
+    require_packages(task, engine)
+    first = Best(1, 0, False, _by_path(task, task.plan.values(0, 1)[0]), {})
+    recipe_text(task, first)  # at once rather than in the end, if it cannot be written
+    require_free_names(task, out)
+    job = Job(task.plan, task.scene(task.figures), procedures.compute)
+    chunks = chunks_of(job, out / task.recipe.name)
+    work = compute(job, chunks, engine, fresh=fresh, listener=listener)
+    selection = gather_chunks(job, chunks, task.ranking, slack if task.screened else None)
+    if task.screened:
+        selection = _certify(task, selection, engine, listener)
+    best = best_designs(task, selection, procedures, engine, listener)
     run = {
-        "engine": str(how),
+        "engine": str(engine),
         "key": job.key,
-        "chunks": ask.plan.chunks,
+        "chunks": task.plan.chunks,
         "designs_computed": work.computed,
         "designs_found": work.reused,
         "chunks_damaged": work.damaged,
@@ -95,145 +101,144 @@ def search(
         "designs_per_second": round(work.computed / work.seconds, 1) if work.computed else None,
         "seconds": round(time.perf_counter() - started, 3),
     }
-    files, report = outputs(ask, found, best, run, means.reasons)
-    return Outcome(report, put(out, ask.recipe.name, files, accepted=bool(best)), work)
+    files, report = outputs(task, selection, best, run, procedures.reasons)
+    return Outcome(report, place_files(out, task.recipe.name, files, accepted=bool(best)), work)
 
 
-def demand_extras(ask: Ask, how: How) -> None:
-    """Raise ModuleNotFoundError for a package without which the sweep would come to a halt halfway."""
-    needed = []
-    if ask.sweep.method == "sobol" or ask.sweep.refine:
-        needed.append("scipy")
-    if how.scheduler is not None:
-        needed.append("distributed")
-    for name in needed:
-        if find_spec(name) is None:
+def require_packages(task: Task, engine: Engine) -> None:
+    """Raise ModuleNotFoundError for a package without which the sweep would stop halfway."""
+    for name, needed in (
+        ("scipy", task.sweep.method == "sobol" or task.sweep.refine),
+        ("distributed", engine.scheduler is not None),
+    ):
+        if needed and find_spec(name) is None:
             raise ModuleNotFoundError(name=name)
 
 
-def demand_room(ask: Ask, out: Path) -> None:
-    """Raise SurroundingsError for a file of the user's where one of the sweep would go: told now, not in the end."""
-    folder = out / ask.recipe.name
+def require_free_names(task: Task, out: Path) -> None:
+    """Raise SurroundingsError for a user's file in the place of one of the sweep: at once, not in the end."""
+    folder = out / task.recipe.name
     if not folder.exists():
         return
     try:
-        with RunFolder(out, ask.recipe.name, FILES) as run:
+        with RunFolder(out, task.recipe.name, FILES) as run:
             ours = {*run.kept(), REPORT}
     except BusyError:
-        return  # a run that is putting its files in place; the end will tell
-    best = (f"best-{place}.yaml" for place in range(1, min(ask.sweep.keep, ask.plan.count) + 1))
+        return  # another run puts its files in place; the end will show
+    best = (f"best-{place}.yaml" for place in range(1, min(task.sweep.keep, task.plan.count) + 1))
     for name in (*TABLES, *PICTURES, *best):
         if name not in ours and os.path.lexists(folder / name):
             raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
 
 
-def best_of(ask: Ask, designs: Gathered, means: Means, how: How, listener: Listener | None = None) -> list[Best]:
-    """The best designs with all their figures.
+def best_designs(
+    task: Task, selection: Selection, procedures: Procedures, engine: Engine, listener: Listener | None = None
+) -> list[Best]:
+    """The best designs with all their figures, best first.
 
-    If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
+    If the sweep refines, those that lie apart are polished; of polished ones that lie near to each other the best is
+    kept.
     """
-    rows = designs.rows if designs.certificate is None else designs.certificate.designs
-    places = _apart(ask, designs, rows) if ask.sweep.refine else range(min(ask.sweep.keep, rows))
-    plain = [
+    rows = selection.rows if selection.certificate is None else selection.certificate.designs
+    places = list(range(rows))
+    if task.sweep.refine:
+        left, places = np.arange(rows), []
+        while len(left) and len(places) < task.sweep.keep:
+            places.append(int(left[0]))
+            left = left[_are_apart(task, selection.values[left], selection.values[left[0]])]
+    designs = [
         Best(
             number,
-            int(designs.index[place]),
+            int(selection.index[place]),
             False,
-            _by_path(ask, designs.values[place]),
-            {name: float(values[place]) for name, values in designs.figures.items()},
+            _by_path(task, selection.values[place]),
+            {name: float(values[place]) for name, values in selection.figures.items()},
         )
-        for number, place in enumerate(places, 1)
+        for number, place in enumerate(places[: task.sweep.keep], 1)
     ]
-    if not ask.sweep.refine:
-        return _measured(ask, plain, means.measure)
-    polished = _measured(ask, _polished(ask, plain, means.polish, how, listener), means.measure)
-    polished.sort(key=lambda design: _order(ask, design))
+    if not task.sweep.refine:
+        return _with_all_figures(task, designs, procedures.measure)
+    polished = _polish_all(task, designs, procedures.polish, engine, listener)
+    polished = _with_all_figures(task, polished, procedures.measure)
+    sign = -1.0 if task.ranking.most else 1.0
+    polished.sort(key=lambda design: (sign * design.figures[task.sweep.rank], design.place))
     best: list[Best] = []
     for design in polished:
-        if not any(_same(ask, design, other) for other in best):
+        if not any(_are_same(task, design, better) for better in best):
             best.append(replace(design, place=len(best) + 1))
     return best
 
 
-def _measured(ask: Ask, plain: list[Best], measure: Measure) -> list[Best]:
-    """Designs with the figures that the search went without."""
-    if all(set(ask.all_figures) <= set(design.figures) for design in plain):
-        return plain
-    found = measure(ask, np.array([list(design.values.values()) for design in plain]))
+def _with_all_figures(task: Task, designs: list[Best], measure: Measure) -> list[Best]:
+    """The designs, with the figures that the search did not compute."""
+    if all(set(task.all_figures) <= set(design.figures) for design in designs):
+        return designs
+    columns = measure(task, np.array([list(design.values.values()) for design in designs]))
     return [
-        replace(design, figures={**{name: float(found[name][i]) for name in found}, **design.figures})
-        for i, design in enumerate(plain)
+        replace(design, figures={**{name: float(columns[name][i]) for name in columns}, **design.figures})
+        for i, design in enumerate(designs)
     ]
 
 
-def _order(ask: Ask, design: Best) -> tuple[float, int]:
-    figure = design.figures[ask.sweep.rank]
-    return (-figure if ask.ranking.most else figure), design.place
+def _are_apart(task: Task, values: Array, start: Array) -> Mask:
+    """Whether polishing leads designs (n, axes) elsewhere than a start (axes,), as they lie far from it, (n,)."""
+    ranges = np.array([axis.range or 1.0 for axis in task.plan.axes])
+    apart: Mask = np.abs((values - start) / ranges).max(axis=1) > _START_DISTANCE
+    return apart
 
 
-def _apart(ask: Ask, designs: Gathered, rows: int) -> list[int]:
-    """Places in the table of the best designs, of so many, from which polishing is likely to lead to different ones."""
-    left = np.arange(rows)
-    places: list[int] = []
-    while len(left) and len(places) < ask.sweep.keep:
-        places.append(int(left[0]))
-        left = left[_far(ask, designs.values[left], designs.values[left[0]])]
-    return places
-
-
-def _far(ask: Ask, values: Floats, start: Floats) -> NDArray[np.bool_]:
-    """Which designs (n, axes) polishing leads elsewhere than a start (axes,)."""
-    ranges = np.array([axis.range or 1.0 for axis in ask.plan.axes])
-    far: NDArray[np.bool_] = np.abs((values - start) / ranges).max(axis=1) > _NEAR
-    return far
-
-
-def _certified(ask: Ask, gathered: Gathered, how: How, listener: Listener | None) -> Gathered:
-    """The table with the designs that hold exactly in front; starts of polishing lie apart."""
+def _certify(task: Task, selection: Selection, engine: Engine, listener: Listener | None) -> Selection:
+    """The selection with certified designs in front, which lie apart where they are to be polished."""
     started = time.perf_counter()
 
-    def apart(values: Floats, design: Floats) -> NDArray[np.bool_]:
-        return _far(ask, values, design) if ask.sweep.refine else np.ones(len(values), dtype=np.bool_)
+    def are_apart(values: Array, design: Array) -> Mask:
+        return _are_apart(task, values, design) if task.sweep.refine else np.ones(len(values), dtype=np.bool_)
 
-    def tell(count: int) -> None:
+    def progress(count: int) -> None:
         if listener is not None:
-            listener("designs worked out", count, ask.sweep.keep, time.perf_counter() - started)
+            listener("designs worked out", count, task.sweep.keep, time.perf_counter() - started)
 
-    return certified(ask, gathered, partial(spread, count=how.processes), apart, tell)
+    return certify(task, selection, partial(spread, count=engine.processes), are_apart, progress)
 
 
-def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, listener: Listener | None) -> list[Best]:
-    """Each design polished, several at once where there are processes for it; in the same order."""
+def _polish_all(
+    task: Task, designs: list[Best], polish: Polish, engine: Engine, listener: Listener | None
+) -> list[Best]:
+    """Each design polished, in the same order; several at once where that saves time."""
     started = time.perf_counter()
     if listener is not None:
-        listener("polished", 0, len(plain), 0.0)
-    done: dict[int, Best] = {}
-    for design, result in spread(partial(_polish, polish, ask), plain, min(how.processes, len(plain))):
-        done[design.place] = result
+        listener("polished", 0, len(designs), 0.0)
+    polished: dict[int, Best] = {}
+    for design, result in spread(partial(_polish, polish, task), designs, min(engine.processes, len(designs))):
+        polished[design.place] = result
         if listener is not None:
-            listener("polished", len(done), len(plain), time.perf_counter() - started)
-    return [done[design.place] for design in plain]
+            listener("polished", len(polished), len(designs), time.perf_counter() - started)
+    return [polished[design.place] for design in designs]
 
 
-def _polish(polish: Polish, ask: Ask, design: Best) -> Best:
+def _polish(polish: Polish, task: Task, design: Best) -> Best:
+    """The design polished, or as it was, with the reason why it cannot be."""
     try:
-        values, figures = polish(ask, design.values)
+        values, figures = polish(task, design.values)
     except PolishError as error:
         return replace(design, why=str(error))
     return replace(design, polished=values != design.values, values=values, figures=figures)
 
 
-def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
-    return {axis.path: float(value) for axis, value in zip(ask.plan.axes, row, strict=True)}
+def _by_path(task: Task, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
+    return {axis.path: float(value) for axis, value in zip(task.plan.axes, row, strict=True)}
 
 
-def _same(ask: Ask, design: Best, other: Best) -> bool:
+def _are_same(task: Task, design: Best, other: Best) -> bool:
     """Whether two designs lie so near to each other that they count as one."""
-    return all(abs(design.values[axis.path] - other.values[axis.path]) <= _APART * axis.range for axis in ask.plan.axes)
+    return all(
+        abs(design.values[axis.path] - other.values[axis.path]) <= _SAME_DISTANCE * axis.range
+        for axis in task.plan.axes
+    )
 
 
-def put(out: Path, name: str, files: dict[str, bytes], *, accepted: bool) -> Path:
-    """Put all files in their place at once, or, where no design was kept, beside it as rejected."""
+def place_files(out: Path, name: str, files: dict[str, bytes], *, accepted: bool) -> Path:
+    """Write all files at once, in the folder of the recipe if accepted, else in that of rejected ones; return it."""
     give_up = time.monotonic() + _WAIT
     while True:
         try:
@@ -245,4 +250,4 @@ def put(out: Path, name: str, files: dict[str, bytes], *, accepted: bool) -> Pat
         except BusyError:
             if time.monotonic() > give_up:
                 raise
-            time.sleep(_AGAIN)
+            time.sleep(_PAUSE)

@@ -1,9 +1,8 @@
 """Results of chunks on disk: written as they land, whole or not at all, and checked when they are read.
 
-A chunk's file ends with the checksum of all before it and opens with whose chunk it is, so a torn one, a changed one
-and one of another sweep all count as not there. What is no regular file is never opened, and refused. Any number of
-runs may write the same folder at once: what they write under one name is the same to the byte, and a rename puts it
-there.
+A chunk's file begins with its key and designs and ends with a checksum, so a truncated one, a changed one and one of
+another sweep all count as missing. What is no regular file is refused, never opened. Any number of runs may write the
+same folder at once: under one name they write the same bytes, put there by a rename.
 """
 
 from __future__ import annotations
@@ -28,38 +27,36 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from camgeo.capabilities.sweep.plan import Plan
+    from kin.numeric.arrays import Array
 
 _MAGIC = b"camgeo sweep chunk 1\n"
-_LEFT_OVER = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds
+_ABANDONED = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds
 _MOST_BYTES = 1 << 24  # of a chunk's file: its designs with a hundred figures and more take less
 _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
 
 class ChunkError(CamgeoError, ValueError):
-    """Bytes that are not the result of the chunk they are taken for."""
+    """The bytes of a file are not the result of its chunk."""
 
 
-def encode(key: str, first: int, last: int, figures: Mapping[str, NDArray[np.float64]]) -> bytes:
-    """A chunk's file: a line of JSON, the figures' arrays one after another, little-endian, and a SHA-256."""
+def encode(key: str, first: int, last: int, figures: Mapping[str, Array]) -> bytes:
+    """Bytes of a chunk's file: a line of JSON, the figures (last - first,) as little-endian float64, and a SHA-256.
+
+    Raises ValueError for figures of another shape or type.
+    """
     for name, values in figures.items():
         if values.shape != (last - first,) or values.dtype != np.float64:
             raise ValueError(f"{name} of designs {first} to {last}: {values.shape} of {values.dtype}")
     header = {"key": key, "first": first, "last": last, "figures": list(figures)}
-    parts = [
-        _MAGIC,
-        json.dumps(header).encode() + b"\n",
-        *(values.astype("<f8").tobytes() for values in figures.values()),
-    ]
-    body = b"".join(parts)
+    payload = b"".join(values.astype("<f8").tobytes() for values in figures.values())
+    body = _MAGIC + json.dumps(header).encode() + b"\n" + payload
     return body + hashlib.sha256(body).digest()
 
 
-def decode(data: bytes, key: str, first: int, last: int) -> dict[str, NDArray[np.float64]]:
-    """Arrays (last - first,) by figure; raises ChunkError where the bytes are torn or belong elsewhere."""
+def decode(data: bytes, key: str, first: int, last: int) -> dict[str, Array]:
+    """Figures (last - first,) by name; raises ChunkError for damaged bytes, and those of another chunk or sweep."""
     body, checksum = data[:-32], data[-32:]
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != checksum:
         raise ChunkError("torn or changed")
@@ -73,29 +70,32 @@ def decode(data: bytes, key: str, first: int, last: int) -> dict[str, NDArray[np
 
 @dataclass(frozen=True)
 class Chunks:
-    """The chunks of one sweep in the folder of its key."""
+    """Files of the chunks of one sweep, in the folder of its key."""
 
     folder: Path
     key: str
     plan: Plan
 
     def open(self, *, fresh: bool = False) -> None:
-        """Make the folder, clear away what killed runs left unfinished, and, where `fresh`, every chunk.
+        """Make the folder; remove files that killed runs left unfinished, and, where `fresh`, every chunk.
 
-        Raises SurroundingsError where something else stands in the place of a folder, or of a chunk's file.
+        Raises SurroundingsError where something else is in the place of a folder, or of a chunk's file.
         """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except (FileExistsError, NotADirectoryError):
-            raise _in_the_way(self.folder) from None
+            blocked = (self.folder, *self.folder.parents)
+            place = next(path for path in reversed(blocked) if os.path.lexists(path) and not path.is_dir())
+            problem = "not a folder, where the sweep keeps its results: move it or remove it"
+            raise SurroundingsError(problem, place) from None
         for number in range(self.plan.chunks):
-            _regular(self.path(number))
+            _is_regular_file(self.path(number))
         for path in self.folder.iterdir():
             # another run may be clearing away, or finishing, the same file
             with suppress(FileNotFoundError):
                 if (fresh and _CHUNK.fullmatch(path.name)) or (
                     _UNFINISHED.fullmatch(path.name)
-                    and time.time() - path.lstat().st_mtime > _LEFT_OVER
+                    and time.time() - path.lstat().st_mtime > _ABANDONED
                     and not path.is_dir()
                 ):
                     path.unlink()
@@ -104,12 +104,12 @@ class Chunks:
         """File of a chunk."""
         return self.folder / f"chunk-{number:07d}.bin"
 
-    def read(self, number: int) -> dict[str, NDArray[np.float64]] | None:
-        """Figures of a chunk, or None where there is no file; raises ChunkError where there is a bad one.
+    def read(self, number: int) -> dict[str, Array] | None:
+        """Figures (m,) of a chunk by name, or None without a file.
 
-        Raises SurroundingsError where something else than a file stands there.
+        Raises ChunkError for a damaged file, SurroundingsError for what is no regular file.
         """
-        if not _regular(self.path(number)):
+        if not _is_regular_file(self.path(number)):
             return None
         try:
             with self.path(number).open("rb") as stream:
@@ -118,21 +118,21 @@ class Chunks:
             return None
         return decode(data, self.key, *self.plan.span(number))
 
-    def sort_out(self) -> tuple[list[int], int]:
-        """Numbers of the chunks still to be computed, and how many bad files were removed among them."""
-        missing, bad = [], 0
+    def missing_chunks(self) -> tuple[list[int], int]:
+        """Numbers of the chunks still to be computed, and how many of them had damaged files, which are removed."""
+        missing, damaged = [], 0
         for number in range(self.plan.chunks):
             try:
                 if self.read(number) is None:
                     missing.append(number)
             except ChunkError:
-                bad += 1
+                damaged += 1
                 self.path(number).unlink(missing_ok=True)
                 missing.append(number)
-        return missing, bad
+        return missing, damaged
 
     def write(self, number: int, data: bytes) -> None:
-        """Put a chunk in its place; raises ChunkError for bytes that are not its result, before anything is written."""
+        """Write the file of a chunk, whole or not at all; raises ChunkError for bytes that are not its result."""
         decode(data, self.key, *self.plan.span(number))
         part = self.folder / f".chunk-{number:07d}.{os.getpid()}.part"
         try:
@@ -143,8 +143,8 @@ class Chunks:
             raise
 
 
-def _regular(path: Path) -> bool:
-    """Whether there is a file; raises SurroundingsError for what is none: a pipe waits, a device may have no end."""
+def _is_regular_file(path: Path) -> bool:
+    """Whether there is a file; raises SurroundingsError for another thing: a pipe waits, a device may have no end."""
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
@@ -153,9 +153,3 @@ def _regular(path: Path) -> bool:
         return True
     kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
     raise SurroundingsError(f"{kind}, where the sweep keeps a file of its results: move it or remove it", path)
-
-
-def _in_the_way(folder: Path) -> SurroundingsError:
-    """What stands where a folder, or one above it, is to be made."""
-    place = next(path for path in reversed((folder, *folder.parents)) if os.path.lexists(path) and not path.is_dir())
-    return SurroundingsError("not a folder, where the sweep keeps its results: move it or remove it", place)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,20 +16,21 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.ask import Unit
-    from camgeo.capabilities.sweep.gather import Gathered, Ranking
-    from camgeo.capabilities.sweep.plan import Axis, Plan
+    from camgeo.capabilities.sweep.gather import Ranking, Selection
+    from camgeo.capabilities.sweep.plan import Plan
     from camgeo.capabilities.sweep.recipes import Best
+    from camgeo.capabilities.sweep.task import Unit
+    from kin.numeric.arrays import Array, Mask
 
-    Marks: TypeAlias = dict[str, NDArray[np.bool_]]
-    Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64] | NDArray[np.str_]]
+    Marks = dict[str, Mask]
+    Columns = Mapping[str, Array | NDArray[np.int64] | NDArray[np.str_]]
 
 
-def with_polished(designs: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, Marks]:
-    """The designs kept and the polished ones, best first, at most MOST_ROWS; and what is told of each of them.
+def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) -> tuple[Selection, Marks]:
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and marks of each (n,) by their names.
 
-    `polished` (n,): such a design has the index of the one that it comes from, whose own row stays. `certified` (n,),
-    where figures are estimates: those of this one are exact; such designs stand in front.
+    `polished`: the design has the index of that from which it was polished, whose own row stays. `certified`, where
+    figures are estimates: those of this design are exact; such designs come first.
     """
     new = [design for design in best if design.polished]
     index = np.append([design.index for design in new], designs.index).astype(np.int64)
@@ -38,33 +39,32 @@ def with_polished(designs: Gathered, best: Sequence[Best], ranking: Ranking) -> 
         name: np.append([design.figures[name] for design in new], column) for name, column in designs.figures.items()
     }
     polished = np.arange(len(index)) < len(new)
-    exact = np.arange(len(index)) < len(new) + (
-        len(index) if designs.certificate is None else designs.certificate.designs
-    )
+    certified = len(index) if designs.certificate is None else designs.certificate.designs
+    exact = np.arange(len(index)) < len(new) + certified
     order = np.lexsort((index, ~polished, -ranking.score(figures), ~exact))[:MOST_ROWS]
     rows = {name: column[order] for name, column in figures.items()}
     marks = {"polished": polished[order]} | ({} if designs.certificate is None else {"certified": exact[order]})
     return replace(designs, index=index[order], values=values[order], figures=rows), marks
 
 
-def columns(plan: Plan, designs: Gathered, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
-    """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
+def columns(plan: Plan, designs: Selection, units: Mapping[str, Unit], marks: Marks | None = None) -> Columns:
+    """Columns (n,) by their heads: place from 1, index, the varied fields by their paths, figures with units.
 
-    Last stand marks, 0 or 1.
+    Marks are the last, 0 or 1.
     """
     figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
     return {
         "place": np.arange(1, designs.rows + 1),
         "index": designs.index,
-        **{axis.path: _told(axis, designs.values[:, i]) for i, axis in enumerate(plan.axes)},
+        **{
+            axis.path: np.array(axis.words)[designs.values[:, i].astype(np.int64)]
+            if axis.words
+            else designs.values[:, i]
+            for i, axis in enumerate(plan.axes)
+        },
         **{_head(name, units[name].name): values for name, values in figures.items()},
         **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},
     }
-
-
-def _told(axis: Axis, values: NDArray[np.float64]) -> NDArray[np.float64] | NDArray[np.str_]:
-    """The values of an axis as the recipe has them."""
-    return np.array(axis.words)[values.astype(np.int64)] if axis.words else values
 
 
 def _head(figure: str, unit: str) -> str:
@@ -74,7 +74,7 @@ def _head(figure: str, unit: str) -> str:
 
 
 def as_csv(heads: Columns) -> bytes:
-    """The table as CSV, every number as short as reads back exactly."""
+    """The table as CSV, every number with as few digits as read back exactly."""
     stream = io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(heads)
@@ -83,7 +83,7 @@ def as_csv(heads: Columns) -> bytes:
 
 
 def as_parquet(heads: Columns, about: Mapping[str, str]) -> bytes:
-    """The table as Parquet, `about` among the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
+    """The table as Parquet, with `about` in the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
     import pyarrow as pa
     from pyarrow import parquet
 

@@ -13,5 +13,5 @@ def no_pictures(monkeypatch):
 @pytest.fixture
 def pooled(monkeypatch):
     """More processes are started after the first piece of work, however short."""
-    monkeypatch.setattr("camgeo.capabilities.sweep.engines._TRIED", 0.0)
-    monkeypatch.setattr("camgeo.capabilities.sweep.engines._PAYS", 0.0)
+    monkeypatch.setattr("camgeo.capabilities.sweep.engines._TRIAL", 0.0)
+    monkeypatch.setattr("camgeo.capabilities.sweep.engines._WORTHWHILE", 0.0)

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from support.cases import few
 from support.places import TESTS
-from support.sweepers import FOUR_BAR, MEANS
+from support.sweepers import FOUR_BAR, PROCEDURES
 
 from camgeo.capabilities.sweep import command as sweep
 from camgeo.capabilities.sweep import search
@@ -27,19 +27,19 @@ from camgeo.cli.progress import Progress
 FIRST = "dwell 49.7 deg, dwell-relative 24.85 deg, margin 3.83333 mm"
 RUN = """\
 import sys
-from support.sweepers import MEANS
+from support.sweepers import PROCEDURES
 from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
 from camgeo.capabilities.sweep import command as sweep
 if __name__ == "__main__":
-    sweep.means = lambda: MEANS
+    sweep.procedures = lambda: PROCEDURES
     sys.exit(main(sys.argv[1:]))
 """
 
 
 @pytest.fixture(autouse=True)
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep, "means", lambda: MEANS)
+    monkeypatch.setattr(sweep, "procedures", lambda: PROCEDURES)
 
 
 def written(folder: Path, *, comment="", margin=1.0, rank="dwell", refine="false", old="", new="") -> Path:
@@ -278,7 +278,7 @@ def test_jobs_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: pytest.
 
 def test_the_time_left_is_told_from_the_speed_so_far() -> None:
     told: list[str] = []
-    tell = sweep._teller(told.append)
+    tell = sweep._progress_listener(told.append)
     tell("designs", 0, 40_000, 0.0)
     tell("designs", 10_000, 40_000, 20.0)
     tell("chunks", 1, 4, 60.0)

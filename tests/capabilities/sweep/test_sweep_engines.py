@@ -21,16 +21,16 @@ import pytest
 from support.cases import few
 from support.heavy import distributed
 from support.places import TESTS
-from support.sweepers import GRID, MEANS, Aside, ask, calls, hills, job, tree
+from support.sweepers import GRID, PROCEDURES, Aside, calls, hills, job, task, tree
 
 from camgeo.capabilities.sweep import engines
-from camgeo.capabilities.sweep.ask import Ask
-from camgeo.capabilities.sweep.figures import figures
+from camgeo.capabilities.sweep.figures import compute_figures
 from camgeo.capabilities.sweep.job import Job, VersionsError, result
 from camgeo.capabilities.sweep.plan import Axis, Plan
-from camgeo.capabilities.sweep.run import How, chunks_of, compute
+from camgeo.capabilities.sweep.run import Engine, chunks_of, compute
 from camgeo.capabilities.sweep.search import search
 from camgeo.capabilities.sweep.store import decode
+from camgeo.capabilities.sweep.task import Task
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -43,13 +43,13 @@ HELPERS = f"{TESTS}{os.pathsep}{TESTS / 'capabilities' / 'sweep'}"  # where a ru
 RUN = """\
 import sys
 from pathlib import Path
-from support.sweepers import MEANS, ask
+from support.sweepers import PROCEDURES, task
 from camgeo.capabilities.sweep import engines
-from camgeo.capabilities.sweep.run import How
+from camgeo.capabilities.sweep.run import Engine
 from camgeo.capabilities.sweep.search import search
 if __name__ == "__main__":
-    engines._TRIED = engines._PAYS = 0.0  # processes after the first chunk
-    search(ask(sys.argv[1]), Path(sys.argv[2]), How(int(sys.argv[3])), MEANS)
+    engines._TRIAL = engines._WORTHWHILE = 0.0  # processes after the first chunk
+    search(task(sys.argv[1]), Path(sys.argv[2]), Engine(int(sys.argv[3])), PROCEDURES)
 """
 
 
@@ -63,7 +63,7 @@ def cluster():
 def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """Files of a sweep that one process computed in one go."""
     out = tmp_path_factory.mktemp("plain")
-    search(ask(), out, How(1), MEANS)
+    search(task(), out, Engine(1), PROCEDURES)
     return tree(out)
 
 
@@ -90,13 +90,13 @@ def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
 ) -> None:
     how = {
-        "processes": How(2),
-        "as many as are worthwhile": How(),
-        "dask": How(scheduler=cluster.scheduler_address),
+        "processes": Engine(2),
+        "as many as are worthwhile": Engine(),
+        "dask": Engine(scheduler=cluster.scheduler_address),
     }[engine]
     told = tmp_path / "calls"
     told.mkdir()
-    outcome = search(ask(f"calls={told}; seconds=0.01;"), tmp_path / "out", how, MEANS)
+    outcome = search(task(f"calls={told}; seconds=0.01;"), tmp_path / "out", how, PROCEDURES)
     assert outcome.work.computed == GRID.count
     assert len(calls(told)) == len(set(calls(told))) == GRID.chunks
     assert tree(tmp_path / "out") == plain
@@ -108,7 +108,7 @@ def test_every_engine_writes_the_same_files(
 def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster: LocalCluster) -> None:
     slow = Job(GRID, Aside(), hasty)
     numbers = list(range(GRID.chunks))
-    how = {"serial": How(1), "processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
+    how = {"serial": Engine(1), "processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
     landed = dict(how.results(slow, numbers))
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
 
@@ -117,7 +117,7 @@ def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster:
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, cluster: LocalCluster) -> None:
-    text = ask().recipe.text
+    text = task().recipe.text
     for old, new in (
         (", steps: 25", ""),
         (", steps: 33", ""),
@@ -125,9 +125,9 @@ def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, c
     ):
         assert old in text
         text = text.replace(old, new)
-    asked = Ask.of(read(text.encode(), "four-bar.yaml"))
-    real = Job(asked.plan, asked.scene(asked.figures), figures)
-    how = {"processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
+    asked = Task.from_recipe(read(text.encode(), "four-bar.yaml"))
+    real = Job(asked.plan, asked.scene(asked.figures), compute_figures)
+    how = {"processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
     numbers = range(real.plan.chunks)
     landed = dict(how.results(real, numbers))
     assert landed == {number: result(real, number, real.key) for number in numbers}
@@ -142,15 +142,15 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
         started.append((list(items), count))
         return ((item, function(item)) for item in items)
 
-    monkeypatch.setattr(engines, "at_once", instead)
-    monkeypatch.setattr(engines, "_TRIED", 0.02)
+    monkeypatch.setattr(engines, "in_processes", instead)
+    monkeypatch.setattr(engines, "_TRIAL", 0.02)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2})
-    for how in (How(), How(4), How(1)):
+    for how in (Engine(), Engine(4), Engine(1)):
         assert [number for number, _ in how.results(job(), range(GRID.chunks))] == list(range(GRID.chunks))
     assert started == []
-    monkeypatch.setattr(engines, "_PAYS", 0.05)
+    monkeypatch.setattr(engines, "_WORTHWHILE", 0.05)
     slow = job(scene="seconds=0.03;")
-    for how in (How(), How(4), How(1)):
+    for how in (Engine(), Engine(4), Engine(1)):
         assert [number for number, _ in how.results(slow, range(GRID.chunks))] == list(range(GRID.chunks))
     assert started == [(list(range(1, GRID.chunks)), 3), (list(range(1, GRID.chunks)), 4)]
 
@@ -158,7 +158,7 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalCluster, tmp_path: Path) -> None:
-    how = {"serial": How(1), "processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
+    how = {"serial": Engine(1), "processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
     faulty = Job(GRID, Aside(), failing)
     with pytest.raises(ArithmeticError, match="no figures beyond 12"):
         compute(faulty, chunks_of(faulty, tmp_path), how)
@@ -170,7 +170,7 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("camgeo.capabilities.sweep.job.__version__", "99.0")
-    how = How(2) if engine == "processes" else How(scheduler=cluster.scheduler_address)
+    how = Engine(2) if engine == "processes" else Engine(scheduler=cluster.scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
     if engine == "dask":
@@ -210,7 +210,7 @@ def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) ->
 @pytest.mark.slow
 @pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n", bytes(64)])
 def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engines, "_PATIENCE", 1.0)
+    monkeypatch.setattr(engines, "_TIMEOUT", 1.0)
     accepted = []
 
     def answer() -> None:
@@ -255,8 +255,8 @@ def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
 
 @pytest.mark.slow
 def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engines, "_PATIENCE", 0.5)
-    monkeypatch.setattr(engines, "_WORKERLESS", 2)
+    monkeypatch.setattr(engines, "_TIMEOUT", 0.5)
+    monkeypatch.setattr(engines, "_MOST_TIMEOUTS", 2)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty,
         pytest.raises(engines.EngineError, match="has no workers"),
@@ -272,7 +272,7 @@ def slowly(seconds: float) -> float:
 @pytest.mark.slow
 def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
     begun = time.monotonic()
-    results = engines.at_once(slowly, [0.0, 60.0, 60.0], 2)
+    results = engines.in_processes(slowly, [0.0, 60.0, 60.0], 2)
     assert next(results) == (0.0, 0.0)
     results.close()
     assert time.monotonic() - begun < 30.0
@@ -302,12 +302,12 @@ def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
 
 STARTING = """\
 import signal
-from camgeo.capabilities.sweep.engines import at_once
+from camgeo.capabilities.sweep.engines import in_processes
 from test_sweep_engines import slowly
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, lambda *_: None)
     print("begun", flush=True)
-    print(sorted(result for _, result in at_once(slowly, [0.0, 0.1], 2)))
+    print(sorted(result for _, result in in_processes(slowly, [0.0, 0.1], 2)))
 """
 
 
@@ -324,8 +324,8 @@ def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Pa
     deadly = Job(GRID, Aside(), killed)
     chunks = chunks_of(deadly, tmp_path)
     with pytest.raises(engines.EngineError, match="a process was killed before it was done"):
-        compute(deadly, chunks, How(2))
-    missing, damaged = chunks.sort_out()
+        compute(deadly, chunks, Engine(2))
+    missing, damaged = chunks.missing_chunks()
     assert missing
     assert damaged == 0
 
@@ -378,7 +378,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     told = tmp_path / "calls"
     told.mkdir()
     before = finished(out)
-    outcome = search(ask(f"calls={told};"), out, How(1), MEANS)
+    outcome = search(task(f"calls={told};"), out, Engine(1), PROCEDURES)
     assert len(before) == GRID.chunks
     assert outcome.work.computed == 0
     assert calls(told) == []
@@ -420,5 +420,5 @@ def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], t
 def test_a_sweep_that_grows_does_not_take_the_old_ones_chunks(tmp_path: Path) -> None:
     short = job(Plan((Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0)), "random", 640))
     long = job(Plan(short.plan.axes, "random", 1280))
-    compute(short, chunks_of(short, tmp_path), How(1))
-    assert compute(long, chunks_of(long, tmp_path), How(1)).computed == 1280
+    compute(short, chunks_of(short, tmp_path), Engine(1))
+    assert compute(long, chunks_of(long, tmp_path), Engine(1)).computed == 1280

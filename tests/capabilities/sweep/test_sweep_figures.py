@@ -12,12 +12,12 @@ from support.cases import examples, few
 from support.sweepers import compute, evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.ask import Ask
 from camgeo.capabilities.sweep.figures import REASONS, Evaluator
-from camgeo.capabilities.sweep.figures import figures as searched
-from camgeo.capabilities.sweep.keys import swept as known
-from camgeo.capabilities.sweep.linkages import ENGINES, Lengths, Support, angles, engine
-from camgeo.capabilities.sweep.rebuilt import recipe_with
+from camgeo.capabilities.sweep.figures import compute_figures as searched
+from camgeo.capabilities.sweep.keys import sweep_figures as known
+from camgeo.capabilities.sweep.linkages import LOOPS, Lengths, Support, angles, loop_class
+from camgeo.capabilities.sweep.single_designs import recipe_with
+from camgeo.capabilities.sweep.task import Task
 from camgeo.measures.figures import of_design
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_LINKAGE
 from camgeo.recipe.loading import load_text
@@ -246,9 +246,9 @@ def swept(limits):
 )
 def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
     one = swept(limits)
-    asked = Ask.of(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
+    asked = Task.from_recipe(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
     values = asked.plan.values(0, 21)
-    cheap, whole = searched(asked.scene(asked.figures), values), asked.measured(values)
+    cheap, whole = searched(asked.scene(asked.figures), values), asked.measure(values)
     assert set(OF_LINKAGES) - set(cheap) == without
     assert set(whole) == set(OF_LINKAGES)
     for name in set(OF_LINKAGES) - without:
@@ -257,14 +257,14 @@ def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank,
 
 def test_what_chunks_share_is_prepared_once(monkeypatch):
     calls = []
-    of = Evaluator.of
+    of = Evaluator.prepare
 
     def told(*given, **how):
         calls.append(given)
         return of(*given, **how)
 
-    monkeypatch.setattr(Evaluator, "of", told)
-    asked = Ask.of(swept("force-angle: {at_least: 20.125}"))
+    monkeypatch.setattr(Evaluator, "prepare", told)
+    asked = Task.from_recipe(swept("force-angle: {at_least: 20.125}"))
     scenes = [asked.scene(asked.figures) for _ in range(3)]
     calls.clear()
     for first, scene in zip((0, 7, 14), scenes, strict=True):
@@ -275,7 +275,7 @@ def test_what_chunks_share_is_prepared_once(monkeypatch):
 def test_designs_made_one_by_one_get_all_figures():
     dyads = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     base = recipe(more=dyads)
-    asked = Ask.of(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
+    asked = Task.from_recipe(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
     assert asked.figures == asked.all_figures == OF_LINKAGES
 
 
@@ -392,7 +392,9 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
     n = 48
     p = 25 + 200 * np.cos(angles(n))[None]
     cams = Support(np.array([[50.0]]), p, 0 * p, 0 * p)
-    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in (*lengths, 0))))
+    loop = loop_class(linkage).from_lengths(
+        1.0, cams, Lengths(*(np.array([[float(length)]]) for length in (*lengths, 0)))
+    )
     margin = loop.margin(lambda rows: rows.min(axis=1))
     s1 = np.roll(p[0], -n // 4)
     wanted = linkage.margin(p[0], s1, 50.0).min()
@@ -435,7 +437,7 @@ def test_forces_of_a_rigid_train_are_ranked_by(figure):
         f"sweep: {{vary: {{cam.base_radius: {{from: 34, to: 40, steps: 2}}}}, rank: {figure}}}\n"
     )
     recipe = load_text(text, "cam.yaml")
-    found = Evaluator.of(recipe, ["cam.base_radius"], figures=[figure]).found(np.array([[34.0], [40.0]]))
+    found = Evaluator.prepare(recipe, ["cam.base_radius"], figures=[figure]).evaluate(np.array([[34.0], [40.0]]))
     for value, base in zip(found.figures[figure].tolist(), (34, 40), strict=True):
         own = recipe.replace("cam.base_radius", base)
         exact = designed(own)
@@ -444,4 +446,4 @@ def test_forces_of_a_rigid_train_are_ranked_by(figure):
 
 def test_every_first_loop_has_an_engine():
     loops = (one for one in vars(four_bar).values() if isinstance(one, type) and one.__module__ == four_bar.__name__)
-    assert set(ENGINES) == {loop for loop in loops if "margin" in vars(loop)}
+    assert set(LOOPS) == {loop for loop in loops if "margin" in vars(loop)}

@@ -13,18 +13,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.heavy import parquet
-from support.sweepers import GRID, MEANS, ask, hills
+from support.sweepers import GRID, PROCEDURES, hills, task
 
 from camgeo.capabilities.sweep import gather as gathering
 from camgeo.capabilities.sweep import outputs
-from camgeo.capabilities.sweep.ask import Ask
 from camgeo.capabilities.sweep.gather import KEPT, OUTSIDE, STUCK, Ranking, gather
 from camgeo.capabilities.sweep.pictures import draw_map
 from camgeo.capabilities.sweep.plan import Axis, Plan, steps
 from camgeo.capabilities.sweep.recipes import Best, curve_of, recipe_text
 from camgeo.capabilities.sweep.refine import PolishError
-from camgeo.capabilities.sweep.run import How
+from camgeo.capabilities.sweep.run import Engine
 from camgeo.capabilities.sweep.search import search
+from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load, read
@@ -144,7 +144,7 @@ def test_every_design_of_a_sequence_falls_into_its_cell() -> None:
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return search(ask(), tmp_path_factory.mktemp("out"), How(1), MEANS).folder
+    return search(task(), tmp_path_factory.mktemp("out"), Engine(1), PROCEDURES).folder
 
 
 def test_all_files_are_there_and_the_report_tells_them(swept: Path) -> None:
@@ -181,7 +181,7 @@ def test_the_best_are_whole_recipes_that_say_what_was_measured(swept: Path) -> N
         assert recipe.name == f"four-bar-best-{place}"
         assert not recipe.uses
         assert vars(recipe.cam)["shaft"] == (x, 8.5)
-        assert replace(recipe.linkage.loop, rocker=9.0) == replace(ask().recipe.linkage.loop, rocker=9.0)
+        assert replace(recipe.linkage.loop, rocker=9.0) == replace(task().recipe.linkage.loop, rocker=9.0)
         assert recipe.linkage.loop.rocker == y
         origin = f"design {index} of 825 of the sweep of four-bar"
         assert recipe.about == f"{origin}: dwell {dwell:.6g} deg. AS 2023, Figure 9"
@@ -207,10 +207,10 @@ def test_the_report_tells_what_was_asked_and_what_came_of_it(swept: Path) -> Non
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.slow
 def test_lengths_are_told_in_the_recipes_unit(tmp_path: Path) -> None:
-    text = "units: inch\n" + ask(margin=0.04).recipe.text
-    inches = Ask.of(read(text.encode(), "x.yaml"))
+    text = "units: inch\n" + task(margin=0.04).recipe.text
+    inches = Task.from_recipe(read(text.encode(), "x.yaml"))
     assert inches.ranking.limits[0].at_least == pytest.approx(0.04 * 25.4)
-    report = search(inches, tmp_path, How(1), MEANS).report
+    report = search(inches, tmp_path, Engine(1), PROCEDURES).report
     first, limit = report["best"][0], report["sweep"]["limits"]["margin"]["at_least"]
     assert limit == pytest.approx(0.04)
     assert first["figures"]["margin"] == pytest.approx((first["values"]["cam.shaft[0]"] - 12.0) / 25.4)
@@ -233,8 +233,8 @@ def apart_by_hand(count: int) -> list[int]:
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
-    text = ask(refine="true").recipe.text.replace("keep: 3", "keep: 20")
-    outcome = search(Ask.of(read(text.encode(), "x.yaml")), tmp_path, How(jobs), MEANS)
+    text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
+    outcome = search(Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(jobs), PROCEDURES)
     best = outcome.report["best"]
     # the stand-in sends every design to one place of the first variable: of rockers within 5 percent one is left
     rockers = [GRID.values(index, index + 1)[0, 1] for index in apart_by_hand(20)]
@@ -251,8 +251,10 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
 
 @pytest.mark.usefixtures("no_pictures")
 def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path) -> None:
-    text = ask(refine="true").recipe.text.replace("keep: 3", "keep: 20")
-    outcome = search(Ask.of(read(text.encode(), "x.yaml")), tmp_path, How(1), replace(MEANS, polish=_crowd))
+    text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
+    outcome = search(
+        Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(1), replace(PROCEDURES, polish=_crowd)
+    )
     best, folder = outcome.report["best"], outcome.folder
     rows = list(csv.DictReader(io.StringIO((folder / "sweep.csv").read_text(encoding="utf-8"))))
     new = [row for row in rows if row["polished"] == "1"]
@@ -270,20 +272,20 @@ def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path
     assert abs(rockers[1] - rockers[0]) > 0.05 * 15.0
 
 
-def _crowd(_ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def _crowd(_task: Task, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     """Polish to places that lie within 4 percent of 15 about 97 and 105."""
     rocker = round((97.0 if values["linkage.rocker"] < 102.0 else 105.0) + values["linkage.rocker"] / 500.0, 6)
     return {"cam.shaft[0]": 15.0, "linkage.rocker": rocker}, {"dwell": rocker, "margin": 3.0}
 
 
-def _refuse(_ask: Ask, _values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def _refuse(_task: Task, _values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     raise PolishError("nothing is left of the band")
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
-    report = search(ask(refine="true"), tmp_path, How(1), replace(MEANS, polish=_refuse)).report
+    report = search(task(refine="true"), tmp_path, Engine(1), replace(PROCEDURES, polish=_refuse)).report
     assert [design["polished"] for design in report["best"]] == [False] * 3
     assert [entry["what"] for entry in report["skipped"] if entry["what"].startswith("polishing")] == [
         f"polishing best-{place}.yaml" for place in (1, 2, 3)
@@ -294,9 +296,9 @@ def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) -> None:
-    search(ask(), tmp_path, How(1), MEANS)
+    search(task(), tmp_path, Engine(1), PROCEDURES)
     before = (tmp_path / "four-bar" / "sweep.json").read_bytes()
-    outcome = search(ask(margin=99.0), tmp_path, How(1), MEANS)
+    outcome = search(task(margin=99.0), tmp_path, Engine(1), PROCEDURES)
     assert outcome.report["ok"] is False
     assert outcome.report["counts"]["kept"] == 0
     assert outcome.folder == tmp_path / "four-bar.rejected"
@@ -311,9 +313,9 @@ def test_a_users_own_files_are_left_alone(tmp_path: Path) -> None:
     folder = tmp_path / "four-bar"
     folder.mkdir()
     (folder / "notes.txt").write_text("mine")
-    search(ask(), tmp_path, How(1), MEANS)
+    search(task(), tmp_path, Engine(1), PROCEDURES)
     (folder / "best-7.yaml").write_text("mine")
-    search(ask(), tmp_path, How(1), MEANS)
+    search(task(), tmp_path, Engine(1), PROCEDURES)
     assert (folder / "notes.txt").read_text() == (folder / "best-7.yaml").read_text() == "mine"
 
 
@@ -322,7 +324,7 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
     (tmp_path / "four-bar").mkdir()
     (tmp_path / "four-bar" / name).write_text("mine")
     with pytest.raises(SurroundingsError, match=f"{name}: is in the way"):
-        search(ask(), tmp_path, How(1), MEANS)
+        search(task(), tmp_path, Engine(1), PROCEDURES)
     assert [path.name for path in (tmp_path / "four-bar").iterdir()] == [name]
     assert [path.name for path in tmp_path.iterdir()] == ["four-bar"]
 
@@ -330,9 +332,9 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.slow
 def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
-    search(ask(), tmp_path, How(1), MEANS)
-    text = ask().recipe.text.replace("keep: 3", "keep: 1")
-    search(Ask.of(read(text.encode(), "x.yaml")), tmp_path, How(1), MEANS)
+    search(task(), tmp_path, Engine(1), PROCEDURES)
+    text = task().recipe.text.replace("keep: 3", "keep: 1")
+    search(Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(1), PROCEDURES)
     assert sorted(path.name for path in (tmp_path / "four-bar").glob("*.yaml")) == ["best-1.yaml"]
 
 
@@ -355,7 +357,7 @@ def test_what_a_missing_package_leaves_out_is_told(
 
     for name in missing:
         monkeypatch.setattr(outputs, name, without)
-    report = search(ask(), tmp_path, How(1), MEANS).report
+    report = search(task(), tmp_path, Engine(1), PROCEDURES).report
     why = f"the package {package} is missing: pip install '.[sweep]' in a clone of camgeo"
     assert report["skipped"] == [{"what": what, "why": why} for what in left_out]
     assert (tmp_path / "four-bar" / "best-1.yaml").exists()
@@ -375,7 +377,7 @@ SWEEP = "sweep: {vary: {'cam.shaft[0]': [1, 2]}, rank: size}"
     ],
 )
 def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
-    asked = Ask.of(read(text.encode(), "mine.yaml"))
+    asked = Task.from_recipe(read(text.encode(), "mine.yaml"))
     best = Best(2, 1, polished=False, values={"cam.shaft[0]": 2.0}, figures={"size": 22.0})
     recipe = read(recipe_text(asked, best).encode(), "other.yaml")
     assert recipe.name == f"{asked.recipe.name}-best-2"
@@ -385,15 +387,15 @@ def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
 
 
 def test_a_long_note_is_cut_to_what_a_recipe_takes() -> None:
-    text = ask().recipe.text.replace("AS 2023, Figure 9", "x" * 990)
+    text = task().recipe.text.replace("AS 2023, Figure 9", "x" * 990)
     best = Best(1, 0, polished=False, values={}, figures={"dwell": 40.0})
-    about = read(recipe_text(Ask.of(read(text.encode(), "a.yaml")), best).encode(), "b.yaml").about
+    about = read(recipe_text(Task.from_recipe(read(text.encode(), "a.yaml")), best).encode(), "b.yaml").about
     assert about.endswith("xxx...")
     assert about.startswith("design 0 of 825")
 
 
 def test_the_curve_of_a_linkage_is_its_output_over_the_shaft_with_its_dwell() -> None:
-    curve, name = curve_of(ask().recipe, "it")
+    curve, name = curve_of(task().recipe, "it")
     assert name == "output (deg)"
     assert curve.output[0] == pytest.approx(curve.output[-1])
     start, length = curve.dwell
@@ -413,13 +415,13 @@ def test_the_curve_of_a_plain_cam_is_its_lift() -> None:
 
 
 def test_axes_are_labelled_with_their_units() -> None:
-    asked = ask()
+    asked = task()
     assert [asked.axis_unit(axis.path) for axis in asked.plan.axes] == ["mm", "mm"]
     text = b"""\
 cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}
 sweep: {vary: {'cam.motion[0].rise': [10, 20], 'cam.motion[0].over': [119, 120], cam.base_radius: [1, 2]}, rank: size}
 """
-    asked = Ask.of(read(text, "a.yaml"))
+    asked = Task.from_recipe(read(text, "a.yaml"))
     assert [asked.axis_unit(axis.path) for axis in asked.plan.axes] == ["mm", "deg", "mm"]
 
 
@@ -436,12 +438,12 @@ def test_a_picture_has_room_for_long_names_and_notes() -> None:
 
 @pytest.mark.slow
 def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
-    text = ask().recipe.text.replace("    linkage.rocker: {from: 95, to: 110, steps: 33}\n", "")
+    text = task().recipe.text.replace("    linkage.rocker: {from: 95, to: 110, steps: 33}\n", "")
 
     def flat(_scene, values):
         return hills("", np.column_stack([values, np.full(len(values), 111.0)]))
 
-    means = replace(MEANS, compute=flat, measure=lambda _ask, values: {"dwell": flat("", values)["dwell"]})
-    outcome = search(Ask.of(read(text.encode(), "a.yaml")), tmp_path, How(1), means)
+    procedures = replace(PROCEDURES, compute=flat, measure=lambda _task, values: {"dwell": flat("", values)["dwell"]})
+    outcome = search(Task.from_recipe(read(text.encode(), "a.yaml")), tmp_path, Engine(1), procedures)
     assert outcome.report["counts"]["computed"] == 25
     assert (outcome.folder / "sweep-map.png").read_bytes().startswith(PNG)

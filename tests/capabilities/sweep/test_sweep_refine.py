@@ -11,9 +11,9 @@ from support.sweepers import evaluate
 
 from camgeo.cams.flat_faced import breadth_of
 from camgeo.capabilities.sweep import refine
-from camgeo.capabilities.sweep.ask import Ask
-from camgeo.capabilities.sweep.rebuilt import mechanism_in, recipe_with
 from camgeo.capabilities.sweep.refine import PolishError, output_error, polish
+from camgeo.capabilities.sweep.single_designs import mechanism_in, recipe_with
+from camgeo.capabilities.sweep.task import Task
 from camgeo.recipe.loading import load, load_text
 from camgeo.synthesis.linkage import mechanism_of
 
@@ -37,9 +37,9 @@ FOUR_BAR = "four-bar, ground: 80, coupler: 70, rocker: 105"
 RANGES = "'cam.shaft[0]': {from: 14, to: 20}, 'cam.shaft[1]': {from: 5, to: 12}, linkage.rocker: {from: 100, to: 110}"
 
 
-def ask(limits="", rank="dwell", vary=RANGES, kind=FOUR_BAR):
+def task(limits="", rank="dwell", vary=RANGES, kind=FOUR_BAR):
     text = TEXT.replace("KIND", kind).replace("VARY", vary).replace("LIMITS", limits).replace("RANK", rank)
-    return Ask.of(load_text(text, "a.yaml"))
+    return Task.from_recipe(load_text(text, "a.yaml"))
 
 
 @pytest.fixture(autouse=True)
@@ -50,9 +50,9 @@ def short(monkeypatch):
     monkeypatch.setattr(refine, "_SLOW_STEPS", 5)
 
 
-def start(ask, values):
-    given = dict(zip((axis.path for axis in ask.sweep.vary), values, strict=True))
-    found = evaluate(ask.recipe, tuple(given), np.array([values]), samples=720)
+def start(task, values):
+    given = dict(zip((axis.path for axis in task.sweep.vary), values, strict=True))
+    found = evaluate(task.recipe, tuple(given), np.array([values]), samples=720)
     return given, {name: float(column[0]) for name, column in found.figures.items()}
 
 
@@ -67,7 +67,7 @@ def start(ask, values):
     ],
 )
 def test_a_design_gets_better_within_its_ranges_and_limits(rank, limits, sense):
-    asked = ask(limits, rank)
+    asked = task(limits, rank)
     given, before = start(asked, (18.0, 8.5, 105.0))
     values, after = polish(asked, given)
     assert sense * after[rank] > sense * before[rank]
@@ -85,7 +85,7 @@ def test_a_design_gets_better_within_its_ranges_and_limits(rank, limits, sense):
 
 @pytest.mark.slow
 def test_a_design_that_breaks_a_limit_is_brought_within():
-    asked = ask("transmission-angle: {at_least: 36}")
+    asked = task("transmission-angle: {at_least: 36}")
     given, before = start(asked, (18.0, 8.5, 105.0))
     assert before["transmission-angle"] < 36
     assert polish(asked, given)[1]["transmission-angle"] >= 36
@@ -93,30 +93,30 @@ def test_a_design_that_breaks_a_limit_is_brought_within():
 
 @pytest.mark.slow
 def test_where_nothing_better_is_found_the_start_stays():
-    asked = ask("dwell: {at_least: 170}")
+    asked = task("dwell: {at_least: 170}")
     given, _ = start(asked, (18.0, 8.5, 105.0))
     assert polish(asked, given)[0] == given
 
 
 @pytest.mark.slow
 def test_listed_values_stay():
-    asked = ask(vary="linkage.rocker: [100, 105], 'cam.shaft[0]': {from: 14, to: 20}")
+    asked = task(vary="linkage.rocker: [100, 105], 'cam.shaft[0]': {from: 14, to: 20}")
     given, before = start(asked, (105.0, 17.0))
     values, after = polish(asked, given)
     assert values["linkage.rocker"] == 105.0
     assert after["dwell"] > before["dwell"]
-    alone = ask(vary="linkage.rocker: [100, 105]")
+    alone = task(vary="linkage.rocker: [100, 105]")
     assert polish(alone, {"linkage.rocker": 105.0})[0] == {"linkage.rocker": 105.0}
 
 
 def test_where_there_is_nothing_to_gain_the_start_stays():
     # the cam's least radius of curvature does not depend on where its shaft is
-    asked = ask(rank="radius-of-curvature", vary="'cam.shaft[0]': {from: -20, to: 20}")
+    asked = task(rank="radius-of-curvature", vary="'cam.shaft[0]': {from: -20, to: 20}")
     assert polish(asked, {"cam.shaft[0]": 17.0})[0] == {"cam.shaft[0]": 17.0}
 
 
 def test_a_polished_zero_has_no_sign():
-    asked = ask(vary="'cam.shaft[1]': {from: -20, to: 20}")
+    asked = task(vary="'cam.shaft[1]': {from: -20, to: 20}")
     goal = refine._goal(asked, ["cam.shaft[1]"], np.array([3.0]))
     assert repr(float(refine._rounded(goal, np.array([-1e-9]))[0])) == "0.0"
 
@@ -125,7 +125,7 @@ def test_designs_made_one_by_one(monkeypatch):
     monkeypatch.setattr(refine, "_MEMBERS", 6)
     monkeypatch.setattr(refine, "_ANGLES", 90)
     dyads = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
-    asked = ask(kind=FOUR_BAR + dyads, rank="swing", vary="linkage.rocker: {from: 104, to: 106}")
+    asked = task(kind=FOUR_BAR + dyads, rank="swing", vary="linkage.rocker: {from: 104, to: 106}")
     given, before = start(asked, (105.0,))
     assert polish(asked, given)[1]["swing"] > before["swing"]
 
@@ -140,7 +140,7 @@ def narrow(asked, values):
 @pytest.mark.slow
 def test_a_dwell_is_polished_off_the_knifes_edge():
     # eight numbers with which a ripple just fills the band: within 0.001 mm it may leave it
-    asked = Ask.of(load(RECIPES / "long-dwell.yaml"))
+    asked = Task.from_recipe(load(RECIPES / "long-dwell.yaml"))
     numbers = (2.938, -0.0487, -0.0206, -0.0628, 14.833, 79.28, 61.85, 60.0)
     given = dict(zip((axis.path for axis in asked.sweep.vary), numbers, strict=True))
     assert narrow(asked, given) < 0.85 * start(asked, numbers)[1]["dwell"]
@@ -154,7 +154,7 @@ def test_a_dwell_is_polished_off_the_knifes_edge():
 def test_a_tolerance_that_leaves_nothing_of_the_band_is_refused_with_one_that_does(tolerance):
     def coarse(tolerance):
         text = TEXT.replace("KIND", FOUR_BAR).replace("VARY", RANGES).replace("LIMITS", "").replace("RANK", "dwell")
-        return Ask.of(load_text(f"{text}export: {{tolerance: {tolerance}}}\n", "a.yaml"))
+        return Task.from_recipe(load_text(f"{text}export: {{tolerance: {tolerance}}}\n", "a.yaml"))
 
     given = start(asked := coarse(tolerance), (18.0, 8.5, 105.0))[0]
     with pytest.raises(PolishError, match=r"give (export.tolerance at most|a smaller export.tolerance)") as refused:

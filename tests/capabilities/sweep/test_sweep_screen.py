@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.capabilities.sweep.ask import EXACT, Ask
 from camgeo.capabilities.sweep.certify import error_of
-from camgeo.capabilities.sweep.estimate_errors import DEGREES
-from camgeo.capabilities.sweep.figures import REASONS, Evaluator, estimated
-from camgeo.capabilities.sweep.keys import varied
-from camgeo.capabilities.sweep.run import How
-from camgeo.capabilities.sweep.search import Means, search
+from camgeo.capabilities.sweep.figures import REASONS, Evaluator, estimable_figures
+from camgeo.capabilities.sweep.keys import varied_fields
+from camgeo.capabilities.sweep.run import Engine
+from camgeo.capabilities.sweep.screen import estimates
+from camgeo.capabilities.sweep.search import Procedures, search
+from camgeo.capabilities.sweep.task import EXACT, Task
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 
@@ -94,11 +94,11 @@ def test_estimates_are_near_the_exact_designs(name):
     text, ranges = CAMS[name]
     low, high = np.array(list(ranges.values()), dtype=float).T
     one = recipe(text, ranges, units="inch" if name == "roller" else "mm")
-    evaluator = Evaluator.of(one, tuple(ranges), screened=True)
+    evaluator = Evaluator.prepare(one, tuple(ranges), screened=True)
     assert evaluator.estimator is not None
-    assert evaluator.estimator.template.anew == ()
+    assert evaluator.estimator.template.resampled == ()
     values = np.array([0.6 * low + 0.4 * high, 0.2 * low + 0.8 * high])
-    assert_near(evaluator.found(values), Evaluator.of(one, tuple(ranges)).found(values))
+    assert_near(evaluator.evaluate(values), Evaluator.prepare(one, tuple(ranges)).evaluate(values))
 
 
 @pytest.mark.slow
@@ -109,8 +109,8 @@ def test_estimates_anywhere_are_near_the_exact_designs(name, law, shares):
     one = recipe(text, ranges, law)
     ends = list(ranges.values())
     values = np.array([[low + share * (high - low) for (low, high), share in zip(ends, shares, strict=False)]])
-    exact = Evaluator.of(one, tuple(ranges)).found(values)
-    estimates = Evaluator.of(one, tuple(ranges), screened=True).found(values)
+    exact = Evaluator.prepare(one, tuple(ranges)).evaluate(values)
+    estimates = Evaluator.prepare(one, tuple(ranges), screened=True).evaluate(values)
     near_undercut = abs(estimates.figures.get("radius-of-curvature", np.ones(1))[0]) < 0.05
     if not near_undercut and not {"undercut"} & {REASONS[exact.reason[0]]}:
         assert_near(estimates, exact)
@@ -120,14 +120,13 @@ def test_why_a_design_has_no_estimate():
     text, ranges = CAMS["roller"]
     one = recipe(text, ranges)
     values = np.array([[40.0, 5.0, 20.0, 9.0], [1.0, 0.0, 25.0, 40.0], [10.0, 40.0, 20.0, 9.0]])
-    both = [Evaluator.of(one, tuple(ranges), screened=screened).found(values) for screened in (False, True)]
+    both = [Evaluator.prepare(one, tuple(ranges), screened=screened).evaluate(values) for screened in (False, True)]
     assert [REASONS[code] for code in both[1].reason] == ["", "undercut", "impossible"]
     assert list(both[0].reason) == list(both[1].reason)
     text, ranges = CAMS["support"]
     away = np.array([[0.8, 30.0, 40.0, 0.0]])
-    assert [
-        REASONS[code] for code in Evaluator.of(recipe(text, ranges), tuple(ranges), screened=True).found(away).reason
-    ] == ["shaft-outside"]
+    outside = Evaluator.prepare(recipe(text, ranges), tuple(ranges), screened=True).evaluate(away)
+    assert [REASONS[code] for code in outside.reason] == ["shaft-outside"]
 
 
 def test_what_acts_otherwise_is_worked_out_anew():
@@ -136,11 +135,11 @@ def test_what_acts_otherwise_is_worked_out_anew():
     cam += "[[0, 0], [60, 5], [120, 15], [180, 20], [260, 6], [330, 0]]}"
     ranges = {"cam.base_radius": (35, 50), "cam.motion.points[2][0]": (110, 130), "cam.motion.points[2][1]": (13, 16)}
     one = recipe(cam, ranges)
-    evaluator = Evaluator.of(one, tuple(ranges), screened=True)
+    evaluator = Evaluator.prepare(one, tuple(ranges), screened=True)
     assert evaluator.estimator is not None
-    assert evaluator.estimator.template.anew == (1, 2)
+    assert evaluator.estimator.template.resampled == (1, 2)
     values = np.array([[40.0, 112.0, 14.0], [45.0, 128.0, 15.5]])
-    assert_near(evaluator.found(values), Evaluator.of(one, tuple(ranges)).found(values))
+    assert_near(evaluator.evaluate(values), Evaluator.prepare(one, tuple(ranges)).evaluate(values))
 
 
 @pytest.mark.parametrize(
@@ -157,15 +156,15 @@ def test_what_acts_otherwise_is_worked_out_anew():
 )
 def test_what_is_not_screened_says_why(cam, path, why):
     one = recipe(cam, {path: (40, 80)}, sweep=f"method: random, count: {EXACT + 1}, rank: size")
-    assert Ask.of(one).unscreened.startswith(why)
-    assert not Ask.of(one).screened
+    assert Task.from_recipe(one).unscreened.startswith(why)
+    assert not Task.from_recipe(one).screened
 
 
 @pytest.mark.parametrize(("rank", "why"), [("size", ""), ("mass", "mass is not sampled")])
 def test_what_is_weighed_is_worked_out(rank, why):
     text = f"cam: {{{CAMS['roller'][0].replace('LAW', 'cycloidal')}}}\npart: {{thickness: 8, density: 7.85}}\nsweep: "
     text += f"{{vary: {{cam.base_radius: {{from: 40, to: 45}}}}, rank: {rank}, method: random, count: {EXACT + 1}}}\n"
-    asked = Ask.of(load_text(text, "a.yaml"))
+    asked = Task.from_recipe(load_text(text, "a.yaml"))
     assert asked.unscreened == why
     assert "mass" in asked.all_figures
     assert ("mass" in asked.figures) == bool(why)
@@ -173,9 +172,9 @@ def test_what_is_weighed_is_worked_out(rank, why):
 
 def test_few_designs_are_all_exact():
     few, many = (recipe(*CAMS["roller"], sweep=f"method: random, count: {n}, rank: size") for n in (EXACT, EXACT + 1))
-    assert not Ask.of(few).screened
-    assert Ask.of(many).screened
-    assert Ask.of(many).figures == estimated(many)
+    assert not Task.from_recipe(few).screened
+    assert Task.from_recipe(many).screened
+    assert Task.from_recipe(many).figures == estimable_figures(many)
 
 
 # --- words ------------------------------------------------------------------------------------------------------------
@@ -189,30 +188,31 @@ def worded(vary: str = KINDS, more: str = "rank: size", text: str = CAMS["roller
 
 def test_words_are_compared_in_the_lists_order():
     one = worded()
-    asked = Ask.of(one)
+    asked = Task.from_recipe(one)
     assert asked.plan.count == 8
-    told = [asked.told(dict(zip(asked.paths, row, strict=True))) for row in asked.plan.values(0, 8)]
+    told = [asked.values_by_path(row) for row in asked.plan.values(0, 8)]
     assert told[:3] == [
         {"cam.base_radius": 40.0, "cam.motion[0].law": "cycloidal", "cam.follower.kind": "roller"},
         {"cam.base_radius": 40.0, "cam.motion[0].law": "cycloidal", "cam.follower.kind": "shoe"},
         {"cam.base_radius": 40.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"},
     ]
     assert "roller-speed" not in asked.all_figures  # which a shoe has not
-    assert "roller-speed" in Ask.of(worded("{cam.base_radius: [40, 45]}")).all_figures
-    assert len(np.unique(Ask.of(worded(more="rank: size, method: random, count: 200")).plan.values(0, 200)[:, 1])) == 2
+    assert "roller-speed" in Task.from_recipe(worded("{cam.base_radius: [40, 45]}")).all_figures
+    plan = Task.from_recipe(worded(more="rank: size, method: random, count: 200")).plan
+    assert len(np.unique(plan.values(0, 200)[:, 1])) == 2
 
 
 def test_designs_with_words_have_the_figures_of_their_recipes():
-    asked = Ask.of(worded())
+    asked = Task.from_recipe(worded())
     values = asked.plan.values(0, 8)[[0, 5, 6]]
-    found = asked.exactly(values)
-    figures = [name for name in estimated(asked.recipe) if name in asked.all_figures]
-    screened = Evaluator.of(asked.recipe, asked.paths, figures=figures, screened=True).found(values)
+    found = asked.exact_figures(values)
+    figures = [name for name in estimable_figures(asked.recipe) if name in asked.all_figures]
+    screened = Evaluator.prepare(asked.recipe, asked.paths, figures=figures, screened=True).evaluate(values)
     assert_near(screened, found)
     text = asked.recipe.text.replace("law: cycloidal}, {dwell: 50", "law: harmonic}, {dwell: 50").replace(
         "radius: 40", "radius: 45"
     )
-    by_hand = Evaluator.of(load_text(text, "a.yaml"), (), figures=asked.all_figures).found(np.zeros((1, 0)))
+    by_hand = Evaluator.prepare(load_text(text, "a.yaml"), (), figures=asked.all_figures).evaluate(np.zeros((1, 0)))
     assert {name: column[2] for name, column in found.figures.items()} == {
         name: column[0] for name, column in by_hand.figures.items()
     }
@@ -221,10 +221,10 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
-    from camgeo.capabilities.sweep.command import means
+    from camgeo.capabilities.sweep.command import procedures
 
-    asked = Ask.of(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
-    outcome = search(asked, tmp_path, How(1), means())
+    asked = Task.from_recipe(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
+    outcome = search(asked, tmp_path, Engine(1), procedures())
     best = outcome.report["best"][0]["values"]
     assert best == {"cam.base_radius": 45.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"}
     assert outcome.report["sweep"]["vary"]["cam.motion[0].law"] == {"words": ["cycloidal", "harmonic"], "values": 2}
@@ -240,13 +240,13 @@ def test_words_of_a_linkage():
     text += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, assembly: open}\n"
     text += "sweep: {vary: {linkage.rocker: [105, 110], linkage.assembly: [crossed, open]}, rank: swing}\n"
     one = load_text(text, "a.yaml")
-    values = Ask.of(one).plan.values(0, 4)
-    found = Evaluator.of(one, tuple(axis.path for axis in varied(one))).found(values).figures["swing"]
+    values = Task.from_recipe(one).plan.values(0, 4)
+    found = Evaluator.prepare(one, tuple(axis.path for axis in varied_fields(one))).evaluate(values).figures["swing"]
     for row, (rocker, word) in enumerate([(105, "crossed"), (105, "open"), (110, "crossed"), (110, "open")]):
         single = load_text(
             text.replace("105,", f"{rocker},", 1).replace("assembly: open", f"assembly: {word}"), "a.yaml"
         )
-        by_hand = Evaluator.of(single, (), figures=("swing",)).found(np.zeros((1, 0)))
+        by_hand = Evaluator.prepare(single, (), figures=("swing",)).evaluate(np.zeros((1, 0)))
         assert found[row] == pytest.approx(by_hand.figures["swing"][0], rel=1e-12)
 
 
@@ -290,13 +290,13 @@ LAW, KIND = "sweep.vary.'cam.motion[0].law'", "sweep.vary.'cam.follower.kind'"
 )
 def test_words_that_are_none(vary, place, message):
     with pytest.raises(RecipeErrors) as caught:
-        Ask.of(worded(vary))
+        Task.from_recipe(worded(vary))
     assert str(caught.value) == f"{place}: {message}"
 
 
 def test_a_figure_that_a_word_has_not():
     with pytest.raises(RecipeErrors, match=r"'cam.follower.kind'\[1\]: with it sweep.rank: roller-speed needs"):
-        Ask.of(worded(more="rank: roller-speed"))
+        Task.from_recipe(worded(more="rank: roller-speed"))
 
 
 # --- certification ----------------------------------------------------------------------------------------------------
@@ -311,19 +311,19 @@ def swept(tmp_path):
     """Report and folder of a sweep of the roller's cam, some exact designs of which may be made to fall."""
 
     def sweep(text=SEARCH, fall=()):
-        def lost(ask, values, exactly=Ask.exactly):
-            computed = exactly(ask, values)
+        def lost(task, values, exactly=Task.exact_figures):
+            computed = exactly(task, values)
             if values[0].tolist() in fall:
                 computed.reason[:] = REASONS.index("undercut")
             return computed
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(Ask, "exactly", lost)
-            from camgeo.capabilities.sweep.command import means
+            patch.setattr(Task, "exact_figures", lost)
+            from camgeo.capabilities.sweep.command import procedures
 
-            asked = Ask.of(recipe(*CAMS["roller"], sweep=text))
-            computing: Means = means()
-            outcome = search(asked, tmp_path, How(1), computing)
+            asked = Task.from_recipe(recipe(*CAMS["roller"], sweep=text))
+            computing: Procedures = procedures()
+            outcome = search(asked, tmp_path, Engine(1), computing)
         return outcome.report, outcome.folder
 
     return sweep
@@ -339,7 +339,7 @@ def test_the_next_design_follows_where_one_falls(swept):
     assert report["screen"]["fell"] == {}
     for place, design in enumerate(report["best"], 1):
         made = load(folder / f"best-{place}.yaml")
-        exact = Evaluator.of(made, ()).found(np.zeros((1, 0))).figures
+        exact = Evaluator.prepare(made, ()).evaluate(np.zeros((1, 0))).figures
         for name, value in design["figures"].items():
             assert value == exact[name][0], name
     rows = (folder / "sweep.csv").read_text(encoding="utf-8").splitlines()
@@ -372,7 +372,7 @@ def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     assert not report["ok"]
     broken = report["nearest"]["breaks"]
     near = recipe(*CAMS["roller"]).text_with(report["nearest"]["values"])
-    exact = Evaluator.of(load_text(near, "a.yaml"), ()).found(np.zeros((1, 0))).figures
+    exact = Evaluator.prepare(load_text(near, "a.yaml"), ()).evaluate(np.zeros((1, 0))).figures
     assert report["nearest"]["value"] == exact[broken][0]
     assert report["screen"]["certified"] == 0
     assert sum(report["screen"]["fell"].values()) == 1
@@ -388,12 +388,12 @@ def test_polishing_goes_by_estimates_and_keeps_exact_designs(swept):
     assert best["figures"]["size"] < plain["best"][0]["figures"]["size"]
     assert best["figures"]["pressure-angle"] <= 35.0
     assert best["figures"]["swing"] >= 12.0
-    exact = Evaluator.of(load(folder / "best-1.yaml"), ()).found(np.zeros((1, 0))).figures
+    exact = Evaluator.prepare(load(folder / "best-1.yaml"), ()).evaluate(np.zeros((1, 0))).figures
     assert best["figures"]["size"] == exact["size"][0]
 
 
 @pytest.mark.parametrize("name", ["pressure-angle", "size"])
 def test_errors_are_degrees_or_shares(name):
-    wanted = 0.5 if name in DEGREES else 0.25
+    wanted = 0.5 if estimates()[name].in_degrees else 0.25
     assert error_of(name, 2.5, 2.0) == wanted
     assert error_of(name, math.inf, math.inf) == 0.0

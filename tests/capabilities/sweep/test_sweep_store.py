@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from support.sweepers import GRID, ask, calls, fail, hills, job
+from support.sweepers import GRID, calls, fail, hills, job, task
 
 from camgeo.capabilities.sweep import job as jobs
 from camgeo.capabilities.sweep import store
-from camgeo.capabilities.sweep.ask import Ask
 from camgeo.capabilities.sweep.figures import Scene
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.job import Job, VersionsError, result
 from camgeo.capabilities.sweep.plan import Axis, Plan
-from camgeo.capabilities.sweep.run import How, chunks_of, compute, gathered
+from camgeo.capabilities.sweep.run import Engine, chunks_of, compute, gather_chunks
 from camgeo.capabilities.sweep.store import ChunkError, Chunks, decode, encode
+from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load_text, read
 
@@ -32,7 +32,7 @@ BEST = Ranking("dwell", most=True)
 @pytest.fixture
 def filled(tmp_path: Path) -> Chunks:
     chunks = chunks_of(job(), tmp_path)
-    compute(job(), chunks, How(1))
+    compute(job(), chunks, Engine(1))
     return chunks
 
 
@@ -87,7 +87,7 @@ def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path:
         path.unlink()
     told = tmp_path / "calls"
     told.mkdir()
-    work = compute(job(scene=f"calls={told};"), filled, How(1))
+    work = compute(job(scene=f"calls={told};"), filled, Engine(1))
     assert work.computed == 64
     assert work.reused == GRID.count - 64
     assert work.damaged == (fault != "gone")
@@ -96,10 +96,10 @@ def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path:
 
 
 def test_a_chunk_that_is_spoilt_before_it_is_gathered_is_computed_again(filled: Chunks) -> None:
-    expected = gathered(job(), filled, BEST)
+    expected = gather_chunks(job(), filled, BEST)
     filled.path(2).write_bytes(b"torn")
     filled.path(3).unlink()
-    again = gathered(job(), filled, BEST)
+    again = gather_chunks(job(), filled, BEST)
     assert again.index.tolist() == expected.index.tolist()
     assert again.counts == expected.counts
 
@@ -124,18 +124,18 @@ def test_what_is_no_file_is_not_opened_but_told(
     path.unlink()
     place(path)
     with pytest.raises(SurroundingsError, match=rf"chunk-0000001.bin: {kind}, where .*: move it or remove it"):
-        compute(job(compute=fail), filled, How(1), fresh=fresh)
+        compute(job(compute=fail), filled, Engine(1), fresh=fresh)
     with pytest.raises(SurroundingsError, match=kind):
         filled.read(1)
     path.rename(tmp_path / "elsewhere")  # as the message says
-    assert compute(job(), filled, How(1), fresh=fresh).damaged == 0
+    assert compute(job(), filled, Engine(1), fresh=fresh).damaged == 0
 
 
 def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, monkeypatch: pytest.MonkeyPatch) -> None:
     path = filled.path(1)
     with path.open("r+b") as stream:
         stream.truncate(1 << 27)
-    work = compute(job(), filled, How(1))
+    work = compute(job(), filled, Engine(1))
     assert (work.damaged, work.computed) == (1, filled.plan.chunk)
     monkeypatch.setattr(store, "_MOST_BYTES", 64)
     with pytest.raises(ChunkError, match="torn or changed"):
@@ -149,10 +149,10 @@ def test_a_file_in_the_place_of_a_folder_is_told_before_anything_is_computed(pla
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("mine")
     with pytest.raises(SurroundingsError, match=r"not a folder, where .*: move it or remove it") as refused:
-        compute(job(compute=fail), chunks, How(1))
+        compute(job(compute=fail), chunks, Engine(1))
     assert refused.value.path == path
     path.rename(tmp_path / "elsewhere")  # as the message says
-    assert compute(job(), chunks, How(1)).computed == GRID.count
+    assert compute(job(), chunks, Engine(1)).computed == GRID.count
 
 
 def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:
@@ -163,11 +163,11 @@ def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:
 
 
 def test_nothing_is_computed_twice(filled: Chunks) -> None:
-    assert compute(job(), filled, How(1)).computed == 0
+    assert compute(job(), filled, Engine(1)).computed == 0
 
 
 def test_fresh_computes_all_again(filled: Chunks) -> None:
-    assert compute(job(), filled, How(1), fresh=True).computed == GRID.count
+    assert compute(job(), filled, Engine(1), fresh=True).computed == GRID.count
 
 
 def test_what_killed_runs_left_is_cleared_away_and_what_others_write_is_not(filled: Chunks) -> None:
@@ -212,31 +212,31 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
 
 
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
-    def key(recipe: Ask) -> str:
+    def key(recipe: Task) -> str:
         return Job(recipe.plan, recipe.scene(recipe.figures), hills).key
 
-    plain = key(ask())
+    plain = key(task())
     for same in (
-        ask("a comment"),
-        ask(margin=3.0),
-        ask(rank="margin"),
-        ask(refine="true"),
-        ask(path="other/name.yaml"),
+        task("a comment"),
+        task(margin=3.0),
+        task(rank="margin"),
+        task(refine="true"),
+        task(path="other/name.yaml"),
     ):
         assert key(same) == plain
-    longer = ask()
+    longer = task()
     # needs: dynamics
     train = "dynamics: {mass: 0.4, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
     # needs: dynamics
-    assert key(Ask.of(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
+    assert key(Task.from_recipe(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
     text = longer.recipe.text.replace("coupler: 70", "coupler: 71")
-    assert key(Ask.of(read(text.encode(), "four-bar.yaml"))) != plain
+    assert key(Task.from_recipe(read(text.encode(), "four-bar.yaml"))) != plain
 
 
 def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
     def key(limits: str, rank: str = "dwell") -> str:
-        text = ask(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)
-        asked = Ask.of(read(text.encode(), "four-bar.yaml"))
+        text = task(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)
+        asked = Task.from_recipe(read(text.encode(), "four-bar.yaml"))
         return Job(asked.plan, asked.scene(asked.figures), hills).key
 
     plain = key("margin: {at_least: 1}")

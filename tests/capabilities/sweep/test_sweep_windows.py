@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.scanned import scanned
 
-from camgeo.capabilities.sweep.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
+from camgeo.capabilities.sweep.ends import Ends, _crossing, _Cubic, cell_bounds, greatest, least, lengths, window_ends
 from camgeo.capabilities.sweep.linkages import angles
-from camgeo.capabilities.sweep.windows import Samples, longest
+from camgeo.capabilities.sweep.windows import Samples, longest_windows
 from kin.numeric.longest_window import dwells
 
 TURN = 2 * math.pi
@@ -39,7 +39,7 @@ def sampled(f, x):
 @pytest.mark.parametrize("band", [1e-9, 0.003, 0.2, 2.0, 50.0])
 def test_the_windows_are_those_of_two_pointers(n, band):
     samples = sampled(*waves(n, 60, n))
-    found, (start, cells) = longest(samples, band), scanned(samples, band)
+    found, (start, cells) = longest_windows(samples, band), scanned(samples, band)
     assert np.array_equal(found.start, start)
     assert np.array_equal(found.cells, cells)
 
@@ -55,7 +55,7 @@ def test_they_are_so_for_values_with_many_ties(data):
     x = np.broadcast_to((np.cumsum(steps) - steps) * TURN / steps.sum(), value.shape)
     samples = Samples(value, np.minimum(value, after), np.maximum(value, after), np.stack([x, angles(n) + 0 * x]))
     band = data.draw(st.sampled_from([0.5, 1.0, 2.0, 2.5, 6.0]))
-    found = longest(samples, band)
+    found = longest_windows(samples, band)
     start, cells = scanned(samples, band)
     assert np.array_equal(found.start, start)
     assert np.array_equal(found.cells, cells)
@@ -105,7 +105,7 @@ def reach_of_all(samples, band, row, k):
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
     samples = sampled(*waves(5, 12, 40))
-    found = longest(samples, band)
+    found = longest_windows(samples, band)
     for k in (0, 1):
         for row in range(12):
             assert (found.start[k, row], found.cells[k, row]) == reach_of_all(samples, band, row, k)
@@ -113,20 +113,20 @@ def test_no_window_reaches_farther(band):
 
 def test_a_constant_is_one_window():
     flat = np.full((2, 24), 3.0)
-    found = longest(Samples(flat, flat, flat, (angles(24) + 0 * flat)[None]), 1e-9)
+    found = longest_windows(Samples(flat, flat, flat, (angles(24) + 0 * flat)[None]), 1e-9)
     assert (found.cells == 24).all()
     none = flat[:0]
-    assert longest(Samples(none, none, none, none[None]), 1.0).start.shape == (1, 0)
+    assert longest_windows(Samples(none, none, none, none[None]), 1.0).start.shape == (1, 0)
 
 
 def lengths_of(wave, band):
     f, x = wave
     samples = sampled(f, x)
-    found = longest(samples, band)
+    found = longest_windows(samples, band)
     theta = np.broadcast_to(angles(f[0].shape[1]), f[0].shape)
     over = (x, (theta, np.ones_like(theta)))
     bounds = samples.low, samples.high
-    return [lengths(ends((found.start[k], found.cells[k]), f, over[k], bounds), band) for k in (0, 1)]
+    return [lengths(window_ends((found.start[k], found.cells[k]), f, over[k], bounds), band) for k in (0, 1)]
 
 
 def exact(seed, m, row):
@@ -172,10 +172,10 @@ def test_a_window_over_the_shaft_is_not_the_one_over_the_relative_angle():
 def test_parts_and_joins_of_ends_are_inverse():
     f, x = waves(4, 9, 60)
     samples = sampled(f, x)
-    found = longest(samples, 0.1)
-    whole = ends((found.start[0], found.cells[0]), f, x, (samples.low, samples.high))
+    found = longest_windows(samples, 0.1)
+    whole = window_ends((found.start[0], found.cells[0]), f, x, (samples.low, samples.high))
     halves = [whole.part(np.arange(9) < 4), whole.part(np.arange(9) >= 4)]
-    for one, other in zip(whole, Ends.joined(halves), strict=True):
+    for one, other in zip(whole, Ends.concatenate(halves), strict=True):
         assert np.array_equal(one, other)
 
 
@@ -199,7 +199,7 @@ def test_where_cubics_pass_a_level():
         cubic = _Cubic(*(row[monotone] for row in every))
         count = np.count_nonzero(monotone)
         x = rng.uniform(0.0, 1.0, count)
-        found = _passed(cubic, np.full(count, sense, dtype=np.int8), cubic(x), np.zeros(count), np.ones(count))
+        found = _crossing(cubic, np.full(count, sense, dtype=np.int8), cubic(x), np.zeros(count), np.ones(count))
         rise = np.abs(cubic(np.ones(count)) - cubic.f)
         assert (np.abs(cubic(found) - cubic(x)) < 1e-12 * (rise + np.abs(cubic.f))).all()
 
