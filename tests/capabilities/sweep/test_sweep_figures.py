@@ -397,7 +397,7 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
     )
     margin = loop.margin(lambda rows: rows.min(axis=1))
     s1 = np.roll(p[0], -n // 4)
-    wanted = linkage.margin(p[0], s1, 50.0).min()
+    wanted = linkage.margins(p[0], s1, 50.0).min()
     assert (margin[0] < 0) == (wanted < 0)
     if wanted > 0:
         assert margin[0] == pytest.approx(wanted)
@@ -446,4 +446,4 @@ def test_forces_of_a_rigid_train_are_ranked_by(figure):
 
 def test_every_first_loop_has_an_engine():
     loops = (one for one in vars(four_bar).values() if isinstance(one, type) and one.__module__ == four_bar.__name__)
-    assert set(LOOPS) == {loop for loop in loops if "margin" in vars(loop)}
+    assert set(LOOPS) == {loop for loop in loops if "margins" in vars(loop)}
