@@ -8,6 +8,7 @@ velocity jumps, at the corners of a polygon, the jump is that of the two limits.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,7 +62,7 @@ class Drive:
     def __len__(self) -> int:
         return len(self.position)
 
-    @property
+    @cached_property
     def half(self) -> Array:
         """Half widths of the stretches (m,)."""
         return 0.5 * np.diff(self.knots)
@@ -77,9 +78,21 @@ class Drive:
         return np.stack([evaluated(part, stretch, x) for part in (self.position, self.velocity, self.acceleration)])
 
     def split(self, parts: Indices) -> Drive:
-        """Cut each stretch into `parts` (m,) equal ones."""
+        """Cut each stretch into `parts` (m,) equal ones; for shaft speeds close to one another that is done once."""
         if parts.max(initial=1) == 1:
             return self
+        key = parts.tobytes()
+        if key not in self._cut:
+            self._cut.clear()
+            self._cut[key] = self._split(parts)
+        return self._cut[key]
+
+    @cached_property
+    def _cut(self) -> dict[bytes, Drive]:
+        """What was cut last, by the bytes of its parts."""
+        return {}
+
+    def _split(self, parts: Indices) -> Drive:
         owner = np.repeat(np.arange(len(self)), parts)
         number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
         step = np.diff(self.knots)[owner] / parts[owner]

@@ -8,6 +8,7 @@ resonance. Time and rates may be in any unit; the dynamics of a cam take radians
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -39,37 +40,37 @@ class Oscillator:
         if not (0.0 <= self.decay < math.inf and 0.0 <= self.square < math.inf):
             raise ValueError(f"decay {self.decay!r} and squared frequency {self.square!r} must be finite, 0 or above")
 
-    @property
+    @cached_property
     def natural(self) -> float:
         """Undamped natural frequency r."""
         return math.sqrt(self.square)
 
-    @property
+    @cached_property
     def swings(self) -> bool:
         """Whether it is underdamped."""
         return self.decay < self.natural
 
-    @property
+    @cached_property
     def split(self) -> float:
         """Damped frequency if it swings, else half the difference of the two rates of decay."""
         return math.sqrt(abs(self.natural - self.decay) * (self.natural + self.decay))
 
-    @property
+    @cached_property
     def fast(self) -> float:
         """Greatest modulus of the two roots."""
         return self.natural if self.swings else self.decay + self.split
 
-    @property
+    @cached_property
     def slow(self) -> float:
         """Least modulus of the two roots."""
         return self.natural if self.swings else self._gentle
 
-    @property
+    @cached_property
     def fading(self) -> float:
         """Rate at which the slower part of a free motion decays."""
         return self.decay if self.swings else self._gentle
 
-    @property
+    @cached_property
     def _gentle(self) -> float:
         # a - sqrt(a^2 - r^2), which would cancel
         return self.square / (self.decay + self.split) if self.square else 0.0

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _NEAR = 0.03  # of the range: samples a quarter of a radian apart miss less of a peak
 _MOST_NEAR = 256
-_GRID, _ROUNDS = 17, 8  # places between two neighbours, of which each round keeps an eighth
+_GRID, _ROUNDS = 17, 4  # places between two neighbours, of which each round keeps an eighth; then a parabola is good
 _AT_ONCE = 400_000  # samples, which bounds the memory
 
 
@@ -120,8 +120,15 @@ def narrowed(
         values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
         top = np.argmax(sign * values, axis=1)
         best, where = values[rows, top], time[rows, top]
-        low, high = time[rows, np.maximum(top - 1, 0)], time[rows, np.minimum(top + 1, _GRID - 1)]
-    return best, where
+        before, after = np.maximum(top - 1, 0), np.minimum(top + 1, _GRID - 1)
+        low, high = time[rows, before], time[rows, after]
+    # where there is a neighbour to either side
+    slope, bend = (
+        0.5 * (values[rows, after] - values[rows, before]),
+        values[rows, before] + values[rows, after] - 2 * best,
+    )
+    share = np.divide(-slope, bend, out=np.zeros_like(bend), where=(after - before == 2) & (sign * bend < 0.0))
+    return best + 0.5 * slope * share, where + 0.5 * (high - low) * share
 
 
 def beside(stretch: Indices, places: Indices) -> tuple[Indices, Indices]:
