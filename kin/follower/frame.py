@@ -145,8 +145,12 @@ class _Prescribed(_Intended):
         s = cos(turned) * -self.swing.ground + (self.swing.rocker + 0.5 * chain.breadth)
         return chain.solve(s, s.constant(0.5 * chain.breadth), self.mechanism.about).outputs[-1].derivatives()
 
+    def rows(self, theta: Array) -> Array:
+        """Nothing: the law is taken at the measured shaft angle itself."""
+        return np.broadcast_to(np.zeros(()), (2, 4, len(theta)))
+
     def error(self, theta: Array, measured: Array, near: Array) -> Array:  # noqa: ARG002 - one call for both
-        """As that of what the exact cam does; the law is taken at the measured shaft angle itself."""
+        """As that of what the exact cam does."""
         (phi, phi_slope, phi_bend), output = measured
         meant, rate, bend = self._over_shaft(phi, 2)
         error = self.alike(output[0] - meant)
@@ -233,7 +237,7 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
     def error(theta: Array, interval: Indices) -> Array:
         return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
 
-    needed = max(resolution(intended.mechanism, rows[1, 0]), SHARE * float(np.abs(at_low[0]).max()))
+    needed = max(resolution(intended.mechanism, way.low[1, 0]), SHARE * float(np.abs(at_low[0]).max()))
     worst, at = extremes(low, high, at_low, at_high, error, resolution=needed).worst
     return worst, float(way.turned(np.array([at]), 0)[0, 0])
 
@@ -253,8 +257,8 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
     nodes = np.append(nodes, nodes[0] + TURN)
 
     def meant(theta: Array) -> tuple[Array, Array, Array]:
-        s, s1 = (mechanism.lift.derivatives(theta + k, 2) for k in (0.0, 0.5 * np.pi))
-        return intended.rows(theta), s, s1
+        at = mechanism.at(theta, 3)
+        return np.stack([at.shaft, at.output]), *at.faces[:, :3]
 
     def error(theta: Array, off: float, off1: float, at: tuple[Array, Array, Array]) -> Array:
         rows, *lifts = at
@@ -296,7 +300,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
     chain, about = mechanism.chain, mechanism.about
 
     def lifts(theta: Array) -> tuple[Array, Array]:
-        s, s1 = (mechanism.lift.derivatives(theta + k, 0)[0] for k in (0.0, 0.5 * np.pi))
+        s, s1 = mechanism.lift.derivatives(np.concatenate([theta, theta + 0.5 * np.pi]), 0).reshape(2, -1)
         return s, s1
 
     for loop in range(mechanism.outputs):

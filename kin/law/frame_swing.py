@@ -164,7 +164,7 @@ class _Lifted:
         return cos(half + self.law.start) * sin(half) * (2.0 * self.law.side * self.law.ground)
 
     def _ball_rows(self, lower: Array, upper: Array, order: int) -> Ball:
-        at = BallJet.variable(self._shaft_beyond(lower, -1.0), self._shaft_beyond(upper, 1.0), order)
+        at = BallJet.variable(*self._shafts_beyond(lower, upper), order)
         moved = self.function(at)
         rows = [row.rows[0] for row in derivatives_by(self._lift(moved), at - moved)]
         rows[1:] = [row * (1.0 / math.factorial(k)) for k, row in enumerate(rows[1:], 1)]
@@ -190,20 +190,22 @@ class _Lifted:
         found = zeros(over, low, high, low + share * (high - low), 2.0 * np.spacing(TURN))
         return np.where(theta <= ends[0], low, np.where(theta >= ends[1], high, found))
 
-    def _shaft_beyond(self, theta: Array, way: float) -> Array:
-        """Shaft angles (n,) that are for certain not above (way -1), or not below, those at relative angles (n,)."""
-        phi, end = self._shaft(theta), self.begin if way < 0.0 else self.end
+    def _shafts_beyond(self, lower: Array, upper: Array) -> tuple[Array, Array]:
+        """Shaft angles (n,) for certain not above those at relative angles `lower` (n,), nor below those at `upper`."""
+        theta, way = np.concatenate([lower, upper]), np.repeat([-1.0, 1.0], len(lower))
+        phi, end = self._shaft(theta), np.where(way < 0.0, self.begin, self.end)
         step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
-        clip = np.maximum if way < 0.0 else np.minimum
         for _ in range(_DOUBLINGS):
-            found = clip(phi + way * step, end)
+            found = np.clip(phi + way * step, self.begin, self.end)
             at = BallJet.variable(found, found, 0)
             low, high = (at - self.function(at)).rows[0].bounds()
-            open_ = (found != end) & ~((high <= theta) if way < 0.0 else (low >= theta))
+            open_ = (found != end) & ~np.where(way < 0.0, high <= theta, low >= theta)
             if not open_.any():
-                return found
+                break
             step = np.where(open_, 2.0 * step, step)
-        return np.where(open_, end, found)
+        else:
+            found = np.where(open_, end, found)
+        return found[: len(lower)], found[len(lower) :]
 
 
 def _by(f: Jet, parameter: Jet) -> Array:

@@ -260,7 +260,7 @@ class Mechanism:
 
     def _longest(self, band: float, over: Literal["shaft", "relative"], most: int) -> tuple[Dwell, ...]:
         if over == "relative":
-            return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
+            return dwells(lambda theta, _: self._followed.at(theta)[1:], self.breaks, band, TURN, most)
 
         shaft = self.at(self.breaks, 0).shaft[0] if len(self.breaks) else self.breaks
         return dwells(lambda phi, _: self.output(phi)[None], shaft, band, TURN, most)
@@ -286,8 +286,8 @@ class Mechanism:
         )
 
     def _lifts(self, theta: Array, order: int, side: Side = 1) -> tuple[Jet, Jet]:
-        t = Jet.variable(theta, order)
-        return self.lift.law.on(t, side), self.lift.law.on(t + QUARTER, side)
+        c = self.lift.law.on(Jet.variable(np.concatenate([theta, theta + QUARTER]), order), side).c
+        return Jet(c[:, : len(theta)]), Jet(c[:, len(theta) :])
 
     def _driven(self, theta: Array, order: int) -> tuple[Jet, Jet]:
         """theta_3 and the linkage's own output as jets."""

@@ -72,6 +72,12 @@ class Cells:
     coefficients: Array
     noise: Array
 
+    def at(self, x: Array) -> Array:
+        """All functions at x (n,): (r, n)."""
+        cell = np.clip(np.searchsorted(self.low, x, side="right") - 1, 0, len(self.low) - 1)
+        share = (x - self.low[cell]) / (self.high - self.low)[cell]
+        return np.stack([values(c[cell], share) for c in self.coefficients])
+
     def reach(self, level: Array) -> tuple[Indices, Array]:
         """Cells and shares of them, (n,) each, where the first function, which rises, has the values `level` (n,)."""
         rising = self.coefficients[0]
