@@ -117,12 +117,13 @@ def rising_root(coefficients: Array) -> Array:
 
     To within `SETTLED`, mostly to rounding. Raises UnsettledError where a coefficient is not a number.
     """
-    n, k = len(coefficients), coefficients.shape[1] - 1
-    slope = k * np.diff(coefficients, axis=1) if k else np.zeros((n, 1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        t = coefficients[:, 0] / (coefficients[:, 0] - coefficients[:, -1])
-    t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
-    return zeros(lambda t: (values(coefficients, t), values(slope, t)), np.zeros(n), np.ones(n), t, SETTLED)
+    found = np.where(coefficients[:, 0] >= 0.0, 0.0, 1.0)
+    inside = np.flatnonzero(~((coefficients[:, 0] >= 0.0) | (coefficients[:, -1] <= 0.0)))
+    c, ends = coefficients[inside], (np.zeros(len(inside)), np.ones(len(inside)))
+    slope = np.diff(c, axis=1) * (c.shape[1] - 1)
+    t = c[:, 0] / (c[:, 0] - c[:, -1])
+    found[inside] = zeros(lambda t: (values(c, t), values(slope, t)), *ends, t, SETTLED)
+    return found
 
 
 def roots(coefficients: Array) -> list[float]:

@@ -194,10 +194,16 @@ class Pieces:
         return values(c, (x - self.x[piece]) / width) / width
 
     def crossing(self, piece: Indices, level: Array) -> Array:
-        """Where the given pieces (n,) reach levels (n,): x (n,), the nearer end of a piece that does not."""
+        """Where the given pieces (n,) reach levels (n,): x (n,), the nearer end of a piece that does not.
+
+        An end whose value is the level but for rounding is that place: a piece may be flat there.
+        """
         c = self.coefficients[piece]
         rising = np.where(c[:, -1] >= c[:, 0], 1.0, -1.0)
-        t = rising_root((c - level[:, None]) * rising[:, None])
+        c = (c - level[:, None]) * rising[:, None]
+        for end in (0, -1):
+            c[np.abs(c[:, end]) <= self.blur[piece], end] = 0.0
+        t = rising_root(c)
         return self.x[piece] + np.clip(t, 0.0, 1.0) * self.width[piece]
 
     def crossings(self, level: float) -> Array:
