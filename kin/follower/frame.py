@@ -43,7 +43,8 @@ SHARE = 1e-6  # of the greatest error: what is resolved at least
 FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
 BESIDE = 1e-13  # rad: from a break, less than which is rounding
 LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
-CORNERS = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
+CORNERS = 4  # of a square of lifts that are off by 1, before the middles of its sides, opposite ones in turn
+OFF = np.array([[1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 0.0, 0.0], [1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 1.0, -1.0]])
 ALIKE = 6  # decimals of degrees to which dwells are as long as one another: their ends are found to 1e-7
 
 
@@ -256,39 +257,33 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
         return None
     nodes = np.append(nodes, nodes[0] + TURN)
 
-    def meant(theta: Array) -> tuple[Array, Array, Array]:
+    def meant(theta: Array) -> tuple[Array, Array]:
         at = mechanism.at(theta, 3)
-        return np.stack([at.shaft, at.output]), *at.faces[:, :3]
+        return np.stack([at.shaft, at.output]), at.faces[:, :3]
 
-    def error(theta: Array, off: float, off1: float, at: tuple[Array, Array, Array]) -> Array:
-        rows, *lifts = at
-        s, s1 = (lift.copy() for lift in lifts)
-        s[0] += tolerance * off
-        s1[0] += tolerance * off1
-        return intended.error(theta, driven(mechanism, theta, s, s1), rows)
+    def error(theta: Array, off: Array, rows: Array, lifts: Array) -> Array:
+        """Errors (3, n) at theta (n,) with both lifts off by so many tolerances (2, n)."""
+        lifts = lifts.copy()
+        lifts[:, 0] += tolerance * off
+        return intended.error(theta, driven(mechanism, theta, *lifts), rows)
 
-    at_nodes = meant(nodes)
-    output = at_nodes[0][1, 0]
+    rows, lifts = meant(nodes)
+    count, many = len(nodes), OFF.shape[1]
     try:
-        corners = []
-        for off, off1 in CORNERS:
-            at = error(nodes, off, off1, at_nodes)
-            found = extremes(
-                nodes[:-1],
-                nodes[1:],
-                at[:, :-1],
-                at[:, 1:],
-                lambda theta, _, off=off, off1=off1: error(theta, off, off1, meant(theta)),  # type: ignore[misc]
-                resolution=max(resolution(mechanism, output), SHARE * float(np.abs(at[0]).max())),
-            )
-            corners.append(found.worst[0])
-        bulge = sum(
-            np.abs(error(nodes, *off, at_nodes)[0] + error(nodes, -off[0], -off[1], at_nodes)[0])
-            for off in ((1.0, 0.0), (0.0, 1.0))
-        )
+        off = np.repeat(OFF, count, axis=1)
+        at = error(np.tile(nodes, many), off, np.tile(rows, many), np.tile(lifts, many)).reshape(3, many, count)
+        ends = at[:, :CORNERS]
+        worst, _ = extremes(
+            np.tile(nodes[:-1], CORNERS),
+            np.tile(nodes[1:], CORNERS),
+            ends[..., :-1].reshape(3, -1),
+            ends[..., 1:].reshape(3, -1),
+            lambda theta, interval: error(theta, OFF[:, interval // (count - 1)], *meant(theta)),
+            resolution=max(resolution(mechanism, rows[1, 0]), SHARE * float(np.abs(ends[0]).max())),
+        ).worst
     except FrameError:
         return None
-    limit = max(corners) + 0.5 * float(np.max(bulge))
+    limit = worst + 0.5 * float(np.abs(at[0, CORNERS::2] + at[0, CORNERS + 1 :: 2]).sum(axis=0).max())
     return float(np.degrees(limit)) if mechanism.unit == "deg" else limit
 
 

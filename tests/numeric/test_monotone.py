@@ -103,5 +103,22 @@ def test_several_functions_share_their_cells():
     assert len(pieces(of, 1).crossings(0.0)) == 18
 
 
+def test_an_end_at_the_level_but_for_rounding_is_where_the_level_is_reached():
+    """Newton's method would creep to it at the top of a parabola, by halves."""
+    of = pieces(cells(lambda x: -((x - 1.0) ** 2)[None], np.array([0.0, 1.0, 3.0])))
+    piece = int(np.argmin(np.abs(of.x - 1.0))) + np.array([-1, 0])
+    for level in (0.0, -1e-17, 1e-17):
+        assert of.crossing(piece, np.full(2, level)).tolist() == [1.0, 1.0]
+    assert of.crossing(piece, np.full(2, -1e-8)) == pytest.approx([1.0 - 1e-4, 1.0 + 1e-4], abs=1e-8)
+
+
+def test_all_functions_at_places_and_where_the_first_has_values():
+    of = cells(lambda x: np.stack([x + 0.1 * np.sin(x), np.cos(x)]), np.array([0.0, 1.0, 6.0]))
+    x = np.linspace(0.0, 6.0, 101)
+    assert of.at(x) == pytest.approx(np.stack([x + 0.1 * np.sin(x), np.cos(x)]), abs=1e-14)
+    cell, share = of.reach(x + 0.1 * np.sin(x))
+    assert of.low[cell] + share * (of.high - of.low)[cell] == pytest.approx(x, abs=1e-14)
+
+
 def test_places_are_ends_and_the_breaks_between():
     assert between(0.0, 2.0, [1.5, -1.0, 0.5, 2.0, 0.5]).tolist() == [0.0, 0.5, 1.5, 2.0]
