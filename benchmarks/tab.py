@@ -1,35 +1,46 @@
 """What the live page costs in a browser: `python benchmarks/tab.py [--small]`.
 
-Milliseconds on the clock, from a local server and with nothing kept by the browser: the first picture, which stands
-in the page; Python and camgeo ready; from a slider's movement to the next frame with the new picture; a second export,
-and how many times that is the native one of the same recipe. Aimed at are 100 ms from number to picture, 60 at best,
-and 2.5 times. Without a browser or Pyodide nothing is measured, and that is said.
+Milliseconds, from a local server and with nothing kept by the browser: the first picture, which stands in the page;
+Python and camgeo ready; from a slider's movement to the next frame with the new picture; a second export, and how many
+times that is the native one of the same recipe. They are of the clock, and behind them of the processor: of the thread
+in which Python runs, and of the native process. Aimed at are 100 ms from number to picture, 60 at
+best, and 2.5 times. Without a browser or Pyodide nothing is measured, and that is said.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
 import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import camgeo
 from camgeo.recipe.starter import starter
 
+if TYPE_CHECKING:
+    from support.browser import Browser
+
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-STARTERS = ("disc-roller", "disc-flat", "constant-breadth", "double-roller", "four-bar")
+STARTERS = ("disc-roller", "disc-flat", "support", "constant-breadth", "double-roller", "four-bar")
+WORKER = "DedicatedWorker"  # as Chromium names its threads
+RECIPES = ("valve-lobe", "six-bar")
+ROOT = Path(__file__).parents[1]
 MOVES = """(async () => {
   const slider = document.querySelector('#form [type=range]');
+  const shown = () =>
+    new Promise((done) => new MutationObserver(done).observe(document.body, { attributeFilter: ["data-shown"] }));
   const taken = [];
   for (let i = 1; i <= COUNT; i++) {
     const before = document.body.dataset.shown;
     const begun = performance.now();
     slider.value = Number(slider.value) + Number(slider.step) * (i % 2 ? 1 : -1);
     slider.dispatchEvent(new Event("input"));
-    while (document.body.dataset.shown === before) await new Promise((done) => setTimeout(done));
+    while (document.body.dataset.shown === before) await shown();
     await new Promise(requestAnimationFrame);
     taken.push(performance.now() - begun);
   }
@@ -37,13 +48,36 @@ MOVES = """(async () => {
 })()"""
 
 
-def native(text: str) -> float:
-    """Seconds of a second export here."""
+def native(text: str) -> tuple[float, float]:
+    """Seconds of a second export here, on the clock and of the processor."""
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(2):
-            begin = time.perf_counter()
+            begin = time.perf_counter(), time.process_time()
             camgeo.export(camgeo.load(text), folder)
-        return time.perf_counter() - begin
+        return time.perf_counter() - begin[0], time.process_time() - begin[1]
+
+
+def spent(browser: Browser) -> float:
+    """Seconds of the processor that Python has taken in a browser: threads of its workers; 0 where no system tells."""
+    parents = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        if cells := _cells(path):
+            parents[int(path.parent.name)] = int(cells[1])
+    own = {browser.process}
+    while more := {number for number, parent in parents.items() if parent in own} - own:
+        own |= more
+    threads = [path for number in own for path in Path(f"/proc/{number}/task").glob("*/stat")]
+    ticks = sum(int(cells[11]) + int(cells[12]) for path in threads if (cells := _cells(path, WORKER)))
+    return ticks / float(os.sysconf("SC_CLK_TCK"))
+
+
+def _cells(path: Path, name: str = "") -> list[str]:
+    """What the system tells of a process or a thread behind its name; empty where it has ended or has another name."""
+    try:
+        own, _, told = path.read_text("utf-8").partition("(")[2].rpartition(")")
+    except OSError:
+        return []
+    return told.split() if own.startswith(name) else []
 
 
 def main() -> None:
@@ -53,14 +87,16 @@ def main() -> None:
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--small", action="store_true", help="one recipe, a few movements")
-    small = parser.parse_args().small
+    parser.add_argument("names", nargs="*", metavar="NAME", help="starters and shipped recipes in place of those")
+    given = parser.parse_args()
+    small = given.small
     if tab.why_not():
         print(f"nothing is measured: {tab.why_not()}")
         return
     with (
-        tempfile.TemporaryDirectory() as name,
-        tab.served(tab.built(Path(name) / "site")) as address,
-        Browser(Path(name) / "profile") as browser,
+        tempfile.TemporaryDirectory() as folder,
+        tab.served(tab.built(Path(folder) / "site")) as address,
+        Browser(Path(folder) / "profile") as browser,
     ):
         browser.size(1280, 800)
         begin = time.perf_counter()
@@ -68,21 +104,31 @@ def main() -> None:
         first = time.perf_counter() - begin
         page = tab.Tab(browser, address)
         page.wait("document.body.dataset.loaded")
-        ready = time.perf_counter() - begin
+        ready, processor = time.perf_counter() - begin, spent(browser)
         page.settle()
-        print(f"first picture {1e3 * first:.0f} ms, ready {1e3 * ready:.0f} ms")
-        print("| recipe | number to picture: median, least | second export | native | times |")
-        print("| --- | --- | --- | --- | --- |")
-        for starter_name in STARTERS[:1] if small else STARTERS:
-            text = starter(starter_name)
-            page.load(starter_name, text)
-            taken = page.ask(MOVES.replace("COUNT", "6" if small else "40"))
-            page.load(starter_name, text)
+        print(
+            f"first picture {1e3 * first:.0f} ms, ready {1e3 * ready:.0f} ms, of the processor {1e3 * processor:.0f} ms"
+        )
+        print("| recipe | number to picture: median, least | processor | second export | native | times, processor |")
+        print("| --- | --- | --- | --- | --- | --- |")
+        page.click("play")
+        count = 6 if small else 40
+        for name in given.names or (STARTERS[:1] if small else (*STARTERS, *RECIPES)):
+            shipped = ROOT / "recipes" / f"{name}.yaml"
+            text = starter(name) if name in STARTERS else shipped.read_text("utf-8")
+            page.load(name, text)
+            before = spent(browser)
+            taken = page.ask(MOVES.replace("COUNT", str(count)))
+            each = (spent(browser) - before) / count
+            page.load(name, text)
             page.judged("make")
+            before = spent(browser)
             page.judged("make")
-            export, here = float(page.ask("document.body.dataset.seconds")), native(text)
-            moves = f"{statistics.median(taken):.0f}, {min(taken):.0f}"
-            print(f"| {starter_name} | {moves} | {1e3 * export:.0f} | {1e3 * here:.0f} | {export / here:.1f} |")
+            there, here = (float(page.ask("document.body.dataset.seconds")), spent(browser) - before), native(text)
+            moves = f"{statistics.median(taken):.0f}, {min(taken):.0f} | {1e3 * each:.0f}"
+            export, at_home = (", ".join(f"{1e3 * seconds:.0f}" for seconds in pair) for pair in (there, here))
+            times = ", ".join(f"{a / b:.1f}" for a, b in zip(there, here, strict=True))
+            print(f"| {name} | {moves} | {export} | {at_home} | {times} |", flush=True)
 
 
 if __name__ == "__main__":

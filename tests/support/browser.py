@@ -80,6 +80,11 @@ class Browser:
             self.call(f"{domain}.enable")
         return self
 
+    @property
+    def process(self) -> int:
+        """Number of its first process."""
+        return self._process.pid
+
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
         self._session = None
         try:
