@@ -117,6 +117,36 @@ _CORE = {
         {"part": {"thickness": "14"}},
         unfit=("conjugate",),
     ),
+    "disc-card": Starter(
+        "A valve lobe for a flat tappet by its cam card: crank degrees above given lifts.",
+        "disc",
+        {
+            "base_radius": "18",
+            "follower": {"kind": "flat", "width": "30"},
+            "motion": (
+                "\n    lobe:"
+                "\n      lift: 9.2"
+                "\n      duration: [{at_lift: 1.27, degrees: 228}, {at_lift: 0.15, degrees: 270}]"
+            ),
+        },
+        {"part": {"thickness": "14"}},
+        unfit=("conjugate",),
+    ),
+    "disc-drop": Starter(
+        "A disc cam that drops its roller as quickly as its limits allow.",
+        "disc",
+        {
+            "base_radius": "40",
+            "follower": {"kind": "roller", "radius": "8"},
+            "motion": (
+                "\n    - {rise: 20, over: 200, law: cycloidal}"
+                "\n    - {dwell: 60}"
+                "\n    - {return: 20, over: least, law: modified-sine}"
+                "\n    - {dwell: rest}"
+            ),
+        },
+        {"limits": "{pressure-angle: {at_most: 35}, radius-of-curvature: {at_least: 12}}"},
+    ),
     "disc-arm-flat": _disc(
         "a flat face on an arm, which swings", "36", "10", {"kind": "flat", "arm": {"pivot": "90", "face": "10"}}
     ),

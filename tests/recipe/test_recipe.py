@@ -424,6 +424,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     tables = {"motion", "contacts", "grinding", "lift", "trace"}
     tables.add("inspection")  # needs: milling
     tables.add("forces")  # needs: dynamics
+    tables.add("valve")  # needs: valve, dynamics
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", *tables, None}
     assert {file.own.get("version") for file in files} == {"R12", "R2000", "R2010", "R2013", None}
     assert {recipe.units for recipe in recipes.values()} == {"mm", "inch"}

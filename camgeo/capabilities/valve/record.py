@@ -1,4 +1,4 @@
-"""What a valve adds: a key, figures, a section of the report, a panel and plots of the page, a table."""
+"""What a valve adds: a key, a starter, figures, a section of the report, a panel and plots of the page, a table."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.starter import Starter
     from camgeo.registry.capability import Moved
     from camgeo.registry.formats import Form
     from camgeo.report.page.curves import Plot
@@ -61,6 +62,12 @@ def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     return plots(recipe, design)
 
 
+def _starters() -> Mapping[str, Starter]:
+    from camgeo.capabilities.valve.starter import STARTERS
+
+    return STARTERS
+
+
 def _tables() -> Mapping[str, Form]:
     from camgeo.capabilities.valve.table import FORM
 
@@ -71,6 +78,7 @@ CAPABILITY = Capability(
     fields=fields,
     check=check,
     build=build,
+    starters=_starters,
     figures=FIGURES,
     measure=_measure,
     measure_at=_measure_at,
