@@ -61,6 +61,7 @@ class PointMotion:
     sd            standard deviation of the position, greatest over the turn
     outliers      points that were left out
     play          least, mean and greatest play that two contacts leave beyond the recipe's; None of one
+    uneven        how far it is off the symmetry by which the rest of the turn follows, at most; 0 without any
     zero_ends     whether a part of a turn begins and ends at 0
     """
 
@@ -74,6 +75,7 @@ class PointMotion:
     sd: float
     outliers: int
     play: tuple[float, float, float] | None = None
+    uneven: float = 0.0
     zero_ends: bool = False
 
     @property
@@ -137,34 +139,38 @@ def measured_motion(
         outliers += int(smooth.outliers.sum())
     turn = np.mean([position for _, position, _ in each], axis=0)
     sd = float(np.sqrt(sum(own**2 for _, _, own in each)).max()) / len(each)
-    play = None
+    play, uneven = None, 0.0
     if len(each) > 1:
         gap = -np.sum([sense * position for sense, position, _ in each], axis=0)
         play = (float(gap.min()), float(gap.mean()), float(gap.max()))
         if opposed:
             turn = turn - 0.5 * play[1]
             play = (play[0] - play[1], 0.0, play[2] - play[1])
+            uneven = 0.5 * max(-play[0], play[2])
     sections = span != TURN and not opposed
     if sections:
-        position, last = _sections(turn, span), 0.0
+        (position, uneven), last = _sections(turn, span), 0.0
     else:
         count = round(len(turn) * span / TURN)
         position, last = turn[:count], float(turn[count % len(turn)])
     own = max(round(min(curve.spans for curve in curves) * span / TURN), 1)
-    return PointMotion(runs[0].gauge, runs[0].side, turn, position, span, last, own, sd, outliers, play, sections)
+    return PointMotion(
+        runs[0].gauge, runs[0].side, turn, position, span, last, own, sd, outliers, play, uneven, sections
+    )
 
 
-def _sections(psi: Array, span: float) -> Array:
-    """Swing over equal shaft angles of the first of equal sections, as all of them tell it; see the module."""
+def _sections(psi: Array, span: float) -> tuple[Array, float]:
+    """Swing over equal shaft angles of the first of equal sections, as all of them tell it; how far one is off that."""
     phi = equal_steps(FINER * len(psi))
     fine = _finer(psi)
     count = round(TURN / span)
     lead = phi - 0.5 * fine
     u = np.linspace(-BESIDE * span, (1.0 + BESIDE) * span, len(phi) // count)
-    mean = sum((-1) ** k * np.interp(u + k * span, lead, fine, period=TURN) for k in range(count)) / count
+    each = np.stack([(-1) ** k * np.interp(u + k * span, lead, fine, period=TURN) for k in range(count)])
+    mean = each.mean(axis=0)
     shaft = span / (len(psi) // 2) * np.arange(len(psi) // 2)
     swing: Array = np.interp(shaft, u + 0.5 * mean, mean)
-    return swing
+    return swing, float(np.abs(each - mean).max())
 
 
 def _finer(rows: Array) -> Array:

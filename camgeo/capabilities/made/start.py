@@ -19,6 +19,7 @@ from camgeo.capabilities.made.judge import made_part
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import by_disc, demand_points, scale_of
 from camgeo.capabilities.made.reading import Call, label_of, places_of, tables_of
+from camgeo.capabilities.made.refusal import as_call_errors
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
 READING = 0.02  # mm within which dwells rest and laws fit, where the recipe gives no zone of its profile
 MOST_LEFT = 2.0  # readings that laws may leave: beyond, the motion is a table
 ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # what numbers are written to
+MOST_UNEVEN = 0.02  # of the motion: what is off the symmetry of its kind by more is of another kind
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
 NO_MOTION = "a recipe is made of points of a cam that is given by a motion: kind "
 BESIDE = 8  # points about one by their polar angle, among which the flanks of a groove are told apart
@@ -129,8 +131,8 @@ def _with(source: Source, path: str, value: Value) -> Source:
 
 def _with_motion(source: Source, keys: ByMotion, key: str, value: Value) -> Source:
     """Give a motion by a key, in the place of what stands for one."""
-    for other in {keys.motion, *keys.instead} - {key}:
-        if other in _cam_keys(source):
+    for other in (keys.motion, *keys.instead):
+        if other != key and other in _cam_keys(source):
             return Source.of(exchanged(source, f"cam.{other}", key, value), source.file)
     return _with(source, f"cam.{key}", value)
 
@@ -242,6 +244,7 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
         SurfaceRun(exact.gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces
     ]
     motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed)
+    _demand_symmetry(recipe, motion)
     made = recipe.of(Made)
     zone = None if made is None else made.profile
     reading = READING if zone is None else 0.5 * zone
@@ -260,6 +263,23 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     return _MeasuredCam(
         recipe, keys, motion, rough.base + circle, abs(more - circle), abs(high - circle), reading, programme
     )
+
+
+def _demand_symmetry(recipe: Recipe, motion: PointMotion) -> None:
+    """Raise CallError for points of another kind of cam, and of one whose swing is not 0 where the turn begins."""
+    swing, swings = float(np.ptp(motion.turn)), motion.gauge.unit == "deg"
+    scale, unit = (math.degrees(1.0), "degrees") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
+    if motion.uneven > MOST_UNEVEN * swing:
+        off = f"{scale * motion.uneven:.3g} {unit} of a motion over {scale * swing:.3g} {unit}"
+        raise CallError(
+            f"the points are of no cam of kind {recipe.cam.kind} with these sizes: off its symmetry by {off}"
+        )
+    if motion.zero_ends and abs(float(motion.position[0])) > MOST_UNEVEN * swing:
+        up = np.flatnonzero((motion.turn <= 0.0) & (np.roll(motion.turn, -1) > 0.0))
+        turn = 360.0 / len(motion.turn) * float(up[0]) if len(up) else 0.0
+        raise CallError(
+            f"the swing begins at 0, and these points' is 0 and rises at {turn:.4g} degrees: turn them back"
+        )
 
 
 def _in_unit(measured: _MeasuredCam, value: float) -> float:
@@ -389,7 +409,10 @@ def _lifts(measured: _MeasuredCam) -> str:
     span = math.degrees(motion.span)
     step = max(int(0.5 * len(motion.position) / span), 1)
     zero = float(motion.position.min() if motion.closed else motion.position[0])
-    lift = [_in_unit(measured, float(value) - zero) for value in (*motion.position[::step], motion.last)]
+    places = motion.position[::step] - zero
+    if motion.zero_ends:  # it is 0 at both
+        places, zero = np.append(0.0, motion.position[step::step]), 0.0
+    lift = [_in_unit(measured, value) for value in (*places.tolist(), motion.last - zero)]
     angles = [*np.degrees(motion.shaft[::step]).tolist(), span]
     rows = [f"{angle:.12g},{value:.9f}\n" for angle, value in zip(angles, lift, strict=True)]
     return "".join(["angle,lift\n", *rows])
@@ -410,7 +433,8 @@ def _verified(text: str, beside: collections.abc.Mapping[str, str], name: str, p
         if failed or not design.contours:
             why = "; ".join(f"{check.name}: {check.detail}" for check in failed)
             raise CallError(f"the cam of these points cannot be made: {why}")
-        part = made_part(recipe, design, paths, Call())
+        with as_call_errors(paths):
+            part = made_part(recipe, design, paths, Call())
     profile = max(2.0 * disc.profile.greatest for disc in part.discs) / recipe.mm
     motion = float(np.abs(part.motion.remaining).max())
     scale, unit = (math.degrees(1.0), "deg") if design.exact.gauge.unit == "deg" else (1.0 / recipe.mm, recipe.units)

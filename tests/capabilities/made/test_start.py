@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table
+from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table, turned
 
 import camgeo
 from camgeo.cli.main import main
@@ -244,6 +244,30 @@ def test_laws_that_fit_alike_are_named(tmp_path, capsys):
     assert re.search(
         r", .*(freudenstein|modified-trapezoid).* hardly more: look at which it was", capsys.readouterr().out
     )
+
+
+ROLLERS = TWO_CONTACTS["double roller"]
+OTHERS = {  # the cam, as what it is told, and by how many degrees its points are turned
+    "a disc in a yoke": (RECIPES["flat"], TWO_CONTACTS["yoke"], 0.0, "of no cam of kind constant-breadth with these"),
+    "another ratio": (
+        ROLLERS,
+        ROLLERS.replace("ratio: 2", "ratio: 3"),
+        0.0,
+        "of no cam of kind double-roller with these",
+    ),
+    "turned": (ROLLERS, ROLLERS, 20.0, "the swing begins at 0, and these points' is 0 and rises at 19."),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_points_that_keep_from_the_symmetry_of_a_kind_are_refused(name, tmp_path, capsys):
+    cam, told_as, turn, told = OTHERS[name]
+    ((_, part, surface),) = surfaces(cam)
+    (tmp_path / "points.csv").write_text(table(turned(points(part, surface), turn)), "utf-8")
+    (tmp_path / "bare.yaml").write_text(bare(told_as), "utf-8")
+    assert new_from(tmp_path, [tmp_path / "points.csv"]) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "new.yaml").exists()
 
 
 BAD = {
