@@ -10,7 +10,7 @@ import argparse
 import time
 from pathlib import Path
 
-from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.interference import collision_checks
 from camgeo.output.job import Job
 from camgeo.recipe.loading import load
@@ -37,7 +37,7 @@ def row(name: str) -> str:
         return f"| {name} | | | | no contour | | |"
     contours = [fit.within("arcs", TOLERANCE) for fit in Job.of(recipe, design).fits]
     begin = time.process_time()
-    assembly = assembly_of(recipe, design, *contours)
+    assembly = build_assembly(recipe, design, *contours)
     checks = [check for check in collision_checks(assembly) if check.name == "collision"]
     spent = time.process_time() - begin
     told = sorted((check.value, check.detail) for check in checks)

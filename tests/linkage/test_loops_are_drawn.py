@@ -2,7 +2,7 @@
 
 import pytest
 
-from camgeo.capabilities.mechanism import linked as bodies  # needs: mechanism
+from camgeo.capabilities.mechanism import linkage_bodies as bodies  # needs: mechanism
 from camgeo.report.page import linked as page
 from kin.linkage import dyad, four_bar
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
@@ -28,7 +28,7 @@ def build(text: str) -> tuple[Recipe, Design, Assembly]:
     recipe = load_text(text, "set.yaml")
     design = designed(recipe)
     assert design.only_surface.contour is not None
-    return recipe, design, assembly_of(recipe, design, fit_arcs(design.only_surface.contour, FIT))
+    return recipe, design, build_assembly(recipe, design, fit_arcs(design.only_surface.contour, FIT))
 
 
 def polygon(outline: ArcSpline, holes: tuple[ArcSpline, ...] = ()) -> Polygon:

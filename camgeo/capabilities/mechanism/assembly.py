@@ -1,32 +1,94 @@
-"""A mechanism as members that move as one or apart: plates, exact places over the shaft angle, and fits."""
+"""The bodies of a printable mechanism: plates one on another, exact places over the shaft angle, and fits.
+
+All in mm and rad, z upward, drawn as for a shaft that turns clockwise; the files of others are mirrored last.
+"""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.body import PrintBody
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.capabilities.mechanism.body import Plate
     from camgeo.capabilities.mechanism.sizes import Sizes
+    from camgeo.fit.pieces import ArcSpline, Polygon
     from kin.numeric.arrays import Array
 
     Place: TypeAlias = Callable[[Array, int], Array]
     """Shaft angles (n,) and an order to x, y and angle with their derivatives by the shaft angle, (3, order + 1, n)."""
 
-STEPS = 360  # places of a turn that a file is given
+NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+COLOUR = re.compile(r"#[0-9a-f]{6}")
+STEPS = 360  # of a turn, at which a file has the places of its bodies
 GROUND = "ground"
 
 
 @dataclass(frozen=True, eq=False)
+class Plate:
+    """A horizontal slab from z `low` to `high`, mm: an outline with holes, all counter-clockwise.
+
+    Raises ValueError for a slab without height.
+    """
+
+    outline: ArcSpline | Polygon
+    holes: tuple[ArcSpline, ...]
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite([self.low, self.high]).all() and self.low < self.high):
+            raise ValueError(f"a plate from z = {self.low!r} to {self.high!r} mm has no height")
+
+
+@dataclass(frozen=True, eq=False)
+class PrintBody:
+    """A body of one piece: the union of its plates, in axes of its own.
+
+    name     safe in file names: lower-case words joined by hyphens, such as "roller-a"
+    plates   stacked, touching or overlapping
+    pose     (n + 1, 3): x, y and angle of its axes at equal steps of one shaft turn; (1, 3) of a body at rest
+    fixed    part of the ground
+    colour   "#rrggbb", for viewers
+
+    Raises ValueError for another name, colour or shape of the pose, and without plates.
+    """
+
+    name: str
+    plates: tuple[Plate, ...]
+    pose: Array = field(default_factory=lambda: np.zeros((1, 3)))
+    fixed: bool = False
+    colour: str = "#9aa5b1"
+
+    def __post_init__(self) -> None:
+        if not NAME.fullmatch(self.name):
+            raise ValueError(f"{self.name!r} is not a name for a body: lower-case words joined by hyphens")
+        if not self.plates:
+            raise ValueError(f"{self.name}: a body without plates")
+        if self.pose.ndim != 2 or self.pose.shape[1] != 3 or not len(self.pose) or not np.isfinite(self.pose).all():
+            raise ValueError(f"{self.name}: the pose must be finite, of shape (n + 1, 3) or (1, 3)")
+        if not COLOUR.fullmatch(self.colour):
+            raise ValueError(f"{self.name}: {self.colour!r} is not a colour such as #9aa5b1")
+
+    @property
+    def low(self) -> float:
+        """Least z, mm."""
+        return min(plate.low for plate in self.plates)
+
+    @property
+    def high(self) -> float:
+        """Greatest z, mm."""
+        return max(plate.high for plate in self.plates)
+
+
+@dataclass(frozen=True, eq=False)
 class Member:
-    """A body with its exact place, None for what stands still.
+    """A body with its exact place over the shaft angle, None for a body at rest.
 
     Members of one `group` are pressed together and move as one.
     """
@@ -38,36 +100,36 @@ class Member:
     colour: str = "#9aa5b1"
 
     def body(self, steps: int = STEPS) -> PrintBody:
-        """Return it as what is printed, with its places at so many equal steps of a turn."""
+        """The printed body, with its places at so many equal steps of a turn."""
         return PrintBody(self.name, self.plates, self.poses(steps), self.place is None, self.colour)
 
     def poses(self, steps: int = STEPS) -> Array:
-        """Return x, y and angle (steps + 1, 3) over a turn; (1, 3) of what stands still."""
+        """Places x, y and angle (steps + 1, 3) over a turn, mm and rad; (1, 3) of a body at rest."""
         if self.place is None:
             return np.zeros((1, 3))
-        found = self.place(TURN * np.arange(steps + 1) / steps, 0)[:, 0].T.copy()
-        found[:, 2] = np.unwrap(found[:, 2])
-        return found
+        poses = self.place(TURN * np.arange(steps + 1) / steps, 0)[:, 0].T.copy()
+        poses[:, 2] = np.unwrap(poses[:, 2])
+        return poses
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A place where one body runs on another, and by how much the one is wider; mm. `pressed` ones are narrower.
+    """The fit of two bodies: `clearance` between them, mm, or the interference of `pressed` ones.
 
-    `held` is by how much what drives is too wide to turn in what it drives.
+    `excess` is that of the shaft's width over the opening in which it would have to turn to slip, mm; None elsewhere.
     """
 
     name: str
     clearance: float
     pressed: bool = False
-    held: float | None = None
+    excess: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """All bodies of a mechanism, the cam first, and the pairs that touch by design.
+    """All bodies of a mechanism, the cam first, with their fits by construction.
 
-    `fits` are the clearances by construction; `remarks` tell a maker what the bodies do not show.
+    `touching` are pairs of names that touch by design; `remarks` say what the bodies do not show.
     """
 
     members: tuple[Member, ...]

@@ -1,4 +1,4 @@
-"""Where bodies of a linkage are put one above another: levels, posts, rails, and links that more hangs on."""
+"""Building up the bodies of a linkage one above another: levels, posts, rails, and links that carry others."""
 
 from __future__ import annotations
 
@@ -6,32 +6,32 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member
-from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member, Plate
 from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR
-from camgeo.capabilities.mechanism.shapes import bar, bars, box, moved, pin, retainer
+from camgeo.capabilities.mechanism.shapes import bar, bars, box, pin, retainer, transformed
 from camgeo.capabilities.mechanism.sizes import BodyError
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from camgeo.capabilities.mechanism.assembly import Place
-    from camgeo.capabilities.mechanism.link_poses import Links
+    from camgeo.capabilities.mechanism.poses import Links
     from camgeo.capabilities.mechanism.shapes import Point
     from camgeo.capabilities.mechanism.sizes import Sizes
     from camgeo.fit.pieces import ArcSpline
     from kin.numeric.arrays import Array
 
-LOOKS = 720
+PLACES = 720  # of a turn, at which extents are taken
 BLOCK = 1.5  # length of a block or slide, in widths
 FRAME_COLOUR, ROCKER_COLOUR, BLOCK_COLOUR = "#4f8f5f", "#8a6fb0", "#b0566a"
 
 
 @dataclass()
 class Carrier:
-    """A moving body while it is put together: `origin` is that of the link's own axes in the body's.
+    """A moving body under construction, between z = `low` and `high`; mm.
 
-    `holes` are those for pins, in the body's axes; what is added leaves them free.
+    `origin` is that of the link's own axes in the body's. `holes` are those for pins, in the body's axes; bars that are
+    added leave them free.
     """
 
     name: str
@@ -43,39 +43,42 @@ class Carrier:
     origin: Point = (0.0, 0.0)
     holes: tuple[Point, ...] = ()
 
-    def reach(self, point: Point, s: Sizes, field_path: str) -> Point:
-        """Extend the body to a point of the link's axes, and give that in the body's. Raises BodyError."""
-        x, y = self.origin
-        at = (x + point[0], y + point[1])
+    def extend(self, point: Point, s: Sizes, field_path: str) -> Point:
+        """Add a bar to a point of the link's axes, and return that in the body's.
+
+        Raises BodyError, at the field, where the bar would cut a hole.
+        """
+        end = (self.origin[0] + point[0], self.origin[1] + point[1])
         try:
-            self.plates += bars(s, [(self.origin, at)], self.holes, self.low, self.high)
+            self.plates += bars(s, [(self.origin, end)], self.holes, self.low, self.high)
         except ValueError as error:
             raise BodyError(field_path, str(error), "move the point, or give a smaller mechanism.bar") from error
-        return at
+        return end
 
 
 class Mount(NamedTuple):
-    """A point of a carrier, in the body's axes, that something hangs on."""
+    """A point of a carrier, in the body's axes, to which another body is attached."""
 
     carrier: Carrier
     point: Point
 
-    def hold(self, site: Site, name: str, low: float, high: float) -> None:
-        """Stand a pin there that holds a body between `low` and `high`, with its retainer."""
+    def add_pin(self, site: Site, name: str, low: float, high: float) -> None:
+        """Add a pin there for a body between z = `low` and `high`, with its retainer."""
         self.carrier.plates += pin(site.s, self.point, self.carrier.high, low, high)
-        site.hold(name, self.carrier.name, self.point, high, self.carrier.place)
+        site.add_retainer(name, self.carrier.name, self.point, high, self.carrier.place)
 
 
 @dataclass()
 class Site:
-    """What is gathered while links are put one above another.
+    """Bodies of a linkage under construction, one above another; mm.
 
-    `floor` is where the next one may begin, `width` that of the base plate's arms.
+    `next_low` is the z from which the next one may begin, `width` that of the base plate's arms. `ground` are plates on
+    the base, `pads` outlines of the base itself.
     """
 
     s: Sizes
     links: Links
-    floor: float
+    next_low: float
     width: float
     carriers: list[Carrier] = field(default_factory=list)
     members: list[Member] = field(default_factory=list)
@@ -84,60 +87,60 @@ class Site:
     fits: list[Fit] = field(default_factory=list)
 
     def level(self) -> tuple[float, float]:
-        """Take the next level for a link: its lower and upper face. The one above leaves room for retainers."""
-        low = self.floor
+        """Lower and upper face of the next link, z in mm; the one after it is above the retainers of this one."""
+        low = self.next_low
         high = low + self.s.link
-        self.floor = high + 2.0 * self.s.gap + self.s.clip
+        self.next_low = high + 2.0 * self.s.gap + self.s.clip
         return low, high
 
     def add(self, carrier: Carrier) -> Carrier:
-        """Add a body that moves by itself, and that more may be added to."""
+        """Add a body that moves by itself; return it, as it may be extended."""
         self.carriers.append(carrier)
         return carrier
 
-    def closed(self) -> tuple[Member, ...]:
+    def all_members(self) -> tuple[Member, ...]:
         """All bodies but cam, shaft and base."""
         moving = (Member(c.name, tuple(c.plates), c.name, c.place, c.colour) for c in self.carriers)
         return (*moving, *self.members)
 
-    def hold(
+    def add_retainer(
         self, name: str, group: str, centre: Point, high: float, place: Place | None = None, *, radius: float = 0.0
     ) -> None:
-        """Add the retainer on a pin of a group, of this radius or more, above a body that ends at `high`."""
+        """Add the retainer on a pin of a group, of this radius or more, above a body that ends at z = `high`."""
         plates = retainer(self.s, centre, high, radius=radius)
         self.members.append(Member(f"retainer-{name}", plates, group, place, CLIP_COLOUR))
 
-    def post(self, name: str, centre: Point, low: float, high: float, *, radius: float = 0.0) -> None:
-        """Stand a pivot on the base, with its retainer of this radius or more and its share of the base plate."""
+    def add_post(self, name: str, centre: Point, low: float, high: float, *, radius: float = 0.0) -> None:
+        """Add a pivot on the base, with its retainer of this radius or more and its arm of the base plate."""
         self.ground += pin(self.s, centre, self.s.plate, low, high)
         self.pads.append(bar((0.0, 0.0), centre, self.width))
-        self.hold(name, GROUND, centre, high, radius=radius)
+        self.add_retainer(name, GROUND, centre, high, radius=radius)
 
-    def sampled(self, place: Place) -> Array:
-        """Places (n, 3) of a body over a turn."""
-        found: Array = place(TURN * np.arange(LOOKS) / LOOKS, 0)[:, 0].T
-        return found
+    def sample(self, place: Place) -> Array:
+        """Places x, y and angle (n, 3) of a body over a turn, mm and rad."""
+        poses: Array = place(TURN * np.arange(PLACES) / PLACES, 0)[:, 0].T
+        return poses
 
-    def rails(self, place: Place, point: Point, angle: float) -> None:
-        """Lay a guide of two rails on the base, for a slide on a line through a point."""
+    def add_rails(self, place: Place, point: Point, angle: float) -> None:
+        """Add two rails on the base for a slide on a line through a point, at an angle in rad."""
         s = self.s
-        x, y = (self.sampled(place)[:, :2] - point).T
+        x, y = (self.sample(place)[:, :2] - point).T
         along = x * np.cos(angle) + y * np.sin(angle)
-        over = 0.5 * BLOCK * s.bar + s.space
-        first, last = float(along.min()) - over, float(along.max()) + over
+        margin = 0.5 * BLOCK * s.bar + s.space
+        first, last = float(along.min()) - margin, float(along.max()) + margin
         inner = 0.5 * s.bar + s.gap_each_side
         outer = inner + s.wall
         for side in (-1.0, 1.0):
             y0, y1 = sorted((side * inner, side * outer))
-            rail = moved(box(first, y0, last, y1), *point, angle)
+            rail = transformed(box(first, y0, last, y1), *point, angle)
             self.ground.append(Plate(rail, (), s.plate, s.plate + s.gap + s.link))
-        self.ground.append(Plate(moved(box(first, -outer, last, outer), *point, angle), (), 0.0, s.plate))
+        self.ground.append(Plate(transformed(box(first, -outer, last, outer), *point, angle), (), 0.0, s.plate))
         middle = 0.5 * (first + last)
-        towards = (point[0] + middle * float(np.cos(angle)), point[1] + middle * float(np.sin(angle)))
-        self.pads.append(bar((0.0, 0.0), towards, self.width))
+        centre = (point[0] + middle * float(np.cos(angle)), point[1] + middle * float(np.sin(angle)))
+        self.pads.append(bar((0.0, 0.0), centre, self.width))
 
     def slide(self, low: float, high: float) -> list[Plate]:
-        """Plates of a slide on the base, with the pin that holds a body between `low` and `high`."""
+        """Plates of a slide on the base, with the pin for a body between z = `low` and `high`."""
         s = self.s
         foot = s.plate + s.gap
         body = Plate(block(s), (), foot, foot + s.link)
@@ -145,15 +148,15 @@ class Site:
 
 
 def block(s: Sizes) -> ArcSpline:
-    """Outline of a block about its origin."""
+    """Outline of a block about its origin, mm."""
     half = 0.5 * BLOCK * s.bar
     return box(-half, -0.5 * s.bar, half, 0.5 * s.bar)
 
 
-def slotted(first: float, last: float, y: float, s: Sizes) -> tuple[ArcSpline, ArcSpline]:
-    """Outline of a bar along x, and of its slot for a block whose middle runs from `first` to `last`."""
-    over = 0.5 * BLOCK * s.bar + s.space
+def slotted_bar(first: float, last: float, y: float, s: Sizes) -> tuple[ArcSpline, ArcSpline]:
+    """Outlines of a bar along x at y, and of its slot for a block whose middle runs from x = `first` to `last`, mm."""
+    margin = 0.5 * BLOCK * s.bar + s.space
     inner = 0.5 * s.bar + s.gap_each_side
-    slot = box(first - over, y - inner, last + over, y + inner)
-    over, outer = over + s.wall, inner + s.wall
-    return box(first - over, y - outer, last + over, y + outer), slot
+    slot = box(first - margin, y - inner, last + margin, y + inner)
+    margin, outer = margin + s.wall, inner + s.wall
+    return box(first - margin, y - outer, last + margin, y + outer), slot

@@ -1,4 +1,4 @@
-"""The checks of a set, of which each may be limited as a figure."""
+"""The checks of printed bodies, of which each may be limited as a figure."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 NAME = "mechanism"  # of this capability
-IN_PLAN = ("wall", "bar", "pin", "knob")  # sizes on which it hangs whether bodies meet
+IN_PLAN = ("wall", "bar", "pin", "knob")  # sizes that decide whether bodies meet
 
 
-def _bodies(scene: Scene) -> bool:
+def _has_bodies(scene: Scene) -> bool:
     return any(request.variant == NAME for request in scene.recipe.export.files)
 
 
-def slimmer(recipe: Recipe) -> str:
-    """Tell which sizes would keep bodies apart: those that the recipe gives, or that from which the others follow."""
-    given = [f"{NAME}.{size}" for size in IN_PLAN if f"{NAME}.{size}" in recipe.marks] or [f"{NAME}.pin"]
-    return f"a smaller {given[0]}" if len(given) == 1 else f"smaller {', '.join(given[:-1])} and {given[-1]}"
+def slimmer_sizes(recipe: Recipe) -> str:
+    """Remedy for bodies that meet: smaller sizes, of those that the recipe gives, or a smaller pin."""
+    fields = [f"{NAME}.{size}" for size in IN_PLAN if f"{NAME}.{size}" in recipe.marks] or [f"{NAME}.pin"]
+    return f"a smaller {fields[0]}" if len(fields) == 1 else f"smaller {', '.join(fields[:-1])} and {fields[-1]}"
 
 
 def _apart(_check: Entry, _report: Entry, recipe: Recipe) -> str:
-    return slimmer(recipe)
+    return slimmer_sizes(recipe)
 
 
-CLEARANCE = Declared("clearance", ("mm",), _bodies, strict_at=(0.0,), after=LIGHTENING.name)
-COLLISION = Declared("collision", ("mm",), _bodies, field=NAME, remedy=_apart, after=LIGHTENING.name)
+CLEARANCE = Declared("clearance", ("mm",), _has_bodies, strict_at=(0.0,), after=LIGHTENING.name)
+COLLISION = Declared("collision", ("mm",), _has_bodies, field=NAME, remedy=_apart, after=LIGHTENING.name)
 OUTLINE = Declared("outline", ("mm",), after=READABLE.name)  # of the other bodies, whose files are not foreseen
 CHECKS = (CLEARANCE, COLLISION, OUTLINE)

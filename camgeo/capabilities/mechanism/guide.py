@@ -4,34 +4,41 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Member
-from camgeo.capabilities.mechanism.body import Plate
-from camgeo.capabilities.mechanism.shaft import GROUND_COLOUR
+from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.poses import Turning
+from camgeo.capabilities.mechanism.shaft import (
+    GROUND_COLOUR,
+    base,
+    base_radius,
+    bearing,
+    shaft_fits,
+    shaft_members,
+)
 from camgeo.capabilities.mechanism.shapes import box, disc
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.mechanism.shaft import Drive
     from camgeo.capabilities.mechanism.sizes import Sizes
 
 LENGTH = 2.0  # of a guide, in widths of its stem: a shorter one jams
 
 
 def guide_length(s: Sizes) -> float:
-    """Return the length of a guide."""
+    """Length of a guide, mm."""
     return LENGTH * s.bar
 
 
 def half_width(s: Sizes) -> float:
-    """Half the width of a guide with its blocks: each holds a peg."""
+    """Half the width of a guide with its two blocks, each with pegs, mm."""
     return 0.5 * s.bar + s.gap_each_side + s.bar
 
 
 def guide(
     name: str, start: float, low: float, high: float, s: Sizes, *, line: float = 0.0
 ) -> tuple[tuple[Plate, ...], Member]:
-    """Return the plates of a guide from x = `start`, and its cap, for a stem between z = `low` and `high`.
-
-    The stem's middle is the `line` at that y.
-    """
+    """Plates of a guide from x = `start`, and its cap, for a stem from z = `low` to `high`, middle at y = `line`."""
     end, top = start + guide_length(s), high + s.gap
     inner, outer = 0.5 * s.bar + s.gap_each_side, half_width(s)
     plates, holes = [], []
@@ -46,3 +53,44 @@ def guide(
             holes.append(disc(0.5 * (s.pin - s.press), x, y))
     cap = Plate(box(start, line - outer, end, line + outer), tuple(holes), top, top + s.clip)
     return tuple(plates), Member(name, (cap,), GROUND, colour=GROUND_COLOUR)
+
+
+def guided_assembly(
+    moving: Sequence[Member],
+    guides: Sequence[tuple[str, float]],
+    stem: tuple[float, float],
+    cam_low: float,
+    drive: Drive,
+    *,
+    fits: Sequence[Fit] = (),
+    touching: frozenset[frozenset[str]] = frozenset(),
+    remarks: tuple[str, ...] = (),
+    line: float = 0.0,
+) -> Assembly:
+    """All bodies of a mechanism whose `moving` ones slide along x: with the base, guides, their caps and the shaft.
+
+    `guides` are their names and the x at which they start; `stem` has the lower and upper z of the stem, whose middle
+    is at y = `line`; `fits` are those of the moving bodies.
+    """
+    s, disk = drive.sizes, drive.disk
+    plates: list[Plate] = []
+    caps: list[Member] = []
+    ends = [0.0]
+    for name, start in guides:
+        blocks, cap = guide(f"cap-{name}", start, *stem, s, line=line)
+        plates += blocks
+        caps.append(cap)
+        ends += [start, start + guide_length(s)]
+    radius, wide = base_radius(drive), half_width(s)
+    half = max(wide, radius)
+    low, high = min(line - wide, -radius), max(line + wide, radius)
+    pad = box(min(*ends, -half), low, max(*ends, half), high)
+    ground = base((*bearing(drive, [pad], cam_low + disk.bottom - s.gap), *plates))
+    members = (*moving, ground, *caps)
+    every = (
+        *fits,
+        *shaft_fits(drive),
+        Fit("stem in its guide", s.clearance),
+        Fit("cap on its pegs", s.press, pressed=True),
+    )
+    return Assembly((*shaft_members(drive, cam_low, Turning(), members), *members), every, s, touching, remarks)

@@ -1,4 +1,4 @@
-"""Bodies of a mechanism in the words of kin's collision, and what it finds over the whole turn as checks."""
+"""Checks that no bodies of a mechanism meet over the whole turn, and of its clearances by construction."""
 
 from __future__ import annotations
 
@@ -22,76 +22,74 @@ from kin.numeric.lengths import UNIT, length_words, place_words
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from camgeo.capabilities.mechanism.assembly import Assembly, Place
-    from camgeo.capabilities.mechanism.body import Plate
+    from camgeo.capabilities.mechanism.assembly import Assembly, Place, Plate
     from camgeo.fit.pieces import ArcSpline
     from kin.clearance.clearance import Clearance
     from kin.clearance.pose import PlaneMotion
 
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
-LOOKS = 24  # points of each line and arc of a hole from which its walls are looked at
+POINTS = 24  # of each line and arc of a hole, from which its walls are measured
 AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
-COARSE = 0.25  # mm, within which the room is reported
+COARSE = 0.25  # mm, within which the size of all bodies is reported
 ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
 
 def collision_checks(assembly: Assembly) -> list[Check]:
-    """Check that no two bodies meet at any angle, and tell the least running clearance that they are made with.
+    """The check of the least running clearance, and one of the distance of each pair of bodies at common heights, mm.
 
-    One check for each pair that has something at common heights; bodies less than the axial gap apart in height count
-    as that. What is pressed together, and what touches by design, is left out: the rollers and a single face are held
-    against the file of the cam itself.
+    Bodies less than the axial gap apart in height count as at common heights. Those pressed together, and those that
+    touch by design, are left out: rollers and a single face are judged against the file of the cam itself.
     """
     s, bodies = assembly.sizes, movers(assembly)
-    found = clearances(bodies, exempt(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
-    return [clearance_check(assembly, bodies), *(_checked(pair) for pair in found)]
+    pairs = clearances(bodies, exempt_pairs(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
+    return [clearance_check(assembly, bodies), *(_pair_check(pair) for pair in pairs)]
 
 
 def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
-    """Tell all fits, what holds the cam on the shaft, the thinnest wall, and the room that all bodies sweep.
+    """Check that the least running clearance, mm, is above 0.
 
-    The least clearance among those that run must be above 0.
+    Its detail has all fits, what drives the cam, the thinnest wall, and the size of the box that all bodies sweep.
     """
     running = [fit for fit in assembly.fits if not fit.pressed]
     least = min(fit.clearance for fit in running)
-    told = [f"{fit.name} {'-' if fit.pressed else ''}{length_words(fit.clearance)}" for fit in assembly.fits]
-    held = [
-        f"{fit.name} drives: {length_words(fit.held, '.4g')} {UNIT} too wide to slip round"
+    fits = [f"{fit.name} {'-' if fit.pressed else ''}{length_words(fit.clearance)}" for fit in assembly.fits]
+    driving = [
+        f"{fit.name} drives: {length_words(fit.excess, '.4g')} {UNIT} too wide to slip round"
         for fit in assembly.fits
-        if fit.held is not None
+        if fit.excess is not None
     ]
-    wall, where = thinnest(assembly)
+    wall, where = thinnest_wall(assembly)
     thin = f"thinnest wall {length_words(wall, '.3g')} {UNIT}: {where}"
-    room = "takes up " + " by ".join(f"{length:.0f}" for length in swept_room(bodies)) + " mm as it turns"
-    detail = "; ".join([f"{UNIT} wider by construction: {', '.join(told)}", *held, thin, room, *assembly.remarks])
+    size = "takes up " + " by ".join(f"{length:.0f}" for length in swept_size(bodies)) + " mm as it turns"
+    detail = "; ".join([f"{UNIT} wider by construction: {', '.join(fits)}", *driving, thin, size, *assembly.remarks])
     return Check(CLEARANCE.name, least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
 
 
-def thinnest(assembly: Assembly) -> tuple[float, str]:
-    """Least thickness or wall of all bodies but the cam, mm, and where.
+def thinnest_wall(assembly: Assembly) -> tuple[float, str]:
+    """Least thickness or wall of all bodies but the cam, mm, and the name of its body.
 
-    A wall is looked for between the edges of one plate, from points along its holes. A retainer's or arm's thickness is
-    as asked; the cam's walls are reported by its own check.
+    Walls are measured between the edges of one plate, from points along its holes. The cam's are reported by its own
+    check.
     """
     s = assembly.sizes
-    found = [(s.link, "links"), (s.clip, "retainers")]
+    walls = [(s.link, "links"), (s.clip, "retainers")]
     for member in assembly.members[1:]:
         for plate in member.plates:
             edges = [_contour(plate.outline), *map(_contour, plate.holes)]
-            for one, other in combinations(edges, 2):
-                found.append((float(one.distance(other.sample(LOOKS)).min()), member.name))
-    return min(found)
+            for edge, other in combinations(edges, 2):
+                walls.append((float(edge.distance(other.sample(POINTS)).min()), member.name))
+    return min(walls)
 
 
-def exempt(assembly: Assembly) -> Iterable[frozenset[str]]:
-    """Pairs that are not held against each other."""
-    for one, other in combinations(assembly.members, 2):
-        pair = frozenset({one.name, other.name})
-        if one.group == other.group or pair in assembly.touching:
+def exempt_pairs(assembly: Assembly) -> Iterable[frozenset[str]]:
+    """Pairs of names that may touch: pressed together, or in contact by design."""
+    for member, other in combinations(assembly.members, 2):
+        pair = frozenset({member.name, other.name})
+        if member.group == other.group or pair in assembly.touching:
             yield pair
 
 
-def swept_room(bodies: Sequence[Mover]) -> tuple[float, float, float]:
+def swept_size(bodies: Sequence[Mover]) -> tuple[float, float, float]:
     """Length, width and height of the box that holds all bodies at every angle, mm; each side within COARSE."""
     boxes = np.array([swept_box(body, COARSE) for body in bodies])
     (left, bottom), (right, top) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
@@ -102,17 +100,17 @@ def swept_room(bodies: Sequence[Mover]) -> tuple[float, float, float]:
 def movers(assembly: Assembly) -> list[Mover]:
     """Bodies with their motions; those that share a place share the motion."""
     motions: dict[int, PlaneMotion] = {}
-    found = []
+    bodies = []
     for member in assembly.members:
         key = id(member.place)
         if key not in motions:
             motions[key] = _motion(member.place)
-        found.append(Mover(member.name, slabs(member.plates), motions[key]))
-    return found
+        bodies.append(Mover(member.name, slabs(member.plates), motions[key]))
+    return bodies
 
 
 def _motion(place: Place | None) -> PlaneMotion:
-    """What stands or turns steadily is that; any other motion is sampled with its rates, and cubic between."""
+    """Motion of a place, exact for a body at rest or turning steadily, else cubic between samples with rates."""
     if place is None:
         return Still()
     if isinstance(place, Turning):
@@ -134,7 +132,8 @@ def _contour(outline: ArcSpline | Polygon) -> Contour:
     return Contour.from_bulges(outline.points, outline.bulges)
 
 
-def _checked(pair: Clearance) -> Check:
+def _pair_check(pair: Clearance) -> Check:
+    """Check that two bodies keep apart: their least proved distance, mm, above 0."""
     x, y = pair.place
     least = min(pair.least, pair.proved) - pair.slack
     if pair.holds:

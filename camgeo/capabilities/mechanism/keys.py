@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class MechanismAsked:
-    """Sizes of the printable mechanism.
+class RequestedSizes:
+    """Sizes of the printable mechanism that a recipe gives, mm; None for those that follow from the cam.
 
-    `clearance` is what a hole is wider than its pin, and what the faces stand farther apart than the cam's breadth;
-    `gap` axial gap between bodies that lie above one another, `press` what is pressed on is too narrow by, `space` what
-    bodies that never touch keep in plan by construction. `plate` is the thickness of the base, `link` that of arms,
-    rockers and rods, `bar` their width, `wall` that of frames and hubs about a hole, `clip` the thickness of retainers.
+    `clearance` is that of a hole on its pin, and of faces about the cam; `gap` the axial gap between bodies one above
+    another, `press` the interference of a pressed hole, `space` the gap in plan of bodies that never touch. `plate` is
+    the thickness of the base, `link` that of arms, rockers and rods, `bar` their width, `wall` that of frames and of
+    hubs about a hole, `clip` the thickness of retainers.
     """
 
     clearance: float = 0.2
@@ -56,30 +56,30 @@ PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", d
 
 
 def fields() -> tuple[Field, ...]:
-    """The key of the sizes."""
+    """The key `mechanism` of a recipe, with the keys below it."""
     return (replace(MECHANISM, after="limits", unshown=("disc-conjugate", "disc-ring")),)
 
 
-def build(values: Values) -> MechanismAsked:
-    """Make the sizes, those by default where the recipe gives none."""
-    return MechanismAsked(**values.get("mechanism", {}))
+def build(values: Values) -> RequestedSizes:
+    """Sizes of a recipe without faults, mm; those by default without the key."""
+    return RequestedSizes(**values.get("mechanism", {}))
 
 
-def sizes_given(recipe: Recipe) -> MechanismAsked:
-    """The sizes that a recipe gives, those by default of one without."""
-    return recipe.of(MechanismAsked) or MechanismAsked()
+def requested_sizes(recipe: Recipe) -> RequestedSizes:
+    """Sizes that a recipe gives, mm; those by default without the key."""
+    return recipe.of(RequestedSizes) or RequestedSizes()
 
 
 def check(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
-    """Note the faults of a file of all bodies."""
+    """Add the faults of a file with `parts: all`, at its path, to the reader's errors."""
     if request.compensation is not None:
         remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
         reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
     if values.get("cam", {}).get("preload") is not None:
         reader.fault_at(path, "the bodies round a preloaded cam are not made", None, "leave `parts: all` out")
-    beyond = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
-    if beyond:
-        reader.fault_at(path, f"the bodies round {beyond} are not made", None, "leave `parts: all` out")
+    unsupported = "a ring" if is_ring(values) else "conjugate discs" if is_pair(values) else ""
+    if unsupported:
+        reader.fault_at(path, f"the bodies round {unsupported} are not made", None, "leave `parts: all` out")
     elif "part.bore" not in reader.marks:
         remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
         reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)

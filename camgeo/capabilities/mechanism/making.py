@@ -1,17 +1,17 @@
-"""Every body of a mechanism: built once a run, held against each other over the whole turn, written in many formats."""
+"""All bodies of a mechanism: built and checked for collisions once a run, written in each format."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.checks import NAME
 from camgeo.capabilities.mechanism.interference import collision_checks
-from camgeo.capabilities.mechanism.keys import sizes_given
+from camgeo.capabilities.mechanism.keys import requested_sizes
 from camgeo.capabilities.mechanism.parts import make_parts
-from camgeo.capabilities.mechanism.shaft import drives
-from camgeo.capabilities.mechanism.sizes import BodyError, runs
+from camgeo.capabilities.mechanism.shaft import require_drive
+from camgeo.capabilities.mechanism.sizes import BodyError, require_clearance
 from camgeo.files.solid import need_booleans
 from camgeo.fit.pieces import ArcSpline
 from camgeo.output.job import Made
@@ -29,54 +29,54 @@ if TYPE_CHECKING:
 def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
     """Write and judge every body; the checks of the mechanism itself are reported with its first file.
 
-    Nothing is made of a mechanism that does not turn. Raises as `make` does.
+    There is no file of a mechanism that does not turn. Raises as `make` does.
     """
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
     first = NAME not in job.kept
     if first:
-        job.kept[NAME] = _assembled(job, request)
+        job.kept[NAME] = _build(job, request)
     assembly: Assembly = job.kept[NAME]
     made = make_parts(job, request, path, [member.body() for member in assembly.members])
     if not first:
         return made
-    with job.clock.stage("collision"):  # last, as it is dear: a body that cannot be written is told at once
+    with job.clock.stage("collision"):  # last, as it takes longest
         checks = collision_checks(assembly)
     return Made(made.files, (*checks, *made.checks))
 
 
 def foresee_mechanism(job: Job, request: FileRequest) -> None:
-    """Refuse clearances that the file's tolerance takes away, and a shaft that does not turn the cam.
+    """Raise RecipeErrors for clearances that the file's tolerance may close, and a shaft that may slip in the cam.
 
-    Raises RecipeErrors; MissingExtraError without the package that joins bodies.
+    Raises MissingExtraError without the package that joins bodies.
     """
     need_booleans()
-    recipe, off = job.recipe, job.tolerance(request)
-    clearance = sizes_given(recipe).clearance
-    with _told(recipe):
-        runs(clearance, job.tolerance_field(request), off)
-        drives(recipe.part, clearance, off)
+    recipe, tolerance = job.recipe, job.tolerance(request)
+    clearance = requested_sizes(recipe).clearance
+    with _recipe_errors(recipe):
+        require_clearance(clearance, job.tolerance_field(request), tolerance)
+        require_drive(recipe.part, clearance, tolerance)
         first, *others = job.design.follower.contacts
         for other in others if job.body.pocket is not None else ():
             play = other.touch.radius - first.touch.radius
-            runs(play, job.tolerance_field(request), off, "cam.track.groove.clearance")
+            require_clearance(play, job.tolerance_field(request), tolerance, "cam.track.groove.clearance")
 
 
 @contextmanager
-def _told(recipe: Recipe) -> Iterator[None]:
-    """Turn a body that cannot be made into RecipeErrors at the field to blame."""
+def _recipe_errors(recipe: Recipe) -> Iterator[None]:
+    """Raise RecipeErrors, at the field that is the cause, in place of BodyError."""
     try:
         yield
     except BodyError as error:
-        message, remedy = error.told(recipe.mm, recipe.units)
+        message, remedy = error.texts(recipe.mm, recipe.units)
         raise recipe.error(error.field, message, None, remedy) from error
 
 
-def _assembled(job: Job, request: FileRequest) -> Assembly:
-    """Build the bodies round the contours as arcs within the file's tolerance."""
+def _build(job: Job, request: FileRequest) -> Assembly:
+    """Bodies round the contours, as arcs within the file's tolerance."""
     with job.refusals(request), job.clock.stage("bodies"):
         fitted = [fit.within("arcs", job.tolerance(request)) for fit in job.fits]
         contours = [contour for contour in fitted if isinstance(contour, ArcSpline)]
-        with _told(job.recipe):
-            return assembly_of(job.recipe, job.design, *contours)
+        with _recipe_errors(job.recipe):
+            return build_assembly(job.recipe, job.design, *contours)

@@ -16,7 +16,7 @@ from camgeo.fit.pieces import Polygon
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.capabilities.mechanism.body import PrintBody
+    from camgeo.capabilities.mechanism.assembly import PrintBody
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.fit.pieces import ArcSpline
@@ -24,38 +24,39 @@ if TYPE_CHECKING:
 
     Outline: TypeAlias = ArcSpline | Polygon
 
-GAP = 5.0  # mm between bodies that are laid out
-_STEP = 100.0  # places on the plate are whole steps of 1/100 mm
-_LARGER = 1.001  # a face is larger than another from this share on
-_SHAPE = 1.4  # the plate is filled about this much wider than deep
+GAP = 5.0  # mm between bodies laid out for printing
+_STEP = 100.0  # a mm: places on the plate are whole steps
+_LARGER = 1.001  # times the area of another face, from which a face is larger
+_SHAPE = 1.4  # width of the filled plate over its depth, about
 
 
 def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
-    """Closed mesh of a body's plates, joined, in its own axes, and how far its walls are off, mm.
+    """Closed mesh of a body's joined plates, in its own axes, and the greatest error of its walls, mm.
 
     Raises ToleranceError where the tolerance cannot be held in the precision; RegionError, with the body's name, where
-    an outline is not simple, the plates do not hang together, or what is joined does not close once it is rounded.
+    an outline is not simple, the plates are not connected, or the rounded mesh does not close.
     """
     try:
-        return _joined(body, tolerance, precision)
+        return _join(body, tolerance, precision)
     except RegionError as error:
         raise RegionError(f"{body.name}: {error}") from error
 
 
-def _joined(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
+def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
+    """See `body_mesh`; errors are without the body's name."""
     joined: Any = None
     worst = 0.0
     for plate in body.plates:
         for height in (plate.low, plate.high):
             precision.within(f"{body.name}: a height", abs(precision.number(height) - height), tolerance)
-    for storeys in _columns([(plate.outline, plate.low, plate.high) for plate in body.plates]):
-        plates = [body.plates[k] for k in storeys]
+    for stack in _stacks([(plate.outline, plate.low, plate.high) for plate in body.plates]):
+        plates = [body.plates[k] for k in stack]
         low, high = plates[0].low, plates[-1].high
         outer, off = _loop(plates[0].outline, tolerance, precision)
         slab = manifold(*prism(outer, low, high, precision))
         worst = max(worst, off)
         holes = [(hole, plate.low, plate.high) for plate in plates for hole in plate.holes]
-        for through in _columns(holes):
+        for through in _stacks(holes):
             (hole, foot, _), (_, _, top) = holes[through[0]], holes[through[-1]]
             inner, off = _loop(hole, tolerance, precision)
             foot, top = foot - BEYOND if foot == low else foot, top + BEYOND if top == high else top
@@ -70,32 +71,32 @@ def _joined(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Me
     return mesh, worst + merged
 
 
-def _columns(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
-    """Numbers of outlines from one height to another, upward, those of one shape that stand on each other together.
+def _stacks(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
+    """Indices of outlines from one height to another, upward, equal ones directly above each other in one list.
 
-    Where walls cross, each storey's corners would be rounded in their own way: joined one above the other they leave
-    slivers.
+    Each level's corners would be rounded by itself where walls cross, and leave slivers when they are joined.
     """
-    found: list[list[int]] = []
+    stacks: list[list[int]] = []
     for k in sorted(range(len(walls)), key=lambda k: walls[k][1]):
         outline, low, _ = walls[k]
-        below = (column for column in found if walls[column[-1]][2] == low and _same(walls[column[-1]][0], outline))
-        column = next(below, None)
-        if column is None:
-            found.append([k])
+        below = (stack for stack in stacks if walls[stack[-1]][2] == low and _equal(walls[stack[-1]][0], outline))
+        stack = next(below, None)
+        if stack is None:
+            stacks.append([k])
         else:
-            column.append(k)
-    return found
+            stack.append(k)
+    return stacks
 
 
-def _same(outline: Outline, other: Outline) -> bool:
+def _equal(outline: Outline, other: Outline) -> bool:
+    """Whether two outlines have the same vertices and bulges; a polygon equals itself alone."""
     if isinstance(outline, Polygon) or isinstance(other, Polygon):
         return outline is other
     return np.array_equal(outline.points, other.points) and np.array_equal(outline.bulges, other.bulges)
 
 
 def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Array, float]:
-    """Rounded vertices (n, 2) of an outline, and how far it is off in all."""
+    """Rounded vertices (n, 2) of an outline, and its greatest error with the rounding, mm."""
     if isinstance(outline, Polygon):
         loop, moved, _ = rounded_contour(outline, precision)
         off = outline.bound.widened(moved).worst
@@ -105,20 +106,19 @@ def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Arr
     return loop, off
 
 
-def standing(pose: Array) -> Array:
-    """Place (4, 3) of a body at x, y and angle: the images of the axes and of the origin."""
+def pose_matrix(pose: Array) -> Array:
+    """Matrix (4, 3) of a body at x, y and angle, mm and rad: the images of the axes, then of the origin."""
     x, y, angle = pose.tolist()
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0], [x, y, 0.0]])
 
 
-def laid_out(meshes: Sequence[Mesh], gap: float = GAP) -> list[Array]:
-    """Places (4, 3) that lay bodies on the plate z = 0 side by side, `gap` mm apart, all of it at positive x and y.
+def layout(meshes: Sequence[Mesh], gap: float = GAP) -> list[Array]:
+    """Matrices (4, 3) that lay bodies on the plate z = 0 in rows, `gap` mm apart, at positive x and y, deepest first.
 
-    Each lies on the larger of its lowest and highest faces, turned over if that is the highest. They are set in rows,
-    the deepest first.
+    Each lies on the larger of its lowest and highest faces, turned over if that is the highest.
     """
-    ways = [flat(mesh) for mesh in meshes]
+    ways = [print_pose(mesh) for mesh in meshes]
     boxes = []
     for mesh, (turn, _) in zip(meshes, ways, strict=True):
         turned = mesh.points @ turn
@@ -139,8 +139,8 @@ def laid_out(meshes: Sequence[Mesh], gap: float = GAP) -> list[Array]:
     return places
 
 
-def flat(mesh: Mesh) -> tuple[Array, Array]:
-    """Turn (3, 3) and lift (3,) that lay a body on z = 0, on the larger of its lowest and highest faces."""
+def print_pose(mesh: Mesh) -> tuple[Array, Array]:
+    """Rotation (3, 3) and shift (3,), mm, that lay a body on z = 0, on the larger of its lowest and highest faces."""
     z, upward = mesh.points[:, 2], mesh.area_vectors[:, 2]
     top, bottom = ((z == level)[mesh.triangles].all(axis=1) for level in (z.max(), z.min()))
     if float(upward[top].sum()) > -_LARGER * float(upward[bottom].sum()):
@@ -148,8 +148,8 @@ def flat(mesh: Mesh) -> tuple[Array, Array]:
     return np.eye(3), np.array([0.0, 0.0, -float(z.min())])
 
 
-def mirrored(body: PrintBody) -> PrintBody:
-    """Mirror a body and its motion about the x axis."""
+def mirror(body: PrintBody) -> PrintBody:
+    """The body and its motion mirrored in the x axis."""
     plates = tuple(
         replace(plate, outline=plate.outline.mirrored(), holes=tuple(hole.mirrored() for hole in plate.holes))
         for plate in body.plates

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.mechanism.interference import slabs
-from camgeo.capabilities.mechanism.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.capabilities.mechanism.meshes import body_mesh, layout, mirror, pose_matrix, print_pose
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Item
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from camgeo.capabilities.mechanism.body import PrintBody
+    from camgeo.capabilities.mechanism.assembly import PrintBody
     from camgeo.files.mesh import Mesh
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 CAM = "cam"
 
 
-class Part(NamedTuple):
-    """A body as drawn, its mesh in axes of its own, and how far its walls are off.
+class MeshedBody(NamedTuple):
+    """A body, its mesh in axes of its own, and the error of its walls.
 
-    The cam's mesh is that of its own files, with z = 0 in the lower face of the disc; `raised` is where that face is,
-    and `pieces` counts the edges of its contour.
+    The cam's mesh is that of its own files, with z = 0 in the lower face of the disc; `raised` is the z of that face in
+    the mechanism, mm, and `pieces` the number of edges of its contour.
     """
 
     body: PrintBody
@@ -46,47 +46,47 @@ class Part(NamedTuple):
 
     @property
     def raised_mesh(self) -> Mesh:
-        """Its mesh in the axes of the body, as it moves."""
+        """Mesh in the axes in which the body moves."""
         return replace(self.mesh, points=self.mesh.points + np.array([0.0, 0.0, self.raised]))
 
     @property
     def place(self) -> Array:
-        """Where it stands at shaft angle 0."""
-        found = standing(self.body.pose[0])
-        found[3, 2] = self.raised
-        return found
+        """Matrix (4, 3) of the mesh at shaft angle 0."""
+        matrix = pose_matrix(self.body.pose[0])
+        matrix[3, 2] = self.raised
+        return matrix
 
 
 def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> Made:
-    """Write and judge all bodies, given as for a shaft that turns clockwise; one of them is named "cam".
+    """Write and judge all bodies, drawn for a shaft that turns clockwise; one of them is named "cam".
 
-    A format whose files are by disc has one for each body, another two of all, one to look at shows them move. Raises
-    RecipeErrors and SurroundingsError as `make` does.
+    A format with a file for each disc has one for each body; another has two files of all, laid out and assembled; a
+    format for viewers has one in which they move. Raises RecipeErrors and SurroundingsError as `make` does.
     """
     record = request.format
-    write = one_by_one if record.by_disc else together if record.contour else moving
-    drawn = [mirrored(body) for body in bodies] if job.recipe.rotation == "ccw" else list(bodies)
-    # the cam's own mesh last, as it is dear: a body that has none is told at once
-    meshed = {body.name: _part(job, request, body) for body in sorted(drawn, key=lambda body: body.name == CAM)}
+    write = write_each if record.by_disc else write_together if record.contour else write_moving
+    drawn = [mirror(body) for body in bodies] if job.recipe.rotation == "ccw" else list(bodies)
+    # the cam's own mesh last, as it takes longest: errors of other bodies come first
+    meshed = {body.name: _mesh(job, request, body) for body in sorted(drawn, key=lambda body: body.name == CAM)}
     parts = [meshed[body.name] for body in drawn]
     with job.clock.stage(f"write {request.kind}"):
         return write(job, request, path, parts)
 
 
-def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
+def _mesh(job: Job, request: FileRequest, body: PrintBody) -> MeshedBody:
     if body.name == CAM:
         mesh, facts = cam_mesh(job, request)
-        return Part(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
+        return MeshedBody(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
     with job.refusals(request), job.clock.stage(f"mesh {request.kind}"):
         try:
-            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=numbers(job, request))
+            mesh, error_mm = body_mesh(body, tolerance=job.tolerance(request), precision=numbers(job, request))
         except RegionError as error:
             raise job.recipe.error("mechanism", str(error)) from error
-    return Part(body, mesh, Bound(off, off))
+    return MeshedBody(body, mesh, Bound(error_mm, error_mm))
 
 
-def one_by_one(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    """Write and judge a file for each body: the cam's at `path`, the others' `<name>-<body>` beside it, lying flat."""
+def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+    """Write and judge a file for each body: the cam's at `path`, others as `<name>-<body>` beside it, lying flat."""
     from kin.read.files import read_meshes
 
     mm, ending, write = job.recipe.told_for(request).mm, request.format.ending, _writer(request)
@@ -96,48 +96,48 @@ def one_by_one(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]
         name = part.body.name
         if name == CAM:
             write(path, [Item(name, part.mesh)], f"{job.recipe.name}: {name}", mm, "")
-            made = _judged_cam(job, request, path, part)
+            made = _judge_cam(job, request, path, part)
         else:
-            there = path.with_name(f"{job.recipe.name}-{name}.{ending}")
-            turn, lift = flat(part.mesh)
-            lying = replace(part.mesh, points=numbers(job, request).rounded(part.mesh.points @ turn + lift)[0])
-            write(there, [Item(name, lying)], f"{job.recipe.name}: {name}", mm, "")
-            (built,) = read_meshes(there, mm)
-            # the way back is the way there: half a turn, and the lift undone before it
-            made = _judged_body(job, request, there, part, (built.corners - lift) @ turn)
+            beside = path.with_name(f"{job.recipe.name}-{name}.{ending}")
+            rotation, shift = print_pose(part.mesh)
+            lying = replace(part.mesh, points=numbers(job, request).rounded(part.mesh.points @ rotation + shift)[0])
+            write(beside, [Item(name, lying)], f"{job.recipe.name}: {name}", mm, "")
+            (built,) = read_meshes(beside, mm)
+            # back in the body's axes: the rotation is its own inverse
+            made = _judge_body(job, request, beside, part, (built.corners - shift) @ rotation)
         files += made.files
         checks += made.checks
     return Made(tuple(files), tuple(checks))
 
 
-def together(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    """Write and judge two files of all bodies: laid out for printing at `path`, standing in `<name>-assembly`."""
+def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+    """Write and judge two files of all bodies: laid out for printing at `path`, assembled in `<name>-assembly`."""
     from kin.read.files import read_meshes
 
     recipe, mm, write = job.recipe, job.recipe.told_for(request).mm, _writer(request)
-    for_printing = laid_out([part.mesh for part in parts])
-    standing_there = path.with_name(f"{recipe.name}-assembly.{request.format.ending}")
+    on_plate = layout([part.mesh for part in parts])
+    assembled = path.with_name(f"{recipe.name}-assembly.{request.format.ending}")
     made = Made(())
-    for there, places in ((path, for_printing), (standing_there, [part.place for part in parts])):
+    for file_path, places in ((path, on_plate), (assembled, [part.place for part in parts])):
         items = [Item(p.body.name, p.mesh, place) for p, place in zip(parts, places, strict=True)]
-        write(there, items, recipe.name, mm, recipe.about)
-        built = {one.name: one for one in read_meshes(there, mm)}
+        write(file_path, items, recipe.name, mm, recipe.about)
+        built = {body.name: body for body in read_meshes(file_path, mm)}
         checks: list[Check] = []
         for part in parts:
             if part.body.name == CAM:
-                cam = _judged_cam(job, request, there, part)
+                cam = _judge_cam(job, request, file_path, part)
                 checks += cam.checks
                 files = cam.files
             else:
-                checks += _judged_body(job, request, there, part, built[part.body.name].corners).checks
-        if there is standing_there:
+                checks += _judge_body(job, request, file_path, part, built[part.body.name].corners).checks
+        if file_path is assembled:
             files = tuple(replace(file, body="assembly") for file in files)
         made = Made((*made.files, *files), (*made.checks, *checks))
     return made
 
 
-def moving(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> Made:
-    """Write all bodies as they move, to look at."""
+def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+    """Write a file of all bodies in motion, for viewers."""
     from camgeo.formats.glb import Actor, write_glb
     from camgeo.output.job import looked_at
 
@@ -152,11 +152,11 @@ def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float,
     return request.format.write
 
 
-def _judged_cam(job: Job, request: FileRequest, path: Path, part: Part) -> Made:
+def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> Made:
     return job.judged(request, path, part.bound, part.pieces or 0)
 
 
-def _judged_body(job: Job, request: FileRequest, path: Path, part: Part, corners: Array) -> Made:
+def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> Made:
     from kin.judge.check import about
     from kin.judge.printed import judge_body
 

@@ -1,4 +1,4 @@
-"""Exact places over the shaft angle of what turns, slides and swings by itself; linkages have `linked_places`."""
+"""Exact places over the shaft angle: of bodies that turn, slide or swing, and of the links of a linkage."""
 
 from __future__ import annotations
 
@@ -10,62 +10,104 @@ import numpy as np
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.capabilities.mechanism.assembly import Place
     from camgeo.motions.position import Position
+    from kin.linkage.chain import Solved
+    from kin.linkage.links import Link
+    from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array
 
 
 @dataclass(frozen=True)
 class Turning:
-    """The place of the cam and its shaft: turned clockwise by the shaft angle from the angle `start`."""
+    """Place of the cam and its shaft: turned clockwise by the shaft angle from the angle `start`, rad."""
 
     start: float = 0.0
 
     def __call__(self, phi: Array, order: int) -> Array:
-        """Give x, y and angle with their derivatives."""
-        found = np.zeros((3, order + 1, len(phi)))
-        found[2, 0] = self.start - phi
+        """Place at shaft angles (n,): x, y and angle with derivatives up to an order, (3, order + 1, n)."""
+        rows = np.zeros((3, order + 1, len(phi)))
+        rows[2, 0] = self.start - phi
         if order:
-            found[2, 1] = -1.0
-        return found
+            rows[2, 1] = -1.0
+        return rows
 
 
-def swinging(motion: Position, away: float) -> Place:
-    """Give the place of an arm about a pivot `away` from the shaft, turned clockwise as the follower swings."""
+def rocking_place(motion: Position, pivot: float) -> Place:
+    """Place of an arm about a pivot on the x axis, mm from the shaft, turned clockwise as the follower swings."""
 
     def place(phi: Array, order: int) -> Array:
-        found = np.zeros((3, order + 1, len(phi)))
-        found[0, 0] = away
-        found[2] = -motion.travel(phi, order)
-        return found
+        rows = np.zeros((3, order + 1, len(phi)))
+        rows[0, 0] = pivot
+        rows[2] = -motion.travel(phi, order)
+        return rows
 
     return place
 
 
-def lifted(motion: Position, foot: float = 0.0, y: float = 0.0) -> Place:
-    """Give the place of a stem that moves along x on a line at y: its origin stands at `foot` at position 0."""
+def stem_place(motion: Position, start: float = 0.0, y: float = 0.0) -> Place:
+    """Place of a stem that moves along x on a line at y, mm: its origin is at x = `start` at position 0."""
 
     def place(phi: Array, order: int) -> Array:
-        found = np.zeros((3, order + 1, len(phi)))
-        found[0] = motion.travel(phi, order)
-        found[0, 0] += foot
-        found[1, 0] = y
-        return found
+        rows = np.zeros((3, order + 1, len(phi)))
+        rows[0] = motion.travel(phi, order)
+        rows[0, 0] += start
+        rows[1, 0] = y
+        return rows
 
     return place
 
 
-def swung(motion: Position, away: float, rest: float, side: int) -> Place:
-    """Give the place of an arm about a pivot `away` from the shaft, its x from there to what touches the cam.
+def arm_place(motion: Position, pivot: float, rest: float, side: int) -> Place:
+    """Place of an arm about a pivot on the x axis, mm from the shaft, its x axis towards the contact.
 
-    `rest` is its angle to the line from pivot to shaft at displacement 0; `side` is +1 trailing, -1 leading.
+    `rest` is its angle, rad, to the line from pivot to shaft at displacement 0; `side` is +1 trailing, -1 leading.
     """
 
     def place(phi: Array, order: int) -> Array:
-        found = np.zeros((3, order + 1, len(phi)))
-        found[0, 0] = away
-        found[2] = side * motion.travel(phi, order)
-        found[2, 0] += math.pi + side * rest
-        return found
+        rows = np.zeros((3, order + 1, len(phi)))
+        rows[0, 0] = pivot
+        rows[2] = side * motion.travel(phi, order)
+        rows[2, 0] += math.pi + side * rest
+        return rows
 
     return place
+
+
+@dataclass(frozen=True, eq=False)
+class Links:
+    """Places of the links of a mechanism that turns; loop 0 is the linkage's, loop k that of the k-th dyad."""
+
+    mechanism: Mechanism
+
+    def place(self, pose: Callable[[Solved], Link]) -> Place:
+        """Give the place of a link's own axes."""
+        mechanism = self.mechanism
+
+        def place(phi: Array, order: int) -> Array:
+            motion = mechanism.at(mechanism.relative(phi), order)
+            link = pose(motion.solved)
+            x, y = link.origin
+            angle = x.constant(0.0) if link.direction is None else link.direction
+            rows: Array = np.stack([motion.over_shaft(row.derivatives()) for row in (x, y, angle)])
+            return rows
+
+        return place
+
+    def frame(self) -> Place:
+        """Place of the square frame: its middle, and u(theta_3)."""
+        return self.place(self.mechanism.chain.frame)
+
+    def output(self, loop: int) -> Place:
+        """Place of the link that a loop drives."""
+        return self.place(self.mechanism.chain.output(loop).pose)
+
+    def rod(self, loop: int) -> Place:
+        """Place of a dyad's bar PQ: origin P, x towards Q."""
+        return self.place(lambda solved: self.mechanism.chain.rod(solved, loop - 1))
+
+    def joint(self, loop: int, name: str) -> Place:
+        """Place of a joint and of the block in it, x along the line on which that slides."""
+        return self.place(lambda solved: self.mechanism.chain.joints(solved, loop)[name].place)

@@ -1,4 +1,4 @@
-"""What sets to print add: their sizes, the option of files of solids, their checks and figures."""
+"""Record of printed mechanisms: the key of their sizes, the option `parts` of solids, their checks and figures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from camgeo.registry.formats import Format
     from camgeo.synthesis.design import Design
 
-OF_BODIES = Need("a file with `parts: all`", lambda _, given: "parts: all" in given)
+OF_BODIES = Need("a file with `parts: all`", lambda _, fields: "parts: all" in fields)
 CLEARANCE, COLLISION = "clearance", "collision"
 FIGURES = {
     CLEARANCE: Figure(
@@ -33,13 +33,13 @@ FIGURES = {
 }
 
 
-def _offered(record: Format) -> bool:
-    """Formats of meshes show every body."""
+def _is_mesh(record: Format) -> bool:
+    """Whether files of a format hold a mesh, and so can hold every body."""
     return record.numbers is not None
 
 
 def _tag(record: Format) -> str:
-    """Name the first file: the cam's own where each body has one, else that of all bodies."""
+    """Suffix of the first file: the cam's own where each body has one, else that of all bodies."""
     if record.by_disc:
         return "cam"
     return "parts" if record.contour else "assembly"
@@ -67,9 +67,9 @@ def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     if figure not in FIGURES:
         return ""
     if figure == COLLISION and value <= 0.0:
-        from camgeo.capabilities.mechanism.checks import slimmer
+        from camgeo.capabilities.mechanism.checks import slimmer_sizes
 
-        return slimmer(recipe)
+        return slimmer_sizes(recipe)
     return f"a {'larger' if value < bound else 'smaller'} mechanism.clearance"
 
 
@@ -80,8 +80,8 @@ def _left_out(_: Recipe, requests: Sequence[FileRequest], design: Design) -> lis
 
     if not any(request.variant == NAME for request in requests):
         return [(NAME, LABEL.absent)]
-    stands = design.driven is not None and not design.driven.turns
-    return [(NAME, STANDS)] if stands else []
+    driven = design.driven
+    return [] if driven is None or driven.turns else [(NAME, STANDS)]
 
 
 CAPABILITY = Capability(
@@ -90,6 +90,6 @@ CAPABILITY = Capability(
     figures=FIGURES,
     checks=_checks,
     remedy=_remedy,
-    variant=Variant(option=PARTS, offered=_offered, tag=_tag, check=check, foresee=_foresee, make=_make),
+    variant=Variant(option=PARTS, offered=_is_mesh, tag=_tag, check=check, foresee=_foresee, make=_make),
     left_out=_left_out,
 )

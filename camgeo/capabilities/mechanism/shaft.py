@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member
-from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member, Plate
 from camgeo.capabilities.mechanism.shapes import disc, retainer
-from camgeo.capabilities.mechanism.sizes import THIN, BodyError, thick
+from camgeo.capabilities.mechanism.sizes import THIN, BodyError, require_thickness
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
@@ -31,14 +30,14 @@ if TYPE_CHECKING:
 
 CAM = "cam"
 KNOB_SIDES = 8
-HELD = 0.1  # mm by which a shaft is at least too wide to turn in the bore, whatever the files are off
-LOOKS = 180  # places of a turn at which it is looked whether something passes under the knob
+LEAST_EXCESS = 0.1  # mm by which a shaft is at least too wide to turn in the bore, with the files' errors
+PLACES = 180  # of a turn, at which bodies may pass under the knob
 CAM_COLOUR, SHAFT_COLOUR, CLIP_COLOUR, GROUND_COLOUR = "#d08a3c", "#5b6b7f", "#33404f", "#a9b4c0"
 
 
 @dataclass(frozen=True, eq=False)
 class Disk:
-    """The cam as plates that stand on z = 0 of its disc; `bottom` and `top` are those of its hubs, `hub` the radius.
+    """The cam as plates, its disc from z = 0 to `thickness`, its hubs of radius `hub` from `bottom` to `top`; mm.
 
     `pocket` is the depth of its groove from the top face, None without one.
     """
@@ -51,30 +50,30 @@ class Disk:
     pocket: float | None = None
 
     def raised(self, z: float) -> tuple[Plate, ...]:
-        """Return the plates with the lower face of the disc at z."""
+        """The plates with the lower face of the disc at z, mm."""
         return tuple(Plate(p.outline, p.holes, p.low + z, p.high + z) for p in self.plates)
 
 
-def disk_of(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) -> Disk:
-    """Make plates of a cam: disc and hubs with what goes right through them.
+def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) -> Disk:
+    """The cam as plates: disc and hubs with the openings that go right through them.
 
-    Of a groove there are two contours, the inner one first. A chamfer, a set screw and an engraved mark are left out:
-    the plates are the metal they are cut from.
+    A groove has two contours, the inner one first. A chamfer, a set screw and an engraved mark are left out. Raises
+    ValueError without thickness or bore, BodyError for a thin disc.
     """
     if part.thickness is None or part.bore is None:
         raise ValueError("a cam for a mechanism needs thickness and bore")
-    thick("part.thickness", part.thickness)
+    require_thickness("part.thickness", part.thickness)
     through = tuple(opening for opening in body.openings if opening.depth is None)
     holes = tuple(opening.outline for opening in through)
     plates = [Plate(contours[0], holes, 0.0, part.thickness)]
     if body.pocket is not None and body.rim is not None:
         blank, floor, (inner, outer) = body.rim.outline, part.thickness - body.pocket, contours
         island = tuple(opening.outline for opening in through if opening.island)
-        beyond = tuple(opening.outline for opening in through if not opening.island)
+        outside = tuple(opening.outline for opening in through if not opening.island)
         plates = [
             Plate(blank, holes, 0.0, floor),
             Plate(inner, island, floor, part.thickness),
-            Plate(blank, (_arcs(outer), *beyond), floor, part.thickness),
+            Plate(blank, (_arcs(outer), *outside), floor, part.thickness),
         ]
     if part.hub is None:
         return Disk(tuple(plates), part.thickness, 0.0, part.thickness, pocket=body.pocket)
@@ -88,6 +87,7 @@ def disk_of(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) -> 
 
 
 def _arcs(outline: ArcSpline | Polygon) -> ArcSpline:
+    """The outline, which is made of arcs; raises TypeError for a polygon."""
     if not isinstance(outline, ArcSpline):
         raise TypeError("an opening is made of arcs and lines")
     return outline
@@ -97,23 +97,23 @@ def _arcs(outline: ArcSpline | Polygon) -> ArcSpline:
 class Shaft:
     """Sections of a shaft: `drive` in the cam's bore, round `journal` (a radius) in the base.
 
-    `across` is the greatest radius of the drive, `held` by how much it is too wide to turn in the bore. One for a round
-    bore alone is pressed into it, and `held` is None.
+    `across` is the greatest radius of the drive, `excess` that of its width over the bore's, so that it cannot turn in
+    it. A shaft for a round bore alone is pressed into it, and `excess` is None.
     """
 
     drive: ArcSpline
     across: float
     journal: float
-    held: float | None
+    excess: float | None
 
     @property
     def pressed(self) -> bool:
-        """Whether nothing but the press turns the cam."""
-        return self.held is None
+        """Whether the press alone turns the cam."""
+        return self.excess is None
 
 
-def shaft_of(part: Part, s: Sizes) -> Shaft:
-    """Make the sections that fit a bore: with its flat, key or sides, half the clearance inside it all round.
+def shaft_in(part: Part, s: Sizes) -> Shaft:
+    """Shaft that fits the bore of a part: with its flat, key or sides, half the clearance smaller all round.
 
     Raises BodyError where the bore is too narrow for a shaft.
     """
@@ -138,17 +138,17 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
         raise BodyError(
             "part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=max(4.0, bore + 2.0 * (1.0 - journal))
         )
-    turned = _turned_round(part, s.clearance)
-    return Shaft(drive, across, journal, turned and turned[0] - turned[1])
+    widths = _turning_widths(part, s.clearance)
+    return Shaft(drive, across, journal, widths and widths[0] - widths[1])
 
 
-def drives(part: Part, clearance: float, off: float) -> None:
-    """Refuse a bore in which the shaft would turn by itself, drawn by files within `off` mm of what is meant.
+def require_drive(part: Part, clearance: float, off: float) -> None:
+    """Raise BodyError for a bore in which the shaft may slip round, as drawn by files within `off` mm.
 
-    Each of the four sides of bore and shaft may be off by that. Raises BodyError.
+    Each of the four sides of bore and shaft may be off by that.
     """
-    turned = _turned_round(part, clearance)
-    if turned is None:
+    widths = _turning_widths(part, clearance)
+    if widths is None:
         return
     if part.keyway is not None:
         key = part.keyway.width - clearance
@@ -156,9 +156,9 @@ def drives(part: Part, clearance: float, off: float) -> None:
             message, remedy = "leaves a key of {key} on the shaft", "give a width of {least} or more"
             lengths = {"key": max(key, 0.0), "least": clearance + THIN}
             raise BodyError("part.keyway.width", message, remedy, **lengths)
-    wide, room = turned
-    least = HELD + 4.0 * off
-    if wide - room >= least:
+    wide, opening = widths
+    least = LEAST_EXCESS + 4.0 * off
+    if wide - opening >= least:
         return
     bore = part.bore or 0.0
     if part.sides:
@@ -171,17 +171,17 @@ def drives(part: Part, clearance: float, off: float) -> None:
         field, remedy, most = "part.keyway.depth", "give a depth of {such} or more", part.keyway.depth - least
     else:
         field, remedy, such = "part.flat.across", "give at most {such}", bore - clearance - least
-        most = bore - room - least
+        most = bore - opening - least
         if such <= 0.5 * bore:
             remedy = "give a larger bore"
     if most > 0.0:
         remedy += ", or a mechanism.clearance of at most {most}"
-    message = "the shaft slips in it: it is {wide} wide, the opening {room}, which must be smaller by {least}"
-    raise BodyError(field, message, remedy, wide=wide, room=room, least=least, such=such, most=most)
+    message = "the shaft slips in it: it is {wide} wide, the opening {opening}, which must be smaller by {least}"
+    raise BodyError(field, message, remedy, wide=wide, opening=opening, least=least, such=such, most=most)
 
 
-def _turned_round(part: Part, clearance: float) -> tuple[float, float] | None:
-    """Width of the shaft where it is greatest, and that of the bore where this would have to pass; None if pressed."""
+def _turning_widths(part: Part, clearance: float) -> tuple[float, float] | None:
+    """Greatest width of the shaft, and that of the bore through which it would turn, mm; None for a pressed shaft."""
     bore = part.bore or 0.0
     if part.sides:
         return (bore - clearance) / math.cos(math.pi / part.sides), bore
@@ -195,7 +195,7 @@ def _turned_round(part: Part, clearance: float) -> tuple[float, float] | None:
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What every mechanism has: the cam and how far it reaches from the shaft, the shaft, and the sizes."""
+    """What every mechanism has: the cam and its greatest radius `reach`, mm, the shaft, and the sizes."""
 
     disk: Disk
     reach: float
@@ -204,14 +204,14 @@ class Drive:
 
 
 def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate, ...]:
-    """Return plates of the base about the shaft: pads that all hold the sink, and a boss up to z = `high`."""
+    """Plates of the base about the shaft: pads with the sink of the retainer, and a boss up to z = `high`, mm."""
     shaft, s = drive.shaft, drive.sizes
     sink, hole = disc(_sink(drive)), disc(shaft.journal + s.gap_each_side)
-    found = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
-    found += [Plate(pad, (hole,), s.sunk, s.plate) for pad in pads]
+    plates = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
+    plates += [Plate(pad, (hole,), s.sunk, s.plate) for pad in pads]
     if high - s.plate > 0.5 * s.gap:
-        found.append(Plate(disc(shaft.journal + s.gap_each_side + s.wall), (hole,), s.plate, high))
-    return tuple(found)
+        plates.append(Plate(disc(shaft.journal + s.gap_each_side + s.wall), (hole,), s.plate, high))
+    return tuple(plates)
 
 
 def base_radius(drive: Drive) -> float:
@@ -224,7 +224,7 @@ def _sink(drive: Drive) -> float:
     return max(0.5 * s.bar, shaft.journal + s.wall) + s.space
 
 
-def turned(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tuple[Member, Member, Member]:
+def shaft_members(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tuple[Member, Member, Member]:
     """Return cam, shaft and the shaft's retainer: the disc's lower face at z, the knob above what passes under it."""
     disk, shaft, s = drive.disk, drive.shaft, drive.sizes
     foot, head = z + disk.bottom, z + disk.top + s.gap
@@ -236,18 +236,18 @@ def turned(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tu
         plates.append(Plate(disc(shaft.across + s.wall), (), head, knob))
         head = knob
     plates.append(Plate(polygonal(KNOB_SIDES, s.knob, 0.0), (), head, head + s.link))
-    held = retainer(s, (0.0, 0.0), 0.0, 2.0 * shaft.journal)
+    clip = retainer(s, (0.0, 0.0), 0.0, 2.0 * shaft.journal)
     return (
         Member(CAM, disk.raised(z), CAM, place, CAM_COLOUR),
         Member("shaft", tuple(plates), CAM, place, SHAFT_COLOUR),
-        Member("retainer-shaft", held, CAM, place, CLIP_COLOUR),
+        Member("retainer-shaft", clip, CAM, place, CLIP_COLOUR),
     )
 
 
 def _passing(member: Member, low: float, within: float) -> list[float]:
-    """Upper faces of the plates of a member above z = `low` that come `within` of the shaft at some angle."""
-    poses = member.poses(LOOKS)
-    found = []
+    """Upper faces, mm, of the plates of a member above z = `low` that come `within` mm of the shaft at some angle."""
+    poses = member.poses(PLACES)
+    faces = []
     for plate in member.plates:
         if plate.high <= low:
             continue
@@ -256,19 +256,20 @@ def _passing(member: Member, low: float, within: float) -> list[float]:
         chain = Contour.from_bulges(plate.outline.points, plate.outline.bulges)
         c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
         x, y = poses[:, 0], poses[:, 1]
-        shaft = np.column_stack([-x * c - y * s, x * s - y * c])  # where it stands in the member's axes
+        shaft = np.column_stack([-x * c - y * s, x * s - y * c])  # in the member's axes
         if float(chain.distance(shaft).min()) < within:
-            found.append(plate.high)
-    return found
+            faces.append(plate.high)
+    return faces
 
 
 def shaft_fits(drive: Drive) -> tuple[Fit, ...]:
     """Fits of the shaft in base, cam and retainer."""
     s, name = drive.sizes, "shaft in the cam's bore"
-    held = Fit(name, s.press, pressed=True) if drive.shaft.pressed else Fit(name, s.clearance, held=drive.shaft.held)
-    return (Fit("shaft in the base", s.clearance), held, Fit("retainer on the shaft", s.press, pressed=True))
+    pressed, running = Fit(name, s.press, pressed=True), Fit(name, s.clearance, excess=drive.shaft.excess)
+    in_cam = pressed if drive.shaft.pressed else running
+    return (Fit("shaft in the base", s.clearance), in_cam, Fit("retainer on the shaft", s.press, pressed=True))
 
 
 def base(plates: Sequence[Plate]) -> Member:
-    """Return the base."""
+    """The base of these plates."""
     return Member("base", tuple(plates), GROUND, colour=GROUND_COLOUR)

@@ -1,4 +1,4 @@
-"""Outlines of bodies: discs, boxes and bars, closed and counter-clockwise; pins and what holds bodies on them."""
+"""Outlines of bodies: discs, boxes and bars, closed and counter-clockwise; pins and retainers. All in mm."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.body import Plate
+from camgeo.capabilities.mechanism.assembly import Plate
 from camgeo.curve import ring
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
@@ -25,50 +25,51 @@ def _outline(ring: ring.Ring) -> ArcSpline:
 
 
 def disc(radius: float, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """Return a circle."""
+    """A circle about a point."""
     return _outline(ring.disc(x, y, radius))
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> ArcSpline:
-    """Return a rectangle."""
+    """A rectangle between two corners."""
     return _outline(ring.box(x0, y0, x1, y1))
 
 
 def bar(a: Point, b: Point, width: float) -> ArcSpline:
-    """Return a bar with round ends about two points; a disc where these are one."""
+    """A bar with round ends about two points; a disc where they are one."""
     return _outline(ring.bar(a, b, width))
 
 
-def moved(outline: ArcSpline, x: float, y: float, angle: float) -> ArcSpline:
-    """Turn an outline about the origin, then shift it."""
+def transformed(outline: ArcSpline, x: float, y: float, angle: float) -> ArcSpline:
+    """The outline turned about the origin by an angle, rad, then shifted."""
     c, s = math.cos(angle), math.sin(angle)
     return ArcSpline(outline.points @ np.array([[c, s], [-s, c]]) + (x, y), outline.bulges, outline.bound)
 
 
 def eye(s: Sizes, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """Return the hole that turns on a pin."""
+    """The hole that turns on a pin at a point."""
     return disc(0.5 * s.hole, x, y)
 
 
 def bars(s: Sizes, ends: Sequence[tuple[Point, Point]], holes: Sequence[Point], low: float, high: float) -> list[Plate]:
-    """Return one plate for each bar between two points, all with those holes for pins that lie in them.
+    """A plate for each bar between two points, with those of the holes for pins that lie in it.
 
     Raises ValueError where a bar would close a part of a hole.
     """
-    found = []
+    plates = []
     for a, b in ends:
         inside = []
         for hole in holes:
-            away = _from_segment(hole, a, b)
-            if away <= 0.5 * (s.bar - s.hole):
+            distance = _segment_distance(hole, a, b)
+            if distance <= 0.5 * (s.bar - s.hole):
                 inside.append(eye(s, *hole))
-            elif away < 0.5 * (s.bar + s.hole):
+            elif distance < 0.5 * (s.bar + s.hole):
                 raise ValueError("the bar to it cuts a pin's hole")
-        found.append(Plate(bar(a, b, s.bar), tuple(inside), low, high))
-    return found
+        plates.append(Plate(bar(a, b, s.bar), tuple(inside), low, high))
+    return plates
 
 
-def _from_segment(point: Point, a: Point, b: Point) -> float:
+def _segment_distance(point: Point, a: Point, b: Point) -> float:
+    """Distance of a point from the segment between two others."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     px, py = point[0] - a[0], point[1] - a[1]
     length = dx * dx + dy * dy
@@ -77,11 +78,9 @@ def _from_segment(point: Point, a: Point, b: Point) -> float:
 
 
 def pin(s: Sizes, place: Point, foot: float, low: float, high: float, *, crowned: bool = True) -> tuple[Plate, ...]:
-    """Return a pin that stands on z = `foot` and holds a body between `low` and `high`.
+    """Plates of a pin on z = `foot` for a body between `low` and `high`, which rests on a wider shoulder.
 
-    A `crowned` one reaches through the retainer above that, any other ends with the body.
-
-    Below the body it is wider, so that the body rests on a shoulder.
+    A `crowned` one reaches through the retainer above the body, another ends with the body.
     """
     x, y = place
     shoulder = low - s.gap
@@ -96,10 +95,9 @@ def pin(s: Sizes, place: Point, foot: float, low: float, high: float, *, crowned
 def retainer(
     s: Sizes, place: Point, high: float, diameter: float | None = None, radius: float = 0.0
 ) -> tuple[Plate, ...]:
-    """Return the disc pressed on a pin, of its own `diameter` if it is no common one, above a body that ends at `high`.
+    """The disc pressed on a pin, of the common diameter or its own, above a body that ends at z = `high`.
 
-    A disc wider than a bar by nothing holds the bar, and passes wherever the bar's end does; `radius` is the least that
-    holds something wider.
+    It is as wide as a bar, so that it passes wherever the bar's end does; `radius` is the least for a wider body.
     """
     x, y = place
     across = s.pin if diameter is None else diameter

@@ -1,4 +1,4 @@
-"""Sizes of a printable mechanism: what a recipe gives, and what follows from the cam where it gives nothing; mm."""
+"""Sizes of a printable mechanism, mm: those that a recipe gives, and others that follow from the cam."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.mechanism.keys import MechanismAsked
+    from camgeo.capabilities.mechanism.keys import RequestedSizes
 
-JUST = 1.0 - 1e-9  # a least size as it is reported, rounded, is not too small
-HALF = 0.5  # mm: what follows from the cam is a multiple of it
+ROUNDING = 1.0 - 1e-9  # a least size as it is reported, rounded, is not too small
+STEP = 0.5  # mm: sizes that follow from the cam are multiples of it
 LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
 MOST_PIN = 12.0
 THIN = 0.8  # mm: two lines of a common nozzle, the least wall that stands by itself
@@ -22,17 +22,17 @@ LEAST_CLEARANCE = 1e-3  # mm: no body is made finer
 
 
 class BodyError(CamgeoError, ValueError):
-    """A body that cannot be made as asked: `field` of the recipe to blame, what is wrong, and what would do.
+    """A body cannot be made: by which `field` of the recipe, why, and with which remedy.
 
-    Message and remedy name lengths, mm, in braces: they are reported in the recipe's unit.
+    Message and remedy have names of lengths, mm, in braces, which are reported in the recipe's unit.
     """
 
     def __init__(self, field: str, message: str, remedy: str, **lengths: float) -> None:
         self.field, self._texts, self._lengths = field, (message, remedy), lengths
-        super().__init__(self.told()[0])
+        super().__init__(self.texts()[0])
 
-    def told(self, mm: float = 1.0, units: str = "mm") -> tuple[str, str]:
-        """Give message and remedy in a unit of so many mm."""
+    def texts(self, mm: float = 1.0, units: str = "mm") -> tuple[str, str]:
+        """Message and remedy, lengths in a unit of so many mm."""
         message, remedy = self._texts
         lengths = {name: f"{length / mm:.4g} {units}" for name, length in self._lengths.items()}
         bounds = dict(lengths)  # of a remedy, rounded to the side on which it helps
@@ -44,7 +44,7 @@ class BodyError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class Sizes:
-    """Every size that bodies share, as `MechanismAsked` has them, and none of them None."""
+    """The sizes that bodies share, mm, as `RequestedSizes` names them, none of them open."""
 
     clearance: float
     gap: float
@@ -60,38 +60,36 @@ class Sizes:
 
     @property
     def hole(self) -> float:
-        """Diameter of a hole that turns on a pin."""
+        """Diameter of a hole that turns on a pin, mm."""
         return self.pin + self.clearance
 
     @property
     def gap_each_side(self) -> float:
-        """Half the running clearance: the gap on either side of a body that stands in the middle."""
+        """Half the running clearance, mm: the gap on either side of a body in the middle."""
         return 0.5 * self.clearance
 
     @property
     def boss(self) -> float:
-        """Radius of what carries a pin where it is not a bar."""
+        """Radius of the shoulder of a pin, mm."""
         return 0.5 * self.pin + self.wall
 
     @property
     def sunk(self) -> float:
-        """Depth of the sink under the base in which the shaft's retainer turns."""
+        """Depth of the sink under the base in which the shaft's retainer turns, mm."""
         return self.clip + 2.0 * self.gap
 
 
-def sizes_of(
-    request: MechanismAsked, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
+def derive_sizes(
+    request: RequestedSizes, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
 ) -> Sizes:
-    """Fill in what a recipe leaves open, for a cam of this reach from the shaft and this bore, and such rollers.
+    """All sizes; those that a recipe leaves open follow from the cam's greatest radius `reach`, its bore and roller.
 
-    `field` is where the recipe gives the rollers' radius.
-
-    Raises BodyError where sizes do not go together.
+    `field` is where the recipe gives the rollers' radius. Raises BodyError where sizes do not fit together.
     """
     most = MOST_PIN if roller is None else roller  # its wall is then a quarter of its diameter
-    pin = request.pin or _half(min(max(0.11 * reach, LEAST_PIN), most))
-    wall = request.wall or _half(max(2.0, 0.7 * pin))
-    clip = request.clip or _half(max(2.0, 0.4 * pin))
+    pin = request.pin or _round_up(min(max(0.11 * reach, LEAST_PIN), most))
+    wall = request.wall or _round_up(max(2.0, 0.7 * pin))
+    clip = request.clip or _round_up(max(2.0, 0.4 * pin))
     sizes = Sizes(
         clearance=request.clearance,
         gap=request.gap,
@@ -99,27 +97,26 @@ def sizes_of(
         space=request.space,
         pin=pin,
         bar=request.bar or pin + max(2.0 * wall, request.clearance + 2.0 * THIN),
-        plate=request.plate or _half(clip + 2.0 * request.gap + max(3.0, 0.8 * pin)),
+        plate=request.plate or _round_up(clip + 2.0 * request.gap + max(3.0, 0.8 * pin)),
         link=request.link or max(pin, 4.0),
         wall=wall,
         clip=clip,
-        knob=request.knob or _half(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
+        knob=request.knob or _round_up(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
     )
-    _go_together(sizes, bore)
+    _check_sizes(sizes, bore)
     if roller is not None and roller - 0.5 * sizes.hole < THIN:
         most = 2.0 * (roller - THIN) - sizes.clearance
         remedy = "give a pin of at most {most}, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
-        blamed = field if request.pin is None else "mechanism.pin"
+        cause = field if request.pin is None else "mechanism.pin"
         message = "a pin of {pin} leaves no wall in rollers of radius {roller}"
-        raise BodyError(blamed, message, remedy, pin=pin, roller=roller, most=most)
+        raise BodyError(cause, message, remedy, pin=pin, roller=roller, most=most)
     return sizes
 
 
-def runs(clearance: float, field: str, off: float, own: str = "mechanism.clearance") -> None:
-    """Refuse a clearance, `own` in the recipe, that files within `off` mm would eat up; `field` asks for that.
+def require_clearance(clearance: float, field: str, off: float, own: str = "mechanism.clearance") -> None:
+    """Raise BodyError for a clearance, `own` in the recipe, that files within `off` mm, as `field` says, may close.
 
-    Facets of a hole and of its pin may each be `off` nearer to the other, which stands half the clearance away.
-    Raises BodyError.
+    Facets of a hole and of its pin may each be `off` nearer to the other, which is half the clearance away.
     """
     if clearance < LEAST_CLEARANCE:
         message, remedy = "{clearance} is finer than bodies are made", "give at least {least}"
@@ -131,36 +128,32 @@ def runs(clearance: float, field: str, off: float, own: str = "mechanism.clearan
         raise BodyError(field, message, remedy, **lengths, most=0.25 * clearance, such=4.0 * off)
 
 
-def _half(length: float) -> float:
-    """Round up to whole halves of a millimetre."""
-    return HALF * math.ceil(length / HALF - 1e-9)
+def _round_up(length: float) -> float:
+    """The length rounded up to a multiple of STEP, mm."""
+    return STEP * math.ceil(length / STEP - 1e-9)
 
 
-def _go_together(s: Sizes, bore: float) -> None:
-    for name, length, least in (
-        ("pin", s.pin, THIN),
-        ("link", s.link, LINE),
-        ("wall", s.wall, LINE),
-        ("clip", s.clip, LINE),
-    ):
-        thick(f"mechanism.{name}", length, least)
+def _check_sizes(s: Sizes, bore: float) -> None:
+    """Raise BodyError for sizes that are too small by themselves, or beside others."""
+    require_thickness("mechanism.pin", s.pin, THIN)
+    for name, length in (("link", s.link), ("wall", s.wall), ("clip", s.clip)):
+        require_thickness(f"mechanism.{name}", length)
     least = s.hole + 2.0 * THIN
-    if s.bar < least * JUST:
+    if s.bar < least * ROUNDING:
         raise BodyError("mechanism.bar", "too narrow for the hole of a pin", "give at least {least}", least=least)
     least = s.sunk + 2.0 * THIN
-    if s.plate < least * JUST:
+    if s.plate < least * ROUNDING:
         message = "too thin for the sink of the shaft's retainer"
         raise BodyError("mechanism.plate", message, "give at least {least}, or a thinner clip", least=least)
     if s.press >= min(s.pin, bore):
         raise BodyError("mechanism.press", "no hole is left", "give less, such as {such}", such=0.1)
     least = 1.2 * bore + 2.0 * THIN  # a square's corners reach farther than its width
-    if s.knob < least * JUST:
+    if s.knob < least * ROUNDING:
         raise BodyError("mechanism.knob", "does not reach beyond the bore", "give at least {least}", least=least)
 
 
-def thick(field: str, length: float, least: float = LINE) -> None:
-    """Refuse what is too thin to be printed. Raises BodyError."""
+def require_thickness(field: str, length: float, least: float = LINE) -> None:
+    """Raise BodyError for a length, mm, that is too thin to be printed."""
     if length < least:
-        raise BodyError(
-            field, "{length} is too thin to be printed", "give at least {least}", length=length, least=least
-        )
+        message, remedy = "{length} is too thin to be printed", "give at least {least}"
+        raise BodyError(field, message, remedy, length=length, least=least)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from camgeo.capabilities.mechanism.body import Plate, PrintBody
+from camgeo.capabilities.mechanism.assembly import Plate, PrintBody
 from camgeo.fit.pieces import ArcSpline, Bound
 
 DISC = ArcSpline(np.array([[10.0, 0.0], [-10.0, 0.0]]), np.ones(2), Bound(0.0, 0.0))

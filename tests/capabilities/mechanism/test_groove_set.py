@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.heavy import Heavy, shapely
 
-from camgeo.capabilities.mechanism.build import assembly_of
+from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.interference import collision_checks
 from camgeo.fit.arcs import fit_arcs
 from camgeo.output import pipeline
@@ -36,7 +36,7 @@ def assembled(text):
     recipe = read(text.encode(), Path("set.yaml"))
     design = designed(recipe)
     contours = [fit_arcs(contour, 0.01) for _, contour in design.contours]
-    return assembly_of(recipe, design, *contours)
+    return build_assembly(recipe, design, *contours)
 
 
 @pytest.mark.thin(1)

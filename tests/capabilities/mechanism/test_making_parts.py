@@ -9,7 +9,7 @@ import pytest
 from support.heavy import lib3mf, trimesh
 from support.parts import failures, recipe_of
 
-from camgeo.capabilities.mechanism.body import Plate, PrintBody
+from camgeo.capabilities.mechanism.assembly import Plate, PrintBody
 from camgeo.capabilities.mechanism.parts import make_parts
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.formats import stl, three_mf

@@ -14,14 +14,14 @@ from support.bodies import FIT, build, placed, polygon
 from support.cases import few
 from support.parts import member_of
 
-from camgeo.capabilities.mechanism.body import Plate
-from camgeo.capabilities.mechanism.build import assembly_of
-from camgeo.capabilities.mechanism.interference import COARSE, collision_checks, movers, swept_room
-from camgeo.capabilities.mechanism.keys import MechanismAsked
+from camgeo.capabilities.mechanism.assembly import Plate
+from camgeo.capabilities.mechanism.build import build_assembly
+from camgeo.capabilities.mechanism.interference import COARSE, collision_checks, movers, swept_size
+from camgeo.capabilities.mechanism.keys import RequestedSizes
 from camgeo.capabilities.mechanism.meshes import body_mesh
-from camgeo.capabilities.mechanism.shaft import HELD, drives, shaft_of
+from camgeo.capabilities.mechanism.shaft import LEAST_EXCESS, require_drive, shaft_in
 from camgeo.capabilities.mechanism.shapes import disc
-from camgeo.capabilities.mechanism.sizes import BodyError, sizes_of
+from camgeo.capabilities.mechanism.sizes import BodyError, derive_sizes
 from camgeo.files.precision import DECIMALS
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import load_text
@@ -377,19 +377,19 @@ def turns_in(drive: ArcSpline, bore: ArcSpline, play: float) -> bool:
 def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: str, held: bool) -> None:
     recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", f"bore: {bore}"), "set.yaml")
     clearance, off = 0.2, 0.01
-    sizes = sizes_of(MechanismAsked(clearance=clearance), 26.0, 10.0, None)
-    shaft = shaft_of(recipe.part, sizes)
+    sizes = derive_sizes(RequestedSizes(clearance=clearance), 26.0, 10.0, None)
+    shaft = shaft_in(recipe.part, sizes)
     body = designed(recipe).discs[0].body
     assert body is not None
     opening = body.openings[0]
     assert turns_in(shaft.drive, opening.outline, 0.5 * clearance) is not held
     if held:
-        drives(recipe.part, clearance, off)
-        assert shaft.held is not None
-        assert shaft.held > HELD
+        require_drive(recipe.part, clearance, off)
+        assert shaft.excess is not None
+        assert shaft.excess > LEAST_EXCESS
     else:
         with pytest.raises(BodyError, match="slips"):
-            drives(recipe.part, clearance, off)
+            require_drive(recipe.part, clearance, off)
 
 
 @pytest.mark.slow
@@ -398,7 +398,7 @@ def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: 
 )
 def test_the_room_that_is_told_holds_all_bodies_at_every_angle(name: str) -> None:
     assembly = made(name)[2]
-    told = swept_room(movers(assembly))
+    told = swept_size(movers(assembly))
     boxes = [p[0].bounds for phi in np.linspace(0.0, TURN, 91) for m in assembly.members for p in placed(m, phi)]
     low, high = np.min(boxes, axis=0)[:2], np.max(boxes, axis=0)[2:]
     assert (told[:2] >= high - low - 1e-6).all()
@@ -468,10 +468,10 @@ def test_what_drives_is_told_by_how_much_it_is_too_wide_to_slip_round() -> None:
     """In the words of report.json: of the shaft in the bore of the cam, and the figure is the assembly's own."""
     recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", "bore: {square: 5}"), "set.yaml")
     design = designed(recipe)
-    assembly = assembly_of(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
-    (fit,) = (fit for fit in assembly.fits if fit.held is not None)
+    assembly = build_assembly(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
+    (fit,) = (fit for fit in assembly.fits if fit.excess is not None)
     (check, *_) = collision_checks(assembly)
-    assert f"; {fit.name} drives: {fit.held:.4g} mm too wide to slip round; thinnest wall " in check.detail
+    assert f"; {fit.name} drives: {fit.excess:.4g} mm too wide to slip round; thinnest wall " in check.detail
     assert "turn there" not in check.detail
 
 
@@ -487,7 +487,7 @@ def test_bodies_pressed_together_move_as_one_and_are_not_held_against_each_other
 
 @pytest.mark.parametrize("reach", [12.0, 40.0, 150.0])
 def test_sizes_grow_with_the_cam(reach: float) -> None:
-    s = sizes_of(MechanismAsked(), reach, 8.0)
+    s = derive_sizes(RequestedSizes(), reach, 8.0)
     assert 3.0 <= s.pin <= 12.0
     assert s.bar >= s.hole + 2.0 * 0.8
     assert s.plate > s.sunk
@@ -498,18 +498,18 @@ def test_sizes_grow_with_the_cam(reach: float) -> None:
 @pytest.mark.parametrize(
     ("asked", "field"),
     [
-        (MechanismAsked(bar=5.0, pin=5.0), "mechanism.bar"),
-        (MechanismAsked(plate=2.0), "mechanism.plate"),
-        (MechanismAsked(press=9.0), "mechanism.press"),
-        (MechanismAsked(knob=8.0), "mechanism.knob"),
+        (RequestedSizes(bar=5.0, pin=5.0), "mechanism.bar"),
+        (RequestedSizes(plate=2.0), "mechanism.plate"),
+        (RequestedSizes(press=9.0), "mechanism.press"),
+        (RequestedSizes(knob=8.0), "mechanism.knob"),
     ],
 )
-def test_sizes_that_do_not_go_together_are_refused(asked: MechanismAsked, field: str) -> None:
+def test_sizes_that_do_not_go_together_are_refused(asked: RequestedSizes, field: str) -> None:
     with pytest.raises(BodyError) as caught:
-        sizes_of(asked, 40.0, 8.0)
+        derive_sizes(asked, 40.0, 8.0)
     assert caught.value.field == field
-    assert caught.value.told()[1].startswith("give ")
-    assert " inch" in "".join(caught.value.told(25.4, "inch"))
+    assert caught.value.texts()[1].startswith("give ")
+    assert " inch" in "".join(caught.value.texts(25.4, "inch"))
 
 
 @pytest.mark.thin(4)
@@ -540,7 +540,7 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert design.only_surface.contour is not None
     assert design.driven is None or design.driven.turns, "the mechanism must turn"
     with pytest.raises(BodyError, match=part) as caught:
-        assembly_of(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
+        build_assembly(recipe, design, fit_arcs(design.only_surface.contour, 0.05))
     assert caught.value.field == field
 
 
@@ -614,5 +614,5 @@ def test_what_is_not_made_of_a_disc_cam_is_refused_with_a_remedy_that_helps(  # 
     with pytest.raises(BodyError, match=part) as caught:
         build(text.replace(old, new))
     assert caught.value.field == field
-    assert caught.value.told()[1].startswith(remedy), caught.value.told()
+    assert caught.value.texts()[1].startswith(remedy), caught.value.texts()
     build(text.replace(old, mended))

@@ -117,8 +117,8 @@ def test_bodies_that_meet_are_kept_apart_by_smaller_sizes() -> None:
     assert set(failed) == {"collision", "limit:collision"}
     assert f"remedy   {words}\n" in failure(failed["collision"], report, recipe)
     assert failed["limit:collision"]["detail"] == f"{words} would satisfy it"
-    slimmer = text.replace("wall: 22, pin: 4, bar: 10", "wall: 6, pin: 3.5, bar: 8")
-    assert pipeline.check(load_text(slimmer, "slim.yaml")).ok
+    slimmer_sizes = text.replace("wall: 22, pin: 4, bar: 10", "wall: 6, pin: 3.5, bar: 8")
+    assert pipeline.check(load_text(slimmer_sizes, "slim.yaml")).ok
 
 
 @pytest.mark.slow

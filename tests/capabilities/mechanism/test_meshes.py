@@ -9,9 +9,9 @@ from support.cases import few
 from support.heavy import trimesh
 from support.parts import member_of
 
-from camgeo.capabilities.mechanism.body import Plate, PrintBody
-from camgeo.capabilities.mechanism.build import assembly_of
-from camgeo.capabilities.mechanism.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
+from camgeo.capabilities.mechanism.assembly import Plate, PrintBody
+from camgeo.capabilities.mechanism.build import build_assembly
+from camgeo.capabilities.mechanism.meshes import GAP, body_mesh, layout, mirror, pose_matrix, print_pose
 from camgeo.capabilities.mechanism.shapes import bar
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import DECIMALS, SINGLE
@@ -40,7 +40,7 @@ BAR = box(0.0, 0.0, 40.0, 20.0)
 HOLE = disc(10.0, 10.0, 4.0)
 BODIES = {
     "a pin on a bar": ([Plate(BAR, (HOLE,), 0.0, 4.0), Plate(disc(30.0, 10.0, 5.0), (), 4.0, 12.0)], 1),
-    "a hole covered": ([Plate(BAR, (HOLE,), 0.0, 4.0), Plate(BAR, (), 4.0, 12.0)], 0),
+    "a hole overlap": ([Plate(BAR, (HOLE,), 0.0, 4.0), Plate(BAR, (), 4.0, 12.0)], 0),
     "three storeys with one bore": (
         [
             Plate(BAR, (HOLE,), 0.0, 4.0),
@@ -156,7 +156,7 @@ def test_corners_that_are_one_once_rounded_leave_nothing_open():
     """The edge of an arm passes under a rail at a slant: three pairs of corners lie within a millionth of a mm."""
     recipe = load_text(SLANTED, "c.yaml")
     design = designed(recipe)
-    base = member_of(assembly_of(recipe, design, Job.of(recipe, design).fits[0].within("arcs", E)), "base").body()
+    base = member_of(build_assembly(recipe, design, Job.of(recipe, design).fits[0].within("arcs", E)), "base").body()
     mesh, off = body_mesh(base, tolerance=E, precision=SINGLE)
     assert off <= E
     assert as_trimesh(mesh).is_watertight
@@ -207,7 +207,7 @@ def test_bodies_are_laid_flat_apart_and_at_positive_places():
     # a knob on a thin stem, drawn stem down
     shapes.append([Plate(disc(5.0, 5.0, 2.0), (), 0.0, 9.0), Plate(disc(5.0, 5.0, 8.0), (), 9.0, 12.0)])
     meshes = [body_mesh(body(plates), tolerance=E, precision=DECIMALS)[0] for plates in shapes]
-    places = laid_out(meshes)
+    places = layout(meshes)
     boxes = []
     for mesh, place in zip(meshes, places, strict=True):
         assert np.linalg.det(place[:3]) == 1.0
@@ -223,7 +223,7 @@ def test_bodies_are_laid_flat_apart_and_at_positive_places():
     assert max(wide, deep) < 2.5 * min(wide, deep)
     assert places[-1][2, 2] == -1.0  # the knob lies on its face
     assert places[0][2, 2] == 1.0
-    assert all(np.array_equal(a, b) for a, b in zip(places, laid_out(meshes), strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(places, layout(meshes), strict=True))
 
 
 @pytest.mark.parametrize("size", [3.3, 7.1, 11.7, 40.2])
@@ -232,7 +232,7 @@ def test_a_plain_plate_stays_as_it_is(size):
     mesh, _ = body_mesh(
         body([Plate(disc(1.0, 2.0, size), (disc(1.0, 1.0, 1.0),), 0.3, 2.0)]), tolerance=E, precision=SINGLE
     )
-    assert flat(mesh)[0][2, 2] == 1.0
+    assert print_pose(mesh)[0][2, 2] == 1.0
 
 
 def test_flat_and_back():
@@ -241,21 +241,21 @@ def test_flat_and_back():
         tolerance=E,
         precision=SINGLE,
     )
-    turn, lift = flat(mesh)
+    turn, lift = print_pose(mesh)
     lying = mesh.points @ turn + lift
     assert (lying[:, 2].min(), lying[:, 2].max()) == (0.0, 11.0)
     assert np.allclose((lying - lift) @ turn, mesh.points, rtol=0.0, atol=1e-12)
 
 
 def test_standing_turns_about_z_and_shifts():
-    place = standing(np.array([3.0, -2.0, 0.5 * math.pi]))
+    place = pose_matrix(np.array([3.0, -2.0, 0.5 * math.pi]))
     point = np.array([1.0, 0.0, 7.0]) @ place[:3] + place[3]
     assert point == pytest.approx([3.0, -1.0, 7.0])
 
 
 def test_mirrored_bodies_and_motions():
     one = body(BODIES["a pin on a bar"][0], pose=np.array([[1.0, 2.0, 0.3], [4.0, 5.0, -0.6]]))
-    other = mirrored(one)
+    other = mirror(one)
     assert np.array_equal(other.pose, [[1.0, -2.0, -0.3], [4.0, -5.0, 0.6]])
     (mesh, _), (glass, _) = (body_mesh(each, tolerance=E, precision=DECIMALS) for each in (one, other))
     assert glass.volume == pytest.approx(mesh.volume, rel=1e-9)

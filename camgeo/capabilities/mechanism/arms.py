@@ -1,7 +1,7 @@
-"""Wunderlich's followers: an arm with two rollers under the cam, and a rigid pair of flat faces round it.
+"""Arms: Wunderlich's with two rollers under the cam, and a rigid pair of flat faces round it; rollers on pins.
 
-The arm lies between base and cam, its rollers stand up into the plane of the cam: so its pivot may stand under the
-cam, as in W Figure 5, and no bracket has to reach over it.
+The arm lies between base and cam, its rollers are in the plane of the cam above it: so its pivot may be under the cam,
+as in W Figure 5, and no bracket has to reach over it.
 """
 
 from __future__ import annotations
@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member
-from camgeo.capabilities.mechanism.body import Plate
-from camgeo.capabilities.mechanism.poses import Turning, swinging
-from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
-from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, moved, pin, retainer
-from camgeo.capabilities.mechanism.sizes import LINE, THIN, BodyError, thick
+from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.poses import Turning, rocking_place
+from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, shaft_members
+from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, pin, retainer, transformed
+from camgeo.capabilities.mechanism.sizes import LINE, THIN, BodyError, require_thickness
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -30,13 +29,13 @@ if TYPE_CHECKING:
     from kin.law.contacts import Flat, Oscillating, Roller
 
 ARM_COLOUR, ROLLER_COLOUR = "#4f8f5f", "#8a6fb0"
-LOOKS = 720
+PLACES = 720  # of a turn, at which contacts are taken
 SIDES = ((-1.0, "a"), (1.0, "b"))
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Heights of what carries the rollers, from `low` to `high`, of the cam's disc, and of what runs on the cam."""
+    """Heights, mm: of the carrier, from `low` to `high`, of the cam's disc, and of what touches the cam."""
 
     low: float
     high: float
@@ -46,18 +45,18 @@ class Levels:
     touch_high: float
 
     @staticmethod
-    def of(drive: Drive) -> Levels:
-        """Put the carrier over the base, and the cam over both; over a cam with a groove, which opens upward.
+    def over_base(drive: Drive) -> Levels:
+        """Levels with the carrier over the base and the cam over both; with a groove the carrier is over the cam.
 
         Raises BodyError for a groove too shallow for a roller.
         """
         s, disk = drive.sizes, drive.disk
         if disk.pocket is not None:
-            thick("cam.track.groove.depth", disk.pocket, s.gap + LINE)
+            require_thickness("cam.track.groove.depth", disk.pocket, s.gap + LINE)
             cam_low = s.plate + s.gap - disk.bottom
             cam_high = cam_low + disk.thickness
-            floor, low = cam_high - disk.pocket, cam_high + s.gap
-            return Levels(low, low + s.link, cam_low, cam_high, floor + s.gap, cam_high)
+            low = cam_high + s.gap
+            return Levels(low, low + s.link, cam_low, cam_high, cam_high - disk.pocket + s.gap, cam_high)
         low = s.plate + s.gap
         high = low + s.link
         cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)
@@ -67,19 +66,19 @@ class Levels:
 
 @dataclass(frozen=True)
 class Foot:
-    """What stands up from a carrier into the plane of the cam.
+    """The part of a follower in the plane of the cam, above its carrier, in whose axes it is.
 
-    `at` is where the carrier ends under it, `plates` are one with the carrier, `members` run on it; `touches` names the
-    body that touches the cam.
+    `end` is where the carrier ends under it, `plates` are one with the carrier, `members` run on it; `touches` is the
+    name of the body that touches the cam.
     """
 
-    at: Point
+    end: Point
     plates: tuple[Plate, ...]
     touches: str
     members: tuple[Member, ...] = ()
 
 
-def rolling(
+def roller_foot(
     centre: Point,
     radius: float,
     carrier: tuple[str, Place],
@@ -87,40 +86,39 @@ def rolling(
     *,
     names: tuple[str, str] = ("roller", "roller"),
 ) -> Foot:
-    """Return a roller on its pin; `carrier` is the name and the place of what that stands on.
+    """A roller of its nominal radius on its pin, mm; `carrier` is the name and the place of the body under the pin.
 
-    `names` are its own, and that of its retainer.
-    The roller has its nominal radius and touches the cam. In a groove it hangs under the carrier, kept by the floor.
+    `names` are those of the roller and of its retainer. In a groove the roller is under the carrier, without retainer.
     """
-    s, z = drive.sizes, Levels.of(drive)
-    (group, place), (name, held) = carrier, names
+    s, z = drive.sizes, Levels.over_base(drive)
+    (group, place), (name, clip_name) = carrier, names
     wheel = Plate(disc(radius, *centre), (eye(s, *centre),), z.touch_low, z.touch_high)
-    wheeled = Member(name, (wheel,), name, place, ROLLER_COLOUR)
+    roller = Member(name, (wheel,), name, place, ROLLER_COLOUR)
     if drive.disk.pocket is not None:
-        return Foot(centre, (Plate(disc(0.5 * s.pin, *centre), (), z.touch_low, z.low),), name, (wheeled,))
-    clip = Member(f"retainer-{held}", retainer(s, centre, z.cam_high), group, place, CLIP_COLOUR)
-    return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, (wheeled, clip))
+        return Foot(centre, (Plate(disc(0.5 * s.pin, *centre), (), z.touch_low, z.low),), name, (roller,))
+    clip = Member(f"retainer-{clip_name}", retainer(s, centre, z.cam_high), group, place, CLIP_COLOUR)
+    return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, (roller, clip))
 
 
 def double_roller(view: View[Oscillating, Roller], drive: Drive) -> Assembly:
-    """Return the mechanism of a double roller."""
+    """Bodies of a double roller on an arm."""
     away, alpha = view.guide.pivot, view.contacts[0].apart
-    place = swinging(view.design.motion, away)
+    place = rocking_place(view.design.motion, away)
     ends = [(away * math.cos(side * alpha), away * math.sin(side * alpha)) for side, _ in SIDES]
     feet = [
-        rolling(end, view.touch.radius, ("arm", place), drive, names=(f"roller-{name}", name))
+        roller_foot(end, view.touch.radius, ("arm", place), drive, names=(f"roller-{name}", name))
         for end, (_, name) in zip(ends, SIDES, strict=True)
     ]
-    return arm(place, away, feet, drive)
+    return arm_assembly(place, away, feet, drive)
 
 
-def covered(away: float, drive: Drive) -> float:
-    """By how much the cam reaches too near to a pivot `away` from the shaft for a retainer on it; above 0 it does."""
+def overlap(away: float, drive: Drive) -> float:
+    """Overlap of the cam and the retainer of a pivot `away` mm from the shaft, mm; 0 or less where they are apart."""
     s = drive.sizes
     return drive.reach - (away - max(0.5 * s.bar, s.boss) - s.space)
 
 
-def arm(
+def arm_assembly(
     place: Place,
     away: float,
     feet: Sequence[Foot],
@@ -129,26 +127,26 @@ def arm(
     *,
     fits: Sequence[Fit] = (),
 ) -> Assembly:
-    """Return the mechanism of an arm with its feet, about a pivot `away` from the shaft; places are the arm's.
+    """Bodies of an arm with its feet, about a pivot `away` mm from the shaft; the feet are in the arm's axes.
 
     `fits` are those of the feet on the cam.
     """
-    s, z, pivot = drive.sizes, Levels.of(drive), (away, 0.0)
-    plates = [Plate(bar((0.0, 0.0), foot.at, s.bar), (eye(s),), z.low, z.high) for foot in feet]
+    s, z, pivot = drive.sizes, Levels.over_base(drive), (away, 0.0)
+    plates = [Plate(bar((0.0, 0.0), foot.end, s.bar), (eye(s),), z.low, z.high) for foot in feet]
     plates += [plate for foot in feet for plate in foot.plates]
-    loose = [member for foot in feet for member in foot.members]
-    # where the cam passes over the pivot there is no room for a retainer, and no need: the cam lies on the arm
-    under = covered(away, drive) > 0.0
-    held = [] if under else [Member("retainer-pivot", retainer(s, pivot, z.high), GROUND, colour=CLIP_COLOUR)]
+    running = [member for foot in feet for member in foot.members]
+    # a cam that passes over the pivot lies on the arm, in the place of a retainer
+    under = overlap(away, drive) > 0.0
+    clips = [] if under else [Member("retainer-pivot", retainer(s, pivot, z.high), GROUND, colour=CLIP_COLOUR)]
     width = max(2.0 * base_radius(drive), drive.reach)
-    stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
-    ground = base((*stand, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
-    members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *loose, ground, *held)
+    foot_plates = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
+    ground = base((*foot_plates, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
+    members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *running, ground, *clips)
     every = (*fits, *shaft_fits(drive), Fit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
     touching = frozenset(frozenset({"cam", foot.touches}) for foot in feet)
     if under:
         remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer", *remarks)
-    return Assembly((*turned(drive, z.cam_low, Turning(), members), *members), every, s, touching, remarks)
+    return Assembly((*shaft_members(drive, z.cam_low, Turning(), members), *members), every, s, touching, remarks)
 
 
 def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> list[Fit]:
@@ -159,9 +157,9 @@ def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> 
 
 
 def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
-    """Return the mechanism of a rigid pair of flat faces, each half the clearance away from the cam.
+    """Bodies of a rigid pair of flat faces, each half the clearance away from the cam.
 
-    Raises BodyError where the cam passes so near to the pivot that there is no room for its hub.
+    Raises BodyError where the cam passes so near to the pivot that its hub does not fit.
     """
     s, disk, reach = drive.sizes, drive.disk, drive.reach
     away, half = view.guide.pivot, view.contacts[0].apart
@@ -174,16 +172,18 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         message = "the cam passes {near} from the pivot: no room for its hub"
         raise BodyError("mechanism.pin", message, remedy, near=away - reach, most=most)
     plates = [Plate(disc(hub), (eye(s),), low, high)]
-    for (side, _), touched in zip(SIDES, view.touched(TURN * np.arange(LOOKS) / LOOKS), strict=True):
-        lever = np.abs(touched - away)  # of the contact about the pivot
+    for (side, _), contacts in zip(SIDES, view.touched(TURN * np.arange(PLACES) / PLACES), strict=True):
+        lever = np.abs(contacts - away)  # of the contact about the pivot
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
-        plates.append(Plate(moved(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high))
-    pair = Member("pair", tuple(plates), "pair", swinging(view.design.motion, away), ARM_COLOUR)
-    return pivoted(pair, away, (low, high), drive, fits=(Fit("the pair's faces about the cam", s.clearance),))
+        plates.append(
+            Plate(transformed(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high)
+        )
+    pair = Member("pair", tuple(plates), "pair", rocking_place(view.design.motion, away), ARM_COLOUR)
+    return pivoted_assembly(pair, away, (low, high), drive, fits=(Fit("the pair's faces about the cam", s.clearance),))
 
 
-def pivoted(
+def pivoted_assembly(
     follower: Member,
     away: float,
     heights: tuple[float, float],
@@ -193,9 +193,9 @@ def pivoted(
     touching: frozenset[frozenset[str]] = frozenset(),
     remarks: tuple[str, ...] = (),
 ) -> Assembly:
-    """Return the mechanism of a follower in the plane of the cam, about a pivot `away` from the shaft.
+    """Bodies of a follower in the plane of the cam, about a pivot `away` mm from the shaft.
 
-    `heights` are those of the cam's disc, `fits` those that stand before all others.
+    `heights` are those of the cam's disc, `fits` the follower's own, before all others.
     """
     s, pivot, (low, high) = drive.sizes, (away, 0.0), heights
     pads = [bar((0.0, 0.0), pivot, max(2.0 * base_radius(drive), drive.reach))]
@@ -207,4 +207,4 @@ def pivoted(
         Fit(f"{follower.name} on the pivot", s.clearance),
         Fit("retainer on the pivot", s.press, pressed=True),
     )
-    return Assembly((*turned(drive, low, Turning(), members), *members), every, s, touching, remarks)
+    return Assembly((*shaft_members(drive, low, Turning(), members), *members), every, s, touching, remarks)

@@ -1,0 +1,281 @@
+"""A cam in a square frame that is the coupler of a linkage: frame, rocker, block or slide, and the base with pivots.
+
+Bodies that cross in plan lie one above another: the cam in its frame, the rocker above it, then the links of dyads,
+each above the retainers below it. A slide runs under the frame, which then is as much higher.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Plate
+from camgeo.capabilities.mechanism.base import (
+    BLOCK,
+    BLOCK_COLOUR,
+    FRAME_COLOUR,
+    Carrier,
+    Mount,
+    Site,
+    block,
+    slotted_bar,
+)
+from camgeo.capabilities.mechanism.poses import Links, Turning
+from camgeo.capabilities.mechanism.shaft import base, base_radius, bearing, shaft_fits, shaft_members
+from camgeo.capabilities.mechanism.shapes import bar, bars, box, disc, eye, pin, transformed
+from camgeo.capabilities.mechanism.sizes import BodyError
+from kin.linkage.dyad import RPR, RRP, RRR
+from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.capabilities.mechanism.assembly import Place
+    from camgeo.capabilities.mechanism.shaft import Drive
+    from camgeo.capabilities.mechanism.sizes import Sizes
+    from kin.linkage.mechanism import Mechanism
+
+
+def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
+    """Bodies of a mechanism that turns. Raises BodyError where one of them does not fit."""
+    s, disk = drive.sizes, drive.disk
+    linkage = mechanism.linkage
+    maker = MAKERS[type(linkage)]
+    low = s.plate + s.gap + (s.link + s.gap if maker.under_frame else 0.0)
+    low = max(low, s.plate + s.gap - disk.bottom)
+    high = low + disk.thickness
+    links = Links(mechanism)
+    site = Site(s, links, high + s.gap, 2.0 * max(s.bar, base_radius(drive)))
+    frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.frame(), low, high))
+    frame.colour = FRAME_COLOUR
+    carriers = maker.make(site, frame, linkage)
+    for loop, dyad in enumerate(mechanism.dyads, 1):
+        carriers += MAKERS[type(dyad)].make(site, loop, dyad, _mount(site, carriers, loop))
+    support = max(base_radius(drive), 0.5 * mechanism.breadth + s.wall)
+    foot = bearing(drive, [disc(support), *site.pads], low + disk.bottom - s.gap)
+    ground = base((*foot, *_support(support, drive, low - s.gap), *site.ground))
+    fits = (
+        Fit("the frame's faces about the cam", s.clearance),
+        *shaft_fits(drive),
+        *site.fits,
+        Fit("retainers on pins", s.press, pressed=True),
+    )
+    members = (*site.all_members(), ground)
+    place = Turning(mechanism.start + 0.25 * TURN)
+    return Assembly((*shaft_members(drive, low, place, members), *members), fits, s)
+
+
+def _mount(site: Site, carriers: tuple[Carrier, ...], loop: int) -> Mount:
+    """Point to which a dyad is attached, its carrier extended to it.
+
+    Raises BodyError where that is a block or a slide, or the bar to the point would cut a hole.
+    """
+    mechanism, path = site.links.mechanism, f"linkage.dyads[{loop - 1}]"
+    name = mechanism.chain.carrier(loop - 1).name
+    for carrier in carriers:
+        if carrier.name == name:
+            return Mount(carrier, carrier.extend(mechanism.dyads[loop - 1].point, site.s, f"{path}.point"))
+    message = "is attached to a block or a slide, which has no room for it"
+    raise BodyError(f"{path}.on", message, "attach it to the frame or to a rocker, or leave parts: all out")
+
+
+def _frame(breadth: float, s: Sizes, low: float, high: float) -> list[Plate]:
+    """The square frame about its middle, each face half the clearance farther out than half the breadth."""
+    inner = 0.5 * breadth + s.gap_each_side
+    outer = inner + s.wall
+    return [Plate(box(-outer, -outer, outer, outer), (box(-inner, -inner, inner, inner),), low, high)]
+
+
+def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
+    """The ring on the base on which the frame lies, round a lower hub; none where the base is high enough."""
+    disk, shaft, s = drive.disk, drive.shaft, drive.sizes
+    if high - s.plate < 0.5 * s.gap:
+        return []
+    inner = max(disk.hub if disk.bottom < 0.0 else 0.0, shaft.journal + s.gap_each_side + 0.5 * s.wall) + s.space
+    return [Plate(disc(radius), (disc(inner),), s.plate, high)]
+
+
+def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: Site) -> None:
+    """Add the bar from the frame to D, which becomes the origin of the link's axes.
+
+    It runs along the frame, or slants from the end of the frame's side where D is beyond that. Raises BodyError.
+    """
+    s, half = site.s, 0.5 * site.links.mechanism.breadth
+    start, end = half + s.gap_each_side + 0.5 * s.bar, half + linkage.coupler
+    y = linkage.joint_offset
+    if end < start:
+        least = s.gap_each_side + 0.5 * s.bar
+        raise BodyError("linkage.coupler", "ends within the frame's side", "give at least {least}", least=least)
+    frame.origin = (end, y)
+    frame.plates.append(Plate(bar((start, max(-half, min(y, half))), frame.origin, s.bar), (), frame.low, frame.high))
+
+
+def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
+    """Add the coupler to the frame, and the rocker."""
+    s = site.s
+    _coupler(frame, linkage, site)
+    low, high = site.level()
+    frame.plates += pin(s, frame.origin, frame.high, low, high)
+    site.add_retainer("d", frame.name, frame.origin, high, frame.place)
+    return frame, _rocker(site, linkage, low, high)
+
+
+def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, low: float, high: float) -> Carrier:
+    """Add the rocker from its post B to D. Raises BodyError where it is too short."""
+    s = site.s
+    holes = ((0.0, 0.0), (linkage.rocker, 0.0))
+    if linkage.rocker < s.bar:
+        remedy = "give at least {least}, or a smaller mechanism.bar"
+        raise BodyError("linkage.rocker", "too short for two pins", remedy, least=s.bar)
+    site.add_post("b", (linkage.ground, 0.0), low, high)
+    site.fits += [Fit("rocker on the pivot B", s.clearance), Fit("rocker on the joint D", s.clearance)]
+    plates = bars(s, [holes], holes, low, high)
+    return site.add(Carrier("rocker", plates, site.links.output(0), low, high, holes=holes))
+
+
+def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
+    """Add the coupler to the frame, and the slide between its rails."""
+    s = site.s
+    _coupler(frame, linkage, site)
+    last = frame.plates.pop()
+    frame.plates.append(Plate(last.outline, (eye(s, *frame.origin),), last.low, last.high))
+    frame.holes = (frame.origin,)
+    place = site.links.output(0)
+    slide = Carrier("slide", site.slide(frame.low, frame.high), place, 0.0, 0.0, BLOCK_COLOUR)
+    site.add(slide)
+    site.add_rails(place, (0.0, linkage.offset), 0.0)
+    site.add_retainer("d", slide.name, (0.0, 0.0), frame.high, place)
+    site.next_low += s.gap + s.clip
+    site.fits += [Fit("slide between its rails", s.clearance), Fit("coupler on the joint D", s.clearance)]
+    return (frame,)
+
+
+def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
+    """Add the slotted bar to the frame, and the block in it, which turns on the post B or carries a rocker's end."""
+    s = site.s
+    place = site.links.joint(0, "D")
+    _slot(site, frame, place, linkage.joint_offset)
+    plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
+    site.fits.append(Fit("block in the frame's slot", s.clearance))
+    if linkage.rocker == 0.0:
+        # its retainer alone keeps the frame down, and so reaches to the slot's outer edges
+        radius = 0.5 * s.bar + s.gap_each_side + s.wall
+        site.add_post("b", (linkage.ground, 0.0), frame.low, frame.high, radius=radius)
+        site.next_low += s.gap + s.clip
+        site.fits.append(Fit("block on the pivot B", s.clearance))
+        site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
+        return ()
+    low, high = site.level()
+    plates += pin(s, (0.0, 0.0), frame.high, low, high)
+    site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
+    site.add_retainer("d", "block", (0.0, 0.0), high, place)
+    return (_rocker(site, linkage, low, high),)
+
+
+def _slot(site: Site, frame: Carrier, block_place: Place, offset: float) -> None:
+    """Add the slotted bar on the side of the frame where the block is, and a tie to a bar beyond the side's end.
+
+    Raises BodyError where the block would run into the frame.
+    """
+    s, half = site.s, 0.5 * site.links.mechanism.breadth
+    blocks, frames = site.sample(block_place), site.sample(frame.place)
+    c, n = np.cos(frames[:, 2]), np.sin(frames[:, 2])
+    x = (blocks[:, 0] - frames[:, 0]) * c + (blocks[:, 1] - frames[:, 1]) * n
+    side = 1.0 if x.mean() > 0.0 else -1.0
+    first, last = float((side * x).min()), float((side * x).max())
+    least = half + s.gap_each_side + s.wall + s.space + 0.5 * BLOCK * s.bar
+    if first < least:
+        message = "the block would run into the frame, by {short}"
+        remedy = "give a longer ground, or a smaller mechanism.bar"
+        raise BodyError("linkage.ground", message, remedy, short=least - first)
+    y, inner = side * offset, half + s.gap_each_side
+    outer, slot = slotted_bar(first, last, y, s)
+    ties = [box(inner, y - 0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, y + 0.5 * s.bar)]
+    if abs(y) > half:
+        ties.append(box(inner, min(0.0, y - 0.5 * s.bar), inner + s.wall, max(0.0, y + 0.5 * s.bar)))
+    angle = 0.0 if side > 0.0 else 0.5 * TURN
+    outer, slot, *ties = (transformed(outline, 0.0, 0.0, angle) for outline in (outer, slot, *ties))
+    frame.plates += [Plate(outer, (slot,), frame.low, frame.high)]
+    frame.plates += [Plate(tie, (), frame.low, frame.high) for tie in ties]
+
+
+def rod_and_rocker(site: Site, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
+    """Add the bar PQ and the rocker GQ above it."""
+    s = site.s
+    rod = _rod(site, loop, dyad.links[0], mount)
+    low, high = site.level()
+    end = (dyad.links[0], 0.0)
+    rod.plates += pin(s, end, rod.high, low, high)
+    site.add_retainer(f"q{loop}", rod.name, end, high, rod.place)
+    site.add_post(f"g{loop}", dyad.ground, low, high)
+    holes = ((0.0, 0.0), (dyad.links[1], 0.0))
+    site.fits.append(Fit(f"rocker {loop} on its pins", s.clearance))
+    place = site.links.output(loop)
+    return (site.add(Carrier(f"rocker-{loop}", bars(s, [holes], holes, low, high), place, low, high, holes=holes)),)
+
+
+def rod_and_slide(site: Site, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
+    """Add the bar PQ and the slide on the base."""
+    rod = _rod(site, loop, dyad.link, mount, (dyad.link, 0.0))
+    place = site.links.joint(loop, "Q")
+    slide = Carrier(f"slide-{loop}", site.slide(rod.low, rod.high), place, 0.0, 0.0, BLOCK_COLOUR)
+    site.add(slide)
+    site.add_rails(place, dyad.through, dyad.direction)
+    site.add_retainer(f"q{loop}", slide.name, (0.0, 0.0), rod.high, place)
+    site.fits.append(Fit(f"slide {loop} between its rails", site.s.clearance))
+    return ()
+
+
+def _rod(site: Site, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
+    """Add the bar PQ, with a hole at P and at other points of its axes."""
+    s = site.s
+    low, high = site.level()
+    mount.add_pin(site, f"p{loop}", low, high)
+    start = (0.0, 0.0)
+    plates = bars(s, [(start, (length, 0.0))], (start, *holes), low, high)
+    site.fits.append(Fit(f"rod {loop} on its pins", s.clearance))
+    return site.add(Carrier(f"rod-{loop}", plates, site.links.rod(loop), low, high))
+
+
+def slotted_rocker(site: Site, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
+    """Add the block on the pin P and the slotted rocker about G. Raises BodyError where they come too near."""
+    s, place = site.s, site.links.output(loop)
+    low, high = site.level()
+    mount.add_pin(site, f"p{loop}", low, high)
+    block_place = site.links.joint(loop, "P")
+    site.add(Carrier(f"block-{loop}", [Plate(block(s), (eye(s),), low, high)], block_place, low, high, BLOCK_COLOUR))
+    blocks, angle = site.sample(block_place), site.sample(place)[:, 2]
+    along = (blocks[:, 0] - dyad.ground[0]) * np.cos(angle) + (blocks[:, 1] - dyad.ground[1]) * np.sin(angle)
+    first, last = float(along.min()), float(along.max())
+    start = first - 0.5 * BLOCK * s.bar - s.space - 0.5 * s.bar
+    if start < 0.5 * s.bar:
+        message = "the block comes too near to the pivot, by {short}"
+        remedy = "move the pivot away, or give a smaller mechanism.bar"
+        raise BodyError(f"linkage.dyads[{loop - 1}].ground", message, remedy, short=0.5 * s.bar - start)
+    site.add_post(f"g{loop}", dyad.ground, low, high)
+    site.fits.append(Fit(f"block {loop} in its slot and on its pin", s.clearance))
+    holes = ((0.0, 0.0),)
+    outer, slot = slotted_bar(first, last, dyad.offset, s)
+    plates = bars(s, [((0.0, 0.0), (start, dyad.offset))], holes, low, high)
+    plates.append(Plate(outer, (slot,), low, high))
+    return (site.add(Carrier(f"rocker-{loop}", plates, place, low, high, holes=holes)),)
+
+
+class Maker(NamedTuple):
+    """Function that adds the bodies of a loop, and returns those to which dyads may be attached."""
+
+    make: Callable[..., tuple[Carrier, ...]]
+    under_frame: bool = False
+    """Whether a slide runs under the frame."""
+
+
+MAKERS: dict[type, Maker] = {
+    FourBar: Maker(_four_bar),
+    InvertedSliderCrank: Maker(_inverted),
+    SliderCrank: Maker(_slider_crank, under_frame=True),
+    RRR: Maker(rod_and_rocker),
+    RRP: Maker(rod_and_slide),
+    RPR: Maker(slotted_rocker),
+}
