@@ -9,7 +9,7 @@ import pytest
 
 from camgeo.capabilities.study.document import document  # needs: study
 from camgeo.capabilities.study.margins import margins  # needs: study
-from camgeo.capabilities.study.tolerance_ladder import Ended, Rung  # needs: study
+from camgeo.capabilities.study.tolerance_ladder import End, Rung  # needs: study
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
@@ -96,7 +96,7 @@ def test_studies(text: str, lengths: int) -> None:
     rung = Rung("arcs", 0.01, 0.008, 0.009, 0.007, "mm", 0.006, "mm", 0.1, {}, 40, 30.0, 1000, ())
     studies = []
     for recipe in recipes(text):
-        found = [rung, Ended("arcs", 0.001, "no finer one is held")]
+        found = [rung, End("arcs", 0.001, "no finer one is held")]
         study = document(recipe, found, margins(recipe, designed(recipe)), [])
         (row,) = study["rows"]
         row["motion_error"] = {"unit": row["motion_unit"], "value": row["motion_error"]}

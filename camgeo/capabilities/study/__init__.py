@@ -1,4 +1,4 @@
-"""Error against run time: what each output form costs at each tolerance, and how far a recipe is from trouble."""
+"""Error against run time of each output form at each tolerance, and the margins of a recipe."""
 
 from camgeo.registry.label import Label
 

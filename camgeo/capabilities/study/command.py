@@ -14,7 +14,7 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+    from camgeo.capabilities.study.tolerance_ladder import End, Rung
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _seconds(text: str) -> float:
+    """Seconds above 0 from a word of the call; raises ArgumentTypeError for another."""
     import argparse
 
     try:
@@ -46,7 +47,10 @@ def _seconds(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
+    """Study one recipe; return the exit status.
+
+    0 all checks of the exact cam and of every file hold, 1 one fails, 2 a wrong recipe, 3 the surroundings fail.
+    """
     from camgeo.capabilities.study.document import document, table
     from camgeo.capabilities.study.margins import margins
     from camgeo.common.errors import SurroundingsError
@@ -59,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         design = designed(recipe)
         progress = Progress(recipe.name)
         try:
-            found = _climbed(recipe, design, arguments, progress)
+            steps = _climb_all(recipe, design, arguments, progress)
         finally:
             progress.clear()
         failed = [check for check in design.checks if not check.ok]
@@ -67,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
         if recipe.part.thickness is None:
             skipped.append(("stl", "part.thickness is not given"))
         names = [surface.name for surface in design.exact.surfaces if surface.name]
-        study = document(recipe, found, margins(recipe, design), skipped, failed=failed, names=names)
+        study = document(recipe, steps, margins(recipe, design), skipped, failed=failed, names=names)
         ok = not failed and all(row["ok"] for row in study["rows"])
         _write(recipe, study, Path(arguments.out), ok=ok)
     except RecipeErrors as errors:
@@ -85,8 +89,8 @@ def run(arguments: argparse.Namespace) -> int:
     return OK if ok else FAILED
 
 
-def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
-    """All rungs of all forms."""
+def _climb_all(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | End]:
+    """Rungs and ends of the ladders of all forms; none without a contour."""
     import tempfile
 
     from camgeo.capabilities.study.tolerance_ladder import climb
@@ -94,18 +98,18 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
     if not design.contours:
         return []
     forms = [form for form in arguments.form or FORMS if form != "stl" or recipe.part.thickness is not None]
-    found: list[Rung | Ended] = []
+    steps: list[Rung | End] = []
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         for form in forms:
-            found += climb(recipe, design, form, Path(folder), patience=arguments.patience, listener=progress)
-    return found
+            steps += climb(recipe, design, form, Path(folder), patience=arguments.patience, listener=progress)
+    return steps
 
 
 def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> None:
     """Write study.json and its picture beside the recipe's files, both or neither; a missing package is reported.
 
-    A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
-    `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
+    A study in which a check fails, of the exact cam or of a file, goes to `out`/<name>.rejected and leaves the last
+    good one. A ladder that ends at a refused tolerance, or for its time, is no failure.
     """
     from camgeo.output.output_folder import Family, RunFolder
     from camgeo.report.document import encoded
@@ -117,9 +121,8 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
             from camgeo.capabilities.study.picture import picture
 
             if study["rows"]:
-                drawn = picture(study)
-                (run.folder / PICTURE).write_bytes(drawn)
-                files[PICTURE] = drawn
+                files[PICTURE] = picture(study)
+                (run.folder / PICTURE).write_bytes(files[PICTURE])
         except ModuleNotFoundError as error:
             why = f"the package {error.name} is missing: {install('study')}"
             study["skipped"].append({"what": PICTURE, "why": why})

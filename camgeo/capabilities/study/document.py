@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.study.tolerance_ladder import Ended, Rung
+from camgeo.capabilities.study.tolerance_ladder import End, Rung
 from camgeo.measures.units import in_units
 from camgeo.report.document import aligned
 from camgeo.version import __version__
@@ -21,16 +21,17 @@ if TYPE_CHECKING:
 
 def document(
     recipe: Recipe,
-    steps: Sequence[Rung | Ended],
+    steps: Sequence[Rung | End],
     margins: Sequence[Margin],
     skipped: Sequence[tuple[str, str]],
     *,
     failed: Sequence[Check] = (),
     names: Sequence[str] = (),
 ) -> Entry:
-    """The study, keys as the contract of study.json fixes them, and more.
+    """Content of study.json, figures in the recipe's units.
 
-    `failed` are checks of the exact cam, `names` those of its surfaces where there are several.
+    `steps` are the rungs and ends of all ladders, `skipped` what is left out and why, `failed` the checks of the exact
+    cam that fail, `names` those of its surfaces where there are several.
     """
     length = in_units(recipe, None, "mm")[1]
     rungs = [rung for rung in steps if isinstance(rung, Rung)]
@@ -44,7 +45,7 @@ def document(
         "ended": [
             {"form": end.form, "tolerance": end.tolerance / recipe.mm, "unit": length, "why": end.why}
             for end in steps
-            if isinstance(end, Ended)
+            if isinstance(end, End)
         ],
         "margins": [_margin(recipe, margin) for margin in margins],
         "failed": [{"name": check.name, "why": check.detail} for check in failed],
@@ -90,27 +91,16 @@ def _margin(recipe: Recipe, margin: Margin) -> Entry:
 
 
 def table(study: Entry) -> str:
-    """Rows, where the ladders ended, and the margins, as aligned text."""
+    """The study as text for a terminal: rows, ends of the ladders, margins, and what failed or was skipped."""
     linkage = any("output_error" in row for row in study["rows"])
-    head = [
-        "form",
-        "tolerance",
-        "geometry",
-        "motion",
-        *(["output"] if linkage else []),
-        "fit ms",
-        "write ms",
-        "judge ms",
-    ]
-    rows: list[Sequence[str]] = [[*head, "pieces", "least", "ratio", "bytes", ""]]
+    errors = ["tolerance", "geometry", "motion", *(["output"] if linkage else [])]
+    times = ["fit ms", "write ms", "judge ms"]
+    rows: list[Sequence[str]] = [["form", *errors, *times, "pieces", "least", "ratio", "bytes", ""]]
     for row in study["rows"]:
-        errors = [
-            f"{row['tolerance']:.0e}",
-            _short(row["geometry_error"]),
-            _with(row["motion_error"], row["motion_unit"]),
-        ]
+        motion = _with_unit(row["motion_error"], row["motion_unit"])
+        errors = [f"{row['tolerance']:.0e}", _with_unit(row["geometry_error"], ""), motion]
         if linkage:
-            errors.append(_with(row.get("output_error"), row.get("output_unit", "")))
+            errors.append(_with_unit(row.get("output_error"), row.get("output_unit", "")))
         times = [f"{1e3 * row['stages'][stage]:.2f}" for stage in ("fit", "write", "judge")]
         least = "" if row["least_pieces"] is None else f"{row['least_pieces']:.1f}"
         ratio = "" if row["ratio"] is None else f"{row['ratio']:.3f}"
@@ -119,11 +109,11 @@ def table(study: Entry) -> str:
     text = aligned(rows)
     if study["surfaces"]:
         text += f"\n\nerrors are the greatest, pieces, bytes and seconds the sums of {' and '.join(study['surfaces'])}"
-    ended = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
-    text += "\n\n" + "\n".join(ended)
+    ends = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
+    text += "\n\n" + "\n".join(ends)
     if study["failed"]:
-        told = [f"{item['name']}: {item['why']}" if item["why"] else item["name"] for item in study["failed"]]
-        text += "\n\n" + "\n".join(f"FAILED before any file: {line}" for line in told)
+        checks = [f"{item['name']}: {item['why']}" if item["why"] else item["name"] for item in study["failed"]]
+        text += "\n\n" + "\n".join(f"FAILED before any file: {line}" for line in checks)
     margins: list[Sequence[str]] = [("margin", "value", "", "at 0; or what grows by it")]
     margins += [(m["name"], f"{m['value']:.6g}", m["unit"], m["of"]) for m in study["margins"]]
     text += "\n\n" + aligned(margins)
@@ -132,9 +122,6 @@ def table(study: Entry) -> str:
     return text
 
 
-def _short(value: float | None) -> str:
-    return "" if value is None else f"{value:.4g}"
-
-
-def _with(value: float | None, unit: str) -> str:
-    return f"{_short(value)} {unit}".rstrip()
+def _with_unit(value: float | None, unit: str) -> str:
+    """Value with four digits and its unit; without a value the unit alone."""
+    return f"{'' if value is None else f'{value:.4g}'} {unit}".rstrip()

@@ -1,4 +1,4 @@
-"""The fewest pieces with which theory lets a curve be given within a tolerance, to leading order (docs/theory.md 3)."""
+"""Least number of pieces of a curve within a tolerance, by theory to leading order (docs/theory.md 3)."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from camgeo.fit.nodes import Density
 from camgeo.fit.polygon import least_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.curve.curve import Curve, Frame
     from kin.numeric.arrays import Array
 
@@ -19,18 +21,14 @@ FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the inte
 
 
 def least_pieces(form: str, curve: Curve, tolerance: float) -> float:
-    """Least number of pieces of a form within `tolerance` mm; raises ValueError for a form there is not.
+    """Least number of pieces of a form within `tolerance` mm, counted as the report counts them.
 
-    A form's pieces are counted as the report counts them. A piece at least is counted for each smooth stretch: the
-    arcs' integral vanishes on a dwell.
+    At least one is counted for each smooth stretch, as the arcs' integral vanishes on a dwell. Raises ValueError for an
+    unknown form.
     """
-    if form in {"polyline", "stl"}:
-        return least_vertices(curve, tolerance)
-    if form == "arcs":
-        return least_arcs(curve, tolerance)
-    if form == "spline":
-        return least_spline(curve, tolerance)
-    raise ValueError(f"unknown form: {form}")
+    if form not in COUNTS:
+        raise ValueError(f"unknown form: {form}")
+    return COUNTS[form](curve, tolerance)
 
 
 def least_arcs(curve: Curve, tolerance: float) -> float:
@@ -51,3 +49,12 @@ def _arc_density(frame: Frame) -> Array:
     slope = np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope)
     density: Array = np.cbrt(slope / FREE_ARCS)
     return density
+
+
+COUNTS: dict[str, Callable[[Curve, float], float]] = {
+    "polyline": least_vertices,
+    "stl": least_vertices,
+    "arcs": least_arcs,
+    "spline": least_spline,
+}
+"""Least number of pieces by the form of the file."""

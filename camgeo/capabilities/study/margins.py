@@ -1,4 +1,4 @@
-"""How far a recipe is from trouble: undercut, binding, the edge of a square root; and by what errors grow."""
+"""Margins of a recipe: its distance from undercut, from binding and other failures; factors by which errors grow."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ EPS = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class Margin:
-    """A distance from trouble, at which it is 0; or, where `grows` is true, a factor by which errors grow.
+    """Distance from a failure, at which it is 0; or, where `grows` is true, a factor by which errors grow.
 
-    `unit` mm, deg, deg/mm or none; `of` says in words what happens at 0, or what grows.
+    `unit` is mm, deg, deg/mm or none; `of` says in words what happens at 0, or what grows.
     """
 
     name: str
@@ -33,67 +33,65 @@ class Margin:
 
 
 def margins(recipe: Recipe, design: Design) -> list[Margin]:
-    """Everything that applies to the scene, in mm and degrees."""
-    found = _undercut(design)
-    found += [Margin(*margin) for margin in design.exact.margins]
+    """All margins and factors that a design has, in mm and degrees."""
+    margins = _undercut_margins(design)
+    margins += [Margin(*margin) for margin in design.exact.margins]
     for check in design.checks:
         if check.name == PRESSURE.name and check.value is not None:
             what = f"{check.surface} the cam cannot drive the roller".strip()
-            found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", what))
+            margins.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", what))
         if check.name == WALL.name and check.value is not None:
             what = f"{check.surface} the bore breaks through the contour".strip()
-            found.append(Margin(WALL.name, check.value, "mm", what))
-    found += _linkage(design)
-    found += _conditions(recipe, design)
-    return found
+            margins.append(Margin(WALL.name, check.value, "mm", what))
+    return [*margins, *_linkage_margins(design), *_error_factors(recipe, design)]
 
 
-def _undercut(design: Design) -> list[Margin]:
-    found = []
-    for made in design.surfaces:
-        surface, value = made.surface, made.bent.value
-        if value is None or math.isinf(value):  # of a ring without a hollow nothing undercuts
+def _undercut_margins(design: Design) -> list[Margin]:
+    """Distances of each surface from undercut: in mm, and as a share of its roller or its size."""
+    margins = []
+    for drawn in design.surfaces:
+        surface, value = drawn.surface, drawn.bent.value
+        if value is None or math.isinf(value):  # a ring without a hollow cannot undercut
             continue
         roller = surface.radius
         what = f"{surface.name} {'the roller undercuts' if roller else 'the flat face loses contact'}".strip()
-        found.append(Margin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
+        margins.append(Margin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
         base = roller or surface.curve.size
-        found.append(Margin("undercut-relative", (value - roller) / base, "", f"{what}, as a part of the size"))
-    return found
+        margins.append(Margin("undercut-relative", (value - roller) / base, "", f"{what}, as a part of the size"))
+    return margins
 
 
-def _linkage(design: Design) -> list[Margin]:
+def _linkage_margins(design: Design) -> list[Margin]:
+    """Distances of a linkage from binding, reversal and a force along the link; the factor of its output's error."""
     if design.driven is None:
         return []
     mechanism = design.driven.mechanism
     mobility = mechanism.mobility()
-    found = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
+    margins = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
     if not math.isnan(mobility.least_rate):
-        found.append(Margin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
+        margins.append(Margin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
     if design.driven.figures is None:
-        return found
+        return margins
     force = math.degrees(design.driven.figures.force_least.value)
-    found.append(Margin("force-angle", force, "deg", "the force on the output link runs along it"))
+    margins.append(Margin("force-angle", force, "deg", "the force on the output link runs along it"))
     from kin.follower.frame import implied_limit
 
     limit = implied_limit(mechanism, SMALL)
     if limit is not None:
         unit = "deg/mm" if mechanism.unit == "deg" else ""
-        found.append(
-            Margin("output-condition", limit / SMALL, unit, "error of the output by that of the profile", True)
-        )
-    return found
+        what = "error of the output by that of the profile"
+        margins.append(Margin("output-condition", limit / SMALL, unit, what, True))
+    return margins
 
 
-def _conditions(recipe: Recipe, design: Design) -> list[Margin]:
+def _error_factors(recipe: Recipe, design: Design) -> list[Margin]:
+    """Factors by which errors of the follower grow with those of the profile; the tolerance over rounding."""
     if not design.contours:
         return []
     factors = []
     for name, gauge in design.exact.gauges.items():
-        unit, what = (
-            "deg/mm" if gauge.unit == "deg" else "",
-            f"{name} error of the follower by that of the profile".strip(),
-        )
+        unit = "deg/mm" if gauge.unit == "deg" else ""
+        what = f"{name} error of the follower by that of the profile".strip()
         factors.append(Margin("motion-condition", gauge.motion_limit(SMALL) / SMALL, unit, what, True))
     size = max(contour.size for _, contour in design.contours)
     precision = recipe.export.tolerance / (EPS * size)

@@ -19,7 +19,7 @@ DOTS = 150
 
 
 def picture(study: Entry) -> bytes:
-    """Draw a study as PNG, under matplotlib's own defaults; raises ModuleNotFoundError without matplotlib."""
+    """Bytes of the study's PNG, under matplotlib's own defaults; raises ModuleNotFoundError without matplotlib."""
     prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -28,20 +28,20 @@ def picture(study: Entry) -> bytes:
         mpl.rcdefaults()
         figure = Figure(figsize=(11.0, 4.8), layout="constrained")
         time, pieces = figure.subplots(1, 2, sharey=True)
-        seen = [row["geometry_error"] for row in study["rows"] if row["geometry_error"]]
+        every_error = [row["geometry_error"] for row in study["rows"] if row["geometry_error"]]
         for form, colour in COLOURS.items():
             rows = [row for row in study["rows"] if row["form"] == form and row["geometry_error"]]
             if not rows:
                 continue
             errors = [row["geometry_error"] for row in rows]
             style: dict[str, Any] = {"color": colour, "marker": MARKS[form], "markersize": 4, "linewidth": 1.2}
-            made = [1e3 * (row["stages"]["fit"] + row["stages"]["write"]) for row in rows]
-            time.plot(made, errors, label=form, **style)
-            judged = [1e3 * row["seconds"] for row in rows]
-            time.plot(judged, errors, **{**style, "linestyle": ":", "markerfacecolor": "none"})
+            writing = [1e3 * (row["stages"]["fit"] + row["stages"]["write"]) for row in rows]
+            time.plot(writing, errors, label=form, **style)
+            judging = [1e3 * row["seconds"] for row in rows]
+            time.plot(judging, errors, **{**style, "linestyle": ":", "markerfacecolor": "none"})
             pieces.plot([row["pieces"] for row in rows], errors, label=form, **style)
             if form in SLOPES:
-                _slope(pieces, rows, SLOPES[form], colour)
+                _draw_slope(pieces, rows, SLOPES[form], colour)
         unit = "mm" if study["units"] == "mm" else "in"
         time.set_ylabel(f"geometry error of the file read back, {unit}")
         time.set_xlabel("run time, warm, ms (solid: fit and write; dotted: and judged)")
@@ -49,7 +49,7 @@ def picture(study: Entry) -> bytes:
         for axes in (time, pieces):
             axes.set_xscale("log")
             axes.set_yscale("log")
-            axes.set_ylim(0.3 * min(seen, default=1.0), 3.0 * max(seen, default=1.0))
+            axes.set_ylim(0.3 * min(every_error, default=1.0), 3.0 * max(every_error, default=1.0))
             axes.grid(visible=True, which="major", color="#e0e0e0")
         pieces.legend(frameon=False)
         figure.suptitle(f"{study['recipe']}: error against run time and pieces", fontsize="medium", fontweight="bold")
@@ -58,7 +58,7 @@ def picture(study: Entry) -> bytes:
     return stream.getvalue()
 
 
-def _slope(axes: Axes, rows: list[Entry], order: int, colour: str) -> None:
+def _draw_slope(axes: Axes, rows: list[Entry], order: int, colour: str) -> None:
     """Draw error ~ pieces^-order through the last row, and through theory's own count where there is one."""
     last = rows[-1]
     count = last["least_pieces"] or last["pieces"]

@@ -1,9 +1,9 @@
 """A ladder of tolerances for each output form: error of the file read back, run time, pieces and bytes.
 
-Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
-it warm: the exact curve and its bounds are made once and are separated as the stages of the design. A ladder ends
-where the form cannot hold the tolerance, which is reported with the reason and what can be held, or at a run (fit,
-write and judge) that takes longer than the patience that is given.
+Each rung writes a file into a private folder and judges it there, as an export does, then repeats the work to time it
+warm: the exact curve and its bounds are made once, as stages of the design. A ladder ends where the form cannot hold
+the tolerance, with the reason and what can be held, or at a run (fit, write and judge) that takes longer than the
+patience.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ SLOW = 2.0
 
 @dataclass(frozen=True)
 class Rung:
-    """One form at one tolerance; lengths in mm.
+    """Figures of one form at one tolerance; lengths in mm.
 
     geometry_error  two-sided distance of the file's contour from the exact one, as the judge measured it
-    proved          what the fit proved of it
+    proved          bound of that distance which the fit proved
     motion_error    greatest error of the follower by contact, in `motion_unit`
-    output_error    of a linkage's output, in `output_unit`; None without one
+    output_error    greatest error of a linkage's output, in `output_unit`; None without one
     seconds         median of the repeats, the sum of `stages`: fit, write, judge
-    least_pieces    theory's count; None for a form without one
-    failed          the checks on the file that do not hold
+    least_pieces    least number of pieces by theory; None without a contour
+    failed          names of the checks on the file that fail
     """
 
     form: str
@@ -69,13 +69,13 @@ class Rung:
 
     @property
     def ratio(self) -> float | None:
-        """Pieces over the theoretical least."""
+        """Pieces over the least number by theory; None without both."""
         return None if not self.least_pieces or self.pieces is None else self.pieces / self.least_pieces
 
 
 @dataclass(frozen=True)
-class Ended:
-    """Where a form's ladder ended: at which tolerance (mm), and why."""
+class End:
+    """End of a form's ladder: at which tolerance, mm, and why."""
 
     form: str
     tolerance: float
@@ -90,11 +90,11 @@ def climb(
     *,
     patience: float,
     listener: Callable[[str], None] | None = None,
-) -> Iterator[Rung | Ended]:
-    """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended.
+) -> Iterator[Rung | End]:
+    """Rungs of one form from a tenth of the recipe's unit downward, then the end of the ladder.
 
-    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `listener` hears
-    of every rung before it begins. ValueError for a form there is not.
+    Files are written into `folder`, one over the other; `patience` is the longest run in seconds; `listener` is called
+    with the form and tolerance of each rung before it begins. Raises ValueError for an unknown form.
     """
     for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
@@ -103,18 +103,18 @@ def climb(
         try:
             rung = _rung(recipe, design, form, tolerance, folder)
         except RecipeErrors as errors:
-            yield Ended(form, tolerance, "; ".join(error.problem for error in errors.errors))
+            yield End(form, tolerance, "; ".join(error.problem for error in errors.errors))
             return
         yield rung
         if rung.seconds > patience:
             why = f"fit, write and judge took {rung.seconds:.3g} s, longer than {patience:.3g} s"
-            yield Ended(form, tolerance / 10.0, why)
+            yield End(form, tolerance / 10.0, why)
             return
-    yield Ended(form, 10.0 ** (LAST_EXPONENT - 1) * recipe.mm, "the ladder's last rung")
+    yield End(form, 10.0 ** (LAST_EXPONENT - 1) * recipe.mm, "the ladder's last rung")
 
 
-def request_of(form: str, tolerance: float) -> FileRequest:
-    """The file that stands for a form, within a tolerance in mm; ValueError for a form there is not."""
+def file_request(form: str, tolerance: float) -> FileRequest:
+    """Request for a file of a form within a tolerance, mm; raises ValueError for an unknown form."""
     if form == "stl":
         return FileRequest("stl", tolerance=tolerance)
     if form in {"polyline", "arcs", "spline"}:
@@ -123,15 +123,15 @@ def request_of(form: str, tolerance: float) -> FileRequest:
 
 
 def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: Path) -> Rung:
-    request = request_of(form, tolerance)
+    request = file_request(form, tolerance)
     path = folder / f"{form}.{request.kind}"
     begun = time.perf_counter()
-    files, _, failed = _once(recipe, design, request, path)
-    taken = time.perf_counter() - begun
-    repeats = REPEATS if taken < QUICK else 2 if taken < SLOW else 1
-    runs = [_once(recipe, design, request, path)[1] for _ in range(repeats)]
+    files, _, failed = _run_once(recipe, design, request, path)
+    first_run = time.perf_counter() - begun
+    repeats = REPEATS if first_run < QUICK else 2 if first_run < SLOW else 1
+    runs = [_run_once(recipe, design, request, path)[1] for _ in range(repeats)]
     medians = {name: statistics.median(run[name] for run in runs) for name in runs[0]}
-    motion = max((file.motion for file in files if file.motion is not None), key=lambda one: one.max, default=None)
+    motion = max((file.motion for file in files if file.motion is not None), key=lambda error: error.max, default=None)
     output = next((file.linkage.error for file in files if file.linkage is not None), None)
     measured = [file.measured_error for file in files if file.measured_error is not None]
     counts = [file.pieces for file in files if file.pieces is not None]
@@ -148,23 +148,16 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
         seconds=math.fsum(medians.values()),
         stages=medians,
         pieces=sum(counts) if len(counts) == len(files) else None,
-        least_pieces=_least_pieces(design, form, tolerance),
+        least_pieces=sum(least_pieces(form, contour, tolerance) for _, contour in design.contours) or None,
         bytes=sum(file.path.stat().st_size for file in files),
         failed=failed,
     )
 
 
-def _least_pieces(design: Design, form: str, tolerance: float) -> float | None:
-    """Theory's count for all contours of a design; None for a form without one."""
-    counts = [least_pieces(form, contour, tolerance) for _, contour in design.contours]
-    known = [count for count in counts if count is not None]
-    return sum(known) if known else None
-
-
-def _once(
+def _run_once(
     recipe: Recipe, design: Design, request: FileRequest, path: Path
 ) -> tuple[tuple[FileResult, ...], dict[str, float], tuple[str, ...]]:
-    """Fit, write and judge once: a file for each disc, the seconds of each stage, the checks that do not hold."""
+    """Fit, write and judge once: a result for each file, the seconds of each stage, names of the checks that fail."""
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
@@ -173,5 +166,5 @@ def _once(
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
     for name, seconds in job.clock.stages:
         step = name.split()[0]
-        stages["write" if step == "mesh" else step] += seconds  # a solid's triangles are made to be written
+        stages["write" if step == "mesh" else step] += seconds  # meshing is part of writing a solid
     return tuple(files), stages, tuple(check.name for check in checks if not check.ok)

@@ -13,7 +13,7 @@ from support.places import RECIPES
 
 from camgeo.capabilities.study.least_pieces import least_pieces
 from camgeo.capabilities.study.margins import Margin, margins
-from camgeo.capabilities.study.tolerance_ladder import Ended, Rung, climb
+from camgeo.capabilities.study.tolerance_ladder import End, Rung, climb
 from camgeo.cli import main
 from camgeo.output.pipeline import export
 from camgeo.recipe.loading import load, read
@@ -88,8 +88,8 @@ def test_a_dwell_counts_as_one_arc_at_least() -> None:
 def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
     recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}", Path("cam.yaml"))
     found = list(climb(recipe, designed(recipe), "arcs", tmp_path, patience=1e-9))
-    assert [type(item) for item in found] == [Rung, Ended]
-    assert isinstance(found[1], Ended)
+    assert [type(item) for item in found] == [Rung, End]
+    assert isinstance(found[1], End)
     assert found[1].why.startswith("fit, write and judge took")
     assert "longer than" in found[1].why
 
