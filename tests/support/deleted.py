@@ -13,6 +13,7 @@ import ast
 import re
 import shutil
 import subprocess
+from functools import cache
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.words import words_of
@@ -68,11 +69,16 @@ def _behind_page(lines: list[str], start: int) -> int:
     return len(lines)
 
 
+@cache
+def _words(path: Path) -> frozenset[str]:
+    """Keys, formats and options of files that a shipped recipe has: each is read once for all capabilities."""
+    return frozenset(words_of(read_source(path.read_bytes(), str(path)).root))
+
+
 def uses(path: Path, name: str) -> bool:
     """Whether a shipped recipe has a key, a format or an option of files of a capability."""
     label = registry.labels()[name]
-    words = words_of(read_source(path.read_bytes(), str(path)).root)
-    return not words.isdisjoint({*label.words, *label.roots})
+    return not _words(path).isdisjoint({*label.words, *label.roots})
 
 
 def unshipped(name: str) -> list[Path]:
