@@ -183,7 +183,19 @@ def picture(found: dict[str, list[Point]], path: Path) -> None:
     import matplotlib.pyplot as plt
 
     figure, rows = plt.subplots(len(found), 2, figsize=(11, 4.3 * len(found)), layout="constrained", sharey=True)
-    colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
+    colours = [
+        "#0072B2",
+        "#D55E00",
+        "#009E73",
+        "#CC79A7",
+        "#E69F00",
+        "#56B4E9",
+        "#000000",
+        "#999999",
+        "#8B4513",
+        "#6A3D9A",
+        "#A0A000",
+    ]
     tools = [*OURS.values(), *PEERS]
     for row, (cam, points) in zip(np.atleast_2d(rows), found.items(), strict=True):
         for axes, (key, label) in zip(row, (("warm", "warm, ms"), ("cold", "whole process, ms")), strict=True):
@@ -192,7 +204,7 @@ def picture(found: dict[str, list[Point]], path: Path) -> None:
                 if not mine:
                     continue
                 own = tool in OURS.values()
-                style = {"color": colours[i % 4 if own else (i - 4) % 8], "linewidth": 1.8 if own else 0.9}
+                style = {"color": colours[i], "linewidth": 1.8 if own else 0.9}
                 axes.plot(
                     [1e3 * getattr(point, key) for point in mine],
                     [point.error for point in mine],
@@ -207,8 +219,11 @@ def picture(found: dict[str, list[Point]], path: Path) -> None:
             axes.set_xlabel(f"{cam}: {label}")
             axes.grid(visible=True, color="#e0e0e0")
         row[0].set_ylabel("error of the file, mm")
-    handles, labels = np.atleast_2d(rows)[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
+    named: dict[str, object] = {}
+    for axes in np.ravel(rows):
+        handles, labels = axes.get_legend_handles_labels()
+        named |= dict(zip(labels, handles, strict=True))
+    figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=5, frameon=False)
     figure.savefig(path, dpi=90)
 
 
