@@ -151,15 +151,11 @@ def test_what_cannot_be_made_for_want_of_a_package_is_named_with_it(monkeypatch:
 
 
 # needs: follow
-FOLLOWER = {"roller": "", "shoe": "", "flat": False, "width": "", "offset": "", "pivot": "", "arm": "", "x": "0"}
-FOLLOWER |= {
-    "leading": False,
-    "yoke": False,
+FOLLOWER: dict[str, Any] = {
+    **dict.fromkeys(("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "units"), ""),
+    **dict.fromkeys(("flat", "leading", "yoke"), False),
     "track": "external",
-    "y": "",
     "rotation": "cw",
-    "reading": "",
-    "units": "",
 }
 
 
