@@ -23,7 +23,8 @@ from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet, cos
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
-from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.monotone import between, cells
+from kin.numeric.monotone import extremes as extremes_of
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -304,7 +305,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
             return chain.margins(loop, *lifts(theta), about)
 
         of = cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)
-        theta = np.concatenate([nodes, *(pieces(of, row).x for row in range(len(of.coefficients)))])
+        theta = np.concatenate([nodes, [extremes_of(of, row)[0][1] for row in range(len(of.coefficients))]])
         s, s1 = lifts(theta)
         moved = np.full_like(theta, 2.0)
         if loop > 0:

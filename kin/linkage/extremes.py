@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.monotone import between, cells, extremes, pieces
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -90,18 +90,18 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], brea
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
     of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
-    by = dict(zip(Rows._fields, (pieces(of, row) for row in range(len(Rows._fields))), strict=True))
+    row = {name: k for k, name in enumerate(Rows._fields)}
 
     def peak(name: str) -> tuple[float, float]:
-        return max(by[name].greatest(), by[name].least(), key=lambda found: abs(found[0]))
+        least, greatest = extremes(of, row[name])
+        return max(greatest, least, key=lambda found: abs(found[0]))
 
     def nearest_zero(name: str) -> float:
         """Where the absolute value is least."""
-        of = by[name]
-        least, greatest = of.least(), of.greatest()
+        least, greatest = extremes(of, row[name])
         if least[0] >= 0:
             return least[1]
-        return greatest[1] if greatest[0] <= 0 else float(of.crossings(0.0)[0])
+        return greatest[1] if greatest[0] <= 0 else float(pieces(of, row[name]).crossings(0.0)[0])
 
     acute = {
         "transmission_least": nearest_zero("transmission_sine"),
@@ -112,14 +112,12 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], brea
     transmission = np.arctan2(np.abs(at.transmission_sine), np.abs(at.transmission_cosine)).tolist()
     force = np.arctan2(np.abs(at.force_sine), np.abs(at.force_cosine)).tolist()
     extreme = {
-        "least": by["output"].least(),
-        "greatest": by["output"].greatest(),
-        "frame_least": by["frame"].least(),
-        "frame_greatest": by["frame"].greatest(),
+        **dict(zip(("least", "greatest"), extremes(of, row["output"]), strict=True)),
+        **dict(zip(("frame_least", "frame_greatest"), extremes(of, row["frame"]), strict=True)),
         **dict(zip(acute, zip([*transmission[:2], force[2]], acute.values(), strict=True), strict=True)),
         **{name: peak(name) for name in ("velocity", "acceleration", "velocity_relative", "acceleration_relative")},
     }
-    still = [(0.0, angle) for angle in by["offset"].crossings(0.0).tolist()]
+    still = [(0.0, angle) for angle in pieces(of, row["offset"]).crossings(0.0).tolist()]
     values, angles = np.transpose([*extreme.values(), *still])
     angles = np.mod(angles, TURN)
     turned = np.mod(shaft(angles), TURN)

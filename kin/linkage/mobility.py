@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import SAME, Pieces, RoughError, between, cells, pieces
+from kin.numeric.monotone import SAME, Cells, Pieces, RoughError, between, cells, extremes, pieces
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -76,13 +76,14 @@ def mobility(
     found: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()
     for loop, margin in enumerate(margins):
-        for of in _all_round(margin, breaks, _RESOLUTION * breadth):
-            least, at = of.least()
+        of = _all_round(margin, breaks, _RESOLUTION * breadth)
+        for limit, noise in enumerate(of.noise):
+            (least, at), _ = extremes(of, limit)
             if least < found[0]:
                 found = (least, at % TURN, loop)
-            rounding = float(of.blur.min())
+            rounding = float(noise.min())
             if least <= rounding:
-                binds += _below(of, 0.0 if least < -2 * rounding else 4 * rounding)
+                binds += _below(pieces(of, limit), 0.0 if least < -2 * rounding else 4 * rounding)
         if binds:
             binds = _merged(sorted(binds))
             break
@@ -91,16 +92,15 @@ def mobility(
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
         return Mobility(*found, binds, math.nan, math.nan, reverses)
     try:
-        (of,) = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
+        of = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
     except RoughError as error:
         return Mobility(*found, binds, math.nan, error.at % TURN, ())
-    least, at = of.least()
-    return Mobility(*found, binds, least, at % TURN, _below(of, 0.0))
+    (least, at), _ = extremes(of)
+    return Mobility(*found, binds, least, at % TURN, _below(pieces(of), 0.0) if least <= 0.0 else ())
 
 
-def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> list[Pieces]:
-    of = cells(f, between(0.0, TURN, breaks.tolist()), resolution)
-    return [pieces(of, row) for row in range(len(of.coefficients))]
+def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> Cells:
+    return cells(f, between(0.0, TURN, breaks.tolist()), resolution)
 
 
 def _below(pieces: Pieces, level: float) -> tuple[Span, ...]:
