@@ -141,9 +141,9 @@ class Errors:
 
     def influence(self, weights: Array) -> Influence:
         """What adds to the sum of the errors with these weights (n,)."""
-        each = [(one, weights * one.gain) for one in self.felt]
-        sd = math.sqrt(sum(one.curve.deviation_of_sum(one.places, share) ** 2 for one, share in each))
-        shifted: Array = np.sum([share @ one.normals for one, share in each], axis=0)
+        each = [(felt, weights * felt.gain) for felt in self.felt]
+        sd = math.sqrt(sum(felt.curve.deviation_of_sum(felt.places, share) ** 2 for felt, share in each))
+        shifted: Array = np.sum([share @ felt.normals for felt, share in each], axis=0)
         return Influence(sd, float(sum(np.abs(share).sum() for _, share in each)), shifted)
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
@@ -232,7 +232,7 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
     sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
     gap = stopping.rows[0] - pushing.rows[0]
     gain = np.maximum(np.abs(pushing.gain), np.abs(stopping.gain))
-    felt = tuple(one._replace(gain=0.5 * one.gain) for one in (*pushing.felt, *stopping.felt))
+    felt = tuple(half._replace(gain=0.5 * half.gain) for half in (*pushing.felt, *stopping.felt))
     middle = Errors(pushing.shaft, rows, sds, gain, pushing.intended, felt)
     return middle, Play(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 LOOKS = 1440  # polar angles
-SMALL = math.radians(0.05)  # a turn that is not told
+SMALL = math.radians(0.05)  # a turn that is not named
 MIRRORED = "measure it with the upper end up, as the file is drawn, or turn y round"
 TURNED_OVER = "count z from the recipe's end, and turn y round"
 ODD = 0.5  # of what lies far off: from which on a cam may stand off the others
@@ -56,7 +56,7 @@ def radii(places: Array) -> Array:
     return interpolated
 
 
-def turned_alone(shaft: Radii, *, aligned: bool) -> dict[int, float]:
+def lone_turns(shaft: Radii, *, aligned: bool) -> dict[int, float]:
     """Turn, rad, of each cam that alone is turned, by its place among those measured; empty where none is far off.
 
     `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for points that look like
@@ -75,16 +75,16 @@ def turned_alone(shaft: Radii, *, aligned: bool) -> dict[int, float]:
 
 def _demand_shaft(shaft: Radii, meant: Array, off: Array, *, aligned: bool) -> None:
     """Raise UnlikePointsError for points that lie far off as those of another shaft do."""
-    told = f"the points lie {_mean(off):.3g} mm off the contours on average"
+    problem = f"the points lie {_mean(off):.3g} mm off the contours on average"
     ratio = float(meant.mean() / shaft.measured.mean())
-    factor = next((one for one in FACTORS if 1.0 / NEAR < one / ratio < NEAR), None)
+    factor = next((value for value in FACTORS if 1.0 / NEAR < value / ratio < NEAR), None)
     if factor is not None:
         large, word = max(factor, 1.0 / factor), "small" if factor > 1.0 else "large"
-        raise UnlikePointsError(f"{told}: they look {large:.6g} times too {word}: `--units {FACTORS[factor]}`")
-    looks = [*_wholes(shaft, meant, aligned=aligned), *_swapped(shaft, off)]
+        raise UnlikePointsError(f"{problem}: they look {large:.6g} times too {word}: `--units {FACTORS[factor]}`")
+    looks = [*_shaft_looks(shaft, meant, aligned=aligned), *_swap_looks(shaft, off)]
     explained = [look for look in looks if look.left <= BETTER * _mean(off)]
     if explained:
-        raise UnlikePointsError(f"{told}: {min(explained).words}")
+        raise UnlikePointsError(f"{problem}: {min(explained).words}")
 
 
 class _Look(NamedTuple):
@@ -94,7 +94,7 @@ class _Look(NamedTuple):
     words: str
 
 
-def _wholes(shaft: Radii, meant: Array, *, aligned: bool) -> Iterator[_Look]:
+def _shaft_looks(shaft: Radii, meant: Array, *, aligned: bool) -> Iterator[_Look]:
     """The shaft as one turned, mirrored, or measured from its other end."""
     turned_over = shaft.contours[shaft.other_end[shaft.owner]]
     for mirrored, contours, looks, remedy in (
@@ -105,16 +105,16 @@ def _wholes(shaft: Radii, meant: Array, *, aligned: bool) -> Iterator[_Look]:
         measured = np.roll(shaft.measured[:, ::-1], 1, axis=1) if mirrored else shaft.measured
         turn = _turn(measured, contours)
         left = _mean(_off(measured, contours, dict.fromkeys(range(len(measured)), turn)))
-        told = abs(turn) > SMALL
-        words = [*([looks] if looks else []), *([f"turned by {math.degrees(turn):.3g} degrees"] if told else [])]
-        remedies = [*([remedy] if remedy else []), *(["`--align rotation`"] if told and not aligned else [])]
+        turned = abs(turn) > SMALL
+        words = [*([looks] if looks else []), *([f"turned by {math.degrees(turn):.3g} degrees"] if turned else [])]
+        remedies = [*([remedy] if remedy else []), *(["`--align rotation`"] if turned and not aligned else [])]
         yield _Look(left, f"the shaft looks {', '.join(words)}: {', then '.join(remedies)}")
 
 
-def _swapped(shaft: Radii, off: Array) -> Iterator[_Look]:
+def _swap_looks(shaft: Radii, off: Array) -> Iterator[_Look]:
     """Cams that stand for one another."""
     each = np.stack(
-        [_off(shaft.measured, np.broadcast_to(one, shaft.measured.shape)) for one in shaft.contours], axis=1
+        [_off(shaft.measured, np.broadcast_to(contour, shaft.measured.shape)) for contour in shaft.contours], axis=1
     )
     far = off > FAR * shaft.size
     like = np.where(far, np.argmin(each, axis=1), shaft.owner)

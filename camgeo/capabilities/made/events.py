@@ -125,10 +125,10 @@ def _above(row: StatedLift, made: MadeMotion, design: Design, call: Call, zero: 
         return dict.fromkeys((*ANGLES, DURATION))
     turning = 0.0 if call.axes is None else call.axes[1]
     entry: dict[str, Any] = {}
-    for name, one in zip(ANGLES, (above.opening, above.closing, above.centre), strict=True):
-        intended = math.degrees(one.intended + zero) % 360.0
-        uncertain = math.degrees(math.hypot(expanded(call, one.influence), turning))
-        entry[name] = _row(1.0, intended + math.degrees(one.made - one.intended), intended, uncertain)
+    for name, crossing in zip(ANGLES, (above.opening, above.closing, above.centre), strict=True):
+        intended = math.degrees(crossing.intended + zero) % 360.0
+        uncertain = math.degrees(math.hypot(expanded(call, crossing.influence), turning))
+        entry[name] = _row(1.0, intended + math.degrees(crossing.made - crossing.intended), intended, uncertain)
     crank = math.degrees(CRANK)
     duration = above.duration
     entry[DURATION] = _row(crank, duration.made, duration.intended, expanded(call, duration.influence))

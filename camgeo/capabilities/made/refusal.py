@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 @contextmanager
 def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
     """Turn what kin refuses of points into CallErrors that name their files, and the cam where there are several."""
-    files, of = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
+    files, lobe = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
     try:
         yield
     except (ContactError, FrameError) as error:
-        raise CallError(f"{files}: {of}on the metal that these points tell, {error}") from error
+        raise CallError(f"{files}: {lobe}on the metal that these points tell, {error}") from error
     except CallError as error:
         if not name:
             raise
-        raise CallError(*(f"{of}{fault}" for fault in error.faults)) from error
+        raise CallError(*(f"{lobe}{fault}" for fault in error.faults)) from error
     except (UnsettledError, ValueError) as error:
-        raise CallError(f"{files}: {of}{error}") from error
+        raise CallError(f"{files}: {lobe}{error}") from error
 
 
 @contextmanager

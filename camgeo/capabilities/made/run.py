@@ -54,13 +54,13 @@ def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock:
     call = Call.of(options, cams[0].recipe, units)
     result = made_shaft(cams, paths, call)
     checks, entries = [], []
-    for one in result.cams:
-        cam = one.points.cam
-        own, verdicts = checks_of(cam.recipe, one.result, call)
+    for lobe in result.cams:
+        cam = lobe.points.cam
+        own, verdicts = checks_of(cam.recipe, lobe.result, call)
         checks += [replace(check, surface=cam.name) for check in own]
-        events = events_section(cam.recipe, cam.design, one.result, call, (cam.events, cam.zero))
-        entries.append(section(cam.recipe, one.points.paths, one.result, call, verdicts) | events)
-        add_figures(entries[-1], cam.recipe, cam.design, one.result)
+        events = events_section(cam.recipe, cam.design, lobe.result, call, (cam.events, cam.zero))
+        entries.append(section(cam.recipe, lobe.points.paths, lobe.result, call, verdicts) | events)
+        add_figures(entries[-1], cam.recipe, cam.design, lobe.result)
     report = shaft_section(recipe, paths, result, entries)
     if call.out is not None:
         from camgeo.capabilities.made.shaft_output import write_shaft

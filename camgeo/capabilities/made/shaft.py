@@ -24,7 +24,7 @@ from camgeo.synthesis.intent import intents
 from kin.contour.arcs import turned
 from kin.made.motion import Influence
 from kin.made.points import FACTORS, turned_at
-from kin.made.shaft_alike import LOOKS, Radii, radii, turned_alone
+from kin.made.shaft_alike import LOOKS, Radii, lone_turns, radii
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 from kin.read.points import LEAST_POINTS
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
-MOST_NAMES = 8  # told one by one
+MOST_NAMES = 8  # named in a message
 SHIFTED = "shifted along the shaft: count z from the recipe's zero, {0:+.6g} {1}"
 TURNED_OVER = "measured from the other end: z is {0:.6g} {1} less the column, and y turned round"
 TWO = 2
@@ -69,7 +69,7 @@ class CamPoints:
     def turned(self, angle: float) -> CamPoints:
         """The points with the metal turned by an angle, rad, counter-clockwise as drawn for `cw`."""
         drawn = -angle if self.cam.recipe.rotation == "ccw" else angle
-        return replace(self, files=tuple((path, _turned(table, drawn, angle)) for path, table in self.files))
+        return replace(self, files=tuple((path, _turn_table(table, drawn, angle)) for path, table in self.files))
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,38 +112,42 @@ class ShaftMade:
 def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> ShaftMade:
     """All that points tell of the cams of a shaft; raises CallError for what is not judged."""
     if call.probing.align not in {"", "g"}:
-        told = "a shaft is judged about the axis of its bearings, which is not shifted"
-        raise CallError(f"--align: {told}: give --align rotation, or none")
+        problem = "a shaft is judged about the axis of its bearings, which is not shifted"
+        raise CallError(f"--align: {problem}: give --align rotation, or none")
     tables = tables_of(paths)
     if len({table.measured for table in tables}) > 1:
         raise CallError("some files have lifts and others places: give them in calls of their own")
     scale, _ = scale_of(cams[0].recipe, tables, call.probing.units)
     lifts = tables[0].measured == "lift"
-    measured = [one.turned(-one.cam.zero if lifts else -one.cam.at) for one in _by_cam(cams, paths, tables, scale)]
+    measured = [
+        points.turned(-points.cam.zero if lifts else -points.cam.at) for points in _by_cam(cams, paths, tables, scale)
+    ]
     late = None
     if call.probing.align:
         with as_call_errors(paths):
-            late = _common(measured, scale, call)
-        measured = [one.turned(-late) for one in measured]
-    alone = {} if lifts else _turned_alone(cams, measured, scale, call)
+            late = _shaft_turn(measured, scale, call)
+        measured = [points.turned(-late) for points in measured]
+    alone = {} if lifts else _lone_turns(cams, measured, scale, call)
     results = [
-        _judged(one, replace(call, probing=replace(call.probing, align="", alone=alone.get(one.cam.name, 0.0))))
-        for one in measured
+        _judge_cam(
+            points, replace(call, probing=replace(call.probing, align="", alone=alone.get(points.cam.name, 0.0)))
+        )
+        for points in measured
     ]
     phases = _phases(measured, [result.motion for result in results], call)
-    names = {one.cam.name for one in measured}
+    names = {points.cam.name for points in measured}
     return ShaftMade(
         tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True)),
         tuple(cam.name for cam in cams if cam.name not in names),
         late,
         (
             *_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names]),
-            *_turned_remarks(measured, phases),
+            *_lone_remarks(measured, phases),
         ),
     )
 
 
-def _judged(points: CamPoints, call: Call) -> PartMade:
+def _judge_cam(points: CamPoints, call: Call) -> PartMade:
     cam = points.cam
     if not cam.design.contours:
         raise CallError(f"{cam.name}: there is no exact contour to hold points against: a check of its recipe fails")
@@ -162,7 +166,7 @@ def _judged(points: CamPoints, call: Call) -> PartMade:
 def _by_cam(
     cams: Sequence[ShaftCam], paths: Sequence[Path], tables: Sequence[PointTable], scale: float
 ) -> list[CamPoints]:
-    """Points of each cam that has any; raises CallError for points of none, and for too few of one."""
+    """Points of each cam that has any; raises CallError for points of none, and for too few of a cam."""
     pieces: list[list[tuple[Path, PointTable]]] = [[] for _ in cams]
     for path, table in zip(paths, tables, strict=True):
         owner = _owners(cams, path, table, scale)
@@ -170,10 +174,10 @@ def _by_cam(
             if (owner == rank).any():
                 piece.append((path, table.rows(owner == rank)))
     measured = [CamPoints(cam, tuple(piece)) for cam, piece in zip(cams, pieces, strict=True) if piece]
-    for one in measured:
-        if (count := sum(len(table) for table in one.tables)) < LEAST_POINTS:
-            told = f"{one.cam.name} has {count} points, and at least {LEAST_POINTS} are needed, all round it"
-            raise CallError(f"{', '.join(escaped(str(path)) for path in one.paths)}: {told}")
+    for points in measured:
+        if (count := sum(len(table) for table in points.tables)) < LEAST_POINTS:
+            problem = f"{points.cam.name} has {count} points, and at least {LEAST_POINTS} are needed, all round it"
+            raise CallError(f"{', '.join(escaped(str(path)) for path in points.paths)}: {problem}")
     return measured
 
 
@@ -183,8 +187,8 @@ def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: floa
     by_label = _by_label(cams, name, table) if table.labels else None
     if z is None:
         if by_label is None and len(cams) > 1:
-            told = "a column z or lobe has to tell which lobe each point is on"
-            raise CallError(f"{name}: {told}; lobes are 1 to {len(cams)}, or {_names(cams)}")
+            problem = "a column z or lobe has to tell which lobe each point is on"
+            raise CallError(f"{name}: {problem}; lobes are 1 to {len(cams)}, or {_names(cams)}")
         return np.zeros(len(table), dtype=np.intp) if by_label is None else by_label
     height = z * scale
     on = np.array([(height >= cam.low - WITHIN) & (height <= cam.high + WITHIN) for cam in cams])
@@ -239,8 +243,8 @@ def _by_label(cams: Sequence[ShaftCam], name: str, table: PointTable) -> Indices
     owners = {label: ranks.get(_plain(label)) for label in set(table.labels)}
     for label, line in zip(table.labels, table.lines.tolist(), strict=True):
         if owners[label] is None:
-            told = f"line {line}: {escaped(label)[:40]!r} is no lobe"
-            raise CallError(f"{name}: {told}; lobes are 1 to {len(cams)}, or {_names(cams)}")
+            problem = f"line {line}: {escaped(label)[:40]!r} is no lobe"
+            raise CallError(f"{name}: {problem}; lobes are 1 to {len(cams)}, or {_names(cams)}")
     return np.array([owners[label] for label in table.labels], dtype=np.intp)
 
 
@@ -259,7 +263,7 @@ def _names(cams: Sequence[ShaftCam]) -> str:
 # --- turns ------------------------------------------------------------------------------------------------------------
 
 
-def _turned(table: PointTable, drawn: float, angle: float) -> PointTable:
+def _turn_table(table: PointTable, drawn: float, angle: float) -> PointTable:
     """A table turned by an angle as drawn, rad; of lifts the shaft's angle is that of a motion so much earlier."""
     columns = dict(table.columns)
     if "angle" in columns:
@@ -271,46 +275,49 @@ def _turned(table: PointTable, drawn: float, angle: float) -> PointTable:
     return replace(table, columns=columns)
 
 
-def _common(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
+def _shaft_turn(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
     """Angle, rad, by which the shaft as one stands later than meant, by least squares over all its points."""
     probing = call.probing
     if measured[0].tables[0].measured == "lift":
         from kin.made.lifts import turn_of
 
         return -turn_of(
-            [readings_of(intents(one.cam.recipe, one.cam.design), one.tables, scale, probing) for one in measured]
+            [
+                readings_of(intents(points.cam.recipe, points.cam.design), points.tables, scale, probing)
+                for points in measured
+            ]
         )
     surfaces = []
-    for one in measured:
-        (part,) = intents(one.cam.recipe, one.cam.design)
-        pieces = [(i, table, scale) for i, table in enumerate(one.tables)]
+    for points in measured:
+        (part,) = intents(points.cam.recipe, points.cam.design)
+        pieces = [(i, table, scale) for i, table in enumerate(points.tables)]
         surfaces += [on.points for on in sorted_out(part, pieces, probing)]
     return turned_at(surfaces).turn
 
 
-def _turned_alone(
-    cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, call: Call
-) -> dict[str, float]:
+def _lone_turns(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, call: Call) -> dict[str, float]:
     """Turn, rad, of each cam that stands off the others; raises CallError for what looks like no such shaft."""
     contours = []
     for cam in cams:
         (surface,) = intents(cam.recipe, cam.design)[0].surfaces
         contours.append(radii(turned(surface.gauge.envelope.points(equal_steps(LOOKS)), np.array(cam.at))))
-    points = [
-        np.concatenate([places_of(table, scale, mirrored=one.cam.recipe.rotation == "ccw")[0] for table in one.tables])
-        for one in measured
+    everywhere = [
+        np.concatenate(
+            [places_of(table, scale, mirrored=points.cam.recipe.rotation == "ccw")[0] for table in points.tables]
+        )
+        for points in measured
     ]
     names = [cam.name for cam in cams]
-    owner = np.array([names.index(one.cam.name) for one in measured], dtype=np.intp)
+    owner = np.array([names.index(points.cam.name) for points in measured], dtype=np.intp)
     order = np.argsort([cam.low for cam in cams])
     other_end = np.empty_like(order)
     other_end[order] = order[::-1]
-    found = np.stack(
-        [radii(turned(places, np.array(one.cam.at))) for places, one in zip(points, measured, strict=True)]
+    own_radii = np.stack(
+        [radii(turned(places, np.array(points.cam.at))) for places, points in zip(everywhere, measured, strict=True)]
     )
-    with as_call_errors(list(dict.fromkeys(path for one in measured for path in one.paths))):
-        alone = turned_alone(
-            Radii(found - (call.probing.ball or 0.0), np.stack(contours), owner, names, other_end),
+    with as_call_errors(list(dict.fromkeys(path for points in measured for path in points.paths))):
+        alone = lone_turns(
+            Radii(own_radii - (call.probing.ball or 0.0), np.stack(contours), owner, names, other_end),
             aligned=bool(call.probing.align),
         )
     return {measured[rank].cam.name: turn for rank, turn in alone.items()}
@@ -323,8 +330,8 @@ def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call
     """Phase of each cam, by the turn that explains most of its motion's error; the first is the datum of the others."""
     lates = [errors.phase[0] for errors in motions]
     parts = [
-        _on_shaft(errors.influence(errors.phase_weights), one.cam.at)
-        for errors, one in zip(motions, measured, strict=True)
+        _on_shaft(errors.influence(errors.phase_weights), points.cam.at)
+        for errors, points in zip(motions, measured, strict=True)
     ]
     turning, datum = 0.0 if call.axes is None else call.axes[1], parts[0]
     phases = []
@@ -341,12 +348,12 @@ def _on_shaft(part: Influence, at: float) -> Influence:
     return part._replace(shifted=np.array([[c, -s], [s, c]]) @ part.shifted)
 
 
-def _turned_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> list[str]:
+def _lone_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> list[str]:
     """Cams that stand off the others by far more than is uncertain: of two alone, off the recipe."""
     middle = float(np.median([phase.late for phase in phases])) if len(phases) > TWO else 0.0
     return [
-        f"{one.cam.name} looks turned by {math.degrees(phase.late - middle):.3g} degrees against the others"
-        for one, phase in zip(measured, phases, strict=True)
+        f"{points.cam.name} looks turned by {math.degrees(phase.late - middle):.3g} degrees against the others"
+        for points, phase in zip(measured, phases, strict=True)
         if abs(phase.late - middle) > max(TURNED, CERTAIN * phase.uncertainty)
     ]
 
@@ -355,11 +362,11 @@ def _remarks(
     measured: Sequence[CamPoints], results: Sequence[PartMade], late: float | None, missing: Sequence[str]
 ) -> list[str]:
     """What holds of all cams once, and what does of some with their names."""
-    of: dict[str, list[str]] = {}
-    for one, result in zip(measured, results, strict=True):
+    cams_of: dict[str, list[str]] = {}
+    for points, result in zip(measured, results, strict=True):
         for text in result.remarks:
-            of.setdefault(text, []).append(one.cam.name)
-    remarks = [text if len(names) == len(results) else f"{', '.join(names)}: {text}" for text, names in of.items()]
+            cams_of.setdefault(text, []).append(points.cam.name)
+    remarks = [text if len(names) == len(results) else f"{', '.join(names)}: {text}" for text, names in cams_of.items()]
     if late is not None:
         turn = f"turned back by {math.degrees(late):.6g} degrees as one"
         remarks.append(f"{turn} by --align rotation, the shaft shows no phase of its own")

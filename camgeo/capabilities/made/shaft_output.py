@@ -22,10 +22,10 @@ def write_shaft(recipe: Order, result: ShaftMade, section: dict[str, Any], call:
     """Write the files; returns their paths. Raises SurroundingsError as the disk does not do what it should."""
     folder = Path(call.out or "")
     written, pages = [], []
-    for one, entry in zip(result.cams, section["lobes"], strict=True):
-        cam = one.points.cam
+    for lobe, entry in zip(result.cams, section["lobes"], strict=True):
+        cam = lobe.points.cam
         named = replace(cam.recipe, name=f"{recipe.name}-{label_of(cam.name)}")
-        paths = write(named, one.result, entry, call)
+        paths = write(named, lobe.result, entry, call)
         pages.append((cam.name, f"{named.name}-made.html"))
         written += paths
     path = folder / f"{recipe.name}-made.html"
@@ -45,7 +45,7 @@ def _page(name: str, section: dict[str, Any], pages: list[tuple[str, str]]) -> s
         for label, value in shaft_rows(section, everything=False)
     )
     remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
-    links = "".join(f'<li><a href="{one_line(page)}">{one_line(lobe)}</a></li>' for lobe, page in pages)
+    links = "".join(f'<li><a href="{one_line(page)}">{one_line(title)}</a></li>' for title, page in pages)
     files = one_line(", ".join(section["files"]))
     body = f"<h1>{one_line(name)}</h1><p>{files}</p>{verdicts}<table>{rows}</table><ul>{remarks}</ul>"
     return document(name, f"{body}\n<h2>Each lobe</h2><ul>{links}</ul>")

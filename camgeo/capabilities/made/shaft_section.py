@@ -23,13 +23,13 @@ def shaft_section(
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],
         "verdicts": {
-            f"{check}, {one.points.cam.name}": verdict
-            for one, own in zip(result.cams, sections, strict=True)
+            f"{check}, {lobe.points.cam.name}": verdict
+            for lobe, own in zip(result.cams, sections, strict=True)
             for check, verdict in own["verdicts"].items()
         },
         "lobes": [
-            {"name": one.points.cam.name, "phase": _phase(one.phase), **own}
-            for one, own in zip(result.cams, sections, strict=True)
+            {"name": lobe.points.cam.name, "phase": _phase(lobe.phase), **own}
+            for lobe, own in zip(result.cams, sections, strict=True)
         ],
         "datum": result.cams[0].points.cam.name,
         "missing": list(result.missing),
