@@ -19,7 +19,7 @@ import yaml
 import camgeo
 from camgeo.api.report import explained
 from camgeo.capabilities.follow.command import summary  # needs: follow
-from camgeo.capabilities.follow.library import shown  # needs: follow
+from camgeo.capabilities.follow.library import judged_by_recipe  # needs: follow
 from camgeo.checks.declared import declaration
 from camgeo.files.errors import MissingExtraError
 from camgeo.output.dispatch import foresee
@@ -458,7 +458,7 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
     output |= {"name": stem, "recipe": recipe, "tables": {table: followed.lifts()}}
     if followed.at == (0.0, 0.0):
-        report = shown(followed)
+        report = judged_by_recipe(followed)
         told = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
         output |= {"page": report.page or "", "ok": report.ok, "verdict": told}
     return output

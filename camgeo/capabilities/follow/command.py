@@ -70,8 +70,8 @@ def _lengths(text: str) -> tuple[float, ...]:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Follow one contour: 0 it is followed, 2 wrong, 3 surroundings."""
-    from camgeo.capabilities.follow.library import follow, shown
+    """Follow one contour; return the exit status: 0 done, 2 a wrong call or file, 3 the surroundings fail."""
+    from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new
     from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.schema.errors import RecipeErrors
@@ -102,7 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
             texts[arguments.recipe] = followed.recipe(Path(lifts).name)
             texts[lifts] = followed.lifts()
         if arguments.page is not None:
-            texts[arguments.page] = shown(followed).page or ""
+            texts[arguments.page] = judged_by_recipe(followed).page or ""
         write_new(texts)
     except CallError as error:
         for fault in error.faults:
@@ -124,7 +124,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def document(followed: Followed) -> dict[str, Any]:
-    """The motion's figures as plain data; lengths in mm, angles in degrees."""
+    """The motion's figures as plain data for JSON; lengths in mm, angles in degrees."""
     scale, unit = (1.0, "mm") if followed.unit == "mm" else (math.degrees(1.0), "deg")
     travel, radius = followed.contact_travel, followed.radius
     return {
@@ -154,7 +154,7 @@ def document(followed: Followed) -> dict[str, Any]:
 
 
 def _least(followed: Followed, values: Array) -> dict[str, float] | None:
-    """Size of the least of values over the turn, and its shaft angle; None where none is finite."""
+    """Absolute value of the least of values (n,) over the turn, and its shaft angle; None where it is not finite."""
     place = int(values.argmin())
     if not math.isfinite(values[place]):
         return None
@@ -188,11 +188,6 @@ def summary(followed: Followed) -> str:
         if (pair := figures[key]) is not None:
             lines.append(f"  {words} from {pair[0]:.6g} to {pair[1]:.6g} {scale}")
     if (travel := figures["contact_travel"]) is not None:
-        lines.append(f"  contact on the face from {travel[0]:.6g} to {travel[1]:.6g} mm{_width(followed)}")
+        width = "" if unit == "deg" else f", a centred face is {2.0 * max(map(abs, travel)):.6g} mm wide"
+        lines.append(f"  contact on the face from {travel[0]:.6g} to {travel[1]:.6g} mm{width}")
     return "\n".join(lines)
-
-
-def _width(followed: Followed) -> str:
-    """The least width of a face that is centred on the stem's axis; empty on an arm."""
-    low, high = followed.contact_travel or (0.0, 0.0)
-    return "" if followed.unit == "rad" else f", a centred face is {2.0 * max(abs(low), abs(high)):.6g} mm wide"

@@ -1,4 +1,4 @@
-"""The follower that a call describes: its contacts for the judge's geometry, its words, and its keys in a recipe."""
+"""The follower of a call: its contacts, its description in words, and its keys in a recipe."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class FollowerDescription:
 
     @property
     def offset(self) -> float:
-        """How far from the shaft its line of travel passes, mm; 0 on an arm."""
+        """Distance of its line of travel from the shaft, mm, with a sign; 0 on an arm."""
         return self.guide.offset if isinstance(self.guide, Translating) else 0.0
 
     @property
@@ -53,12 +53,12 @@ class FollowerDescription:
 
     @property
     def lever(self) -> float:
-        """How far from the pivot a motion in radians is mm, about: the arm's length, or the pivot's distance."""
+        """Length, mm, by which a motion in rad becomes one in mm: the arm's, or the pivot's distance; 1 on a stem."""
         return 1.0 if self.arm is None else self.arm.length or self.arm.pivot
 
     @property
     def contacts(self) -> tuple[Contact[Guide, Touch], ...]:
-        """The contact, and of a yoke the opposite one."""
+        """The contact, and for a yoke the opposite one."""
         first = Contact(self.guide, self.touch)
         second = Contact(self.guide, self.touch, sense=-1, turned=math.pi)
         return (first, second) if self.yoke else (first,)
@@ -71,14 +71,14 @@ class FollowerDescription:
         if self.yoke:
             return f"yoke, {touch}"
         if self.arm is None:
-            beside = f", offset {self.offset:.6g} mm" if self.offset else ""
-            return f"{touch} on a stem{beside}{TRACKS[self.track]}"
+            offset = f", offset {self.offset:.6g} mm" if self.offset else ""
+            return f"{touch} on a stem{offset}{TRACKS[self.track]}"
         length = "" if self.arm.length is None else f" of {self.arm.length:.6g} mm"
         side = "leading" if self.arm.side == LEADING else "trailing"
         return f"{touch} on a {side} arm{length}, pivot at {self.arm.pivot:.6g} mm{TRACKS[self.track]}"
 
     def base_radius(self, position: float) -> float:
-        """Radius, mm, of the metal's circle about the shaft on which it stands at a position, mm or rad."""
+        """Radius, mm, of the circle about the shaft that the follower touches at a position, mm or rad."""
         inward = self.side * self.touch.radius
         if self.arm is None:
             return position if self.flat else math.hypot(position, self.offset) - inward
@@ -89,7 +89,7 @@ class FollowerDescription:
 
     @property
     def keys(self) -> str:
-        """The value of `cam.follower` in a recipe of kind disc, on one line."""
+        """Value of `cam.follower` in a recipe of kind disc, on one line of YAML."""
         keys = [f"kind: {KINDS[self.touch.word]}"]
         if self.touch.radius:
             keys.append(f"radius: {self.touch.radius!r}")
@@ -107,7 +107,7 @@ class FollowerDescription:
 KINDS = {Roller.word: "roller", KnifeEdge.word: "knife-edge", Shoe.word: "shoe", Flat.word: "flat"}
 
 
-def described(
+def describe_follower(
     *,
     roller: float | None,
     shoe: float | None,
@@ -119,7 +119,7 @@ def described(
     yoke: bool,
     track: Track,
 ) -> FollowerDescription:
-    """Make the follower of a call's arguments, lengths in mm; raises CallError with all that does not go together."""
+    """Follower of a call's arguments, lengths in mm; raises CallError with all arguments that do not go together."""
     touches = (roller is not None) + (shoe is not None) + flat
     if touches != 1:
         raise CallError(

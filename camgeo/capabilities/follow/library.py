@@ -1,4 +1,4 @@
-"""The motion of a contour from a program, as `camgeo follow` gives it at a terminal."""
+"""The motion that a contour gives a follower, for programs and for the command `camgeo follow`."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.capabilities.follow.follower import TRACKS, described
-from camgeo.capabilities.follow.outline import outline_of
+from camgeo.capabilities.follow.follower import TRACKS, describe_follower
+from camgeo.capabilities.follow.outline import read_outline
 from camgeo.common.arguments import is_a, number_of, path_of, spelled, text_of, whole_of
 from camgeo.common.errors import CallError, with_packages
 from camgeo.common.rounding import upward
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kin.follower.measured import MeasuredMotion
     from kin.numeric.arrays import Array
 
-READING = 0.01  # mm, to which a dwell rests and a recipe's motion keeps to the rows, where nothing is said
+READING = 0.01  # mm: by default, how flat a dwell is and how near a recipe's motion is to the rows
 STEPS = 720
 LEAST_STEPS, MOST_STEPS = 36, 100_000
 LENGTHS = 2  # numbers of a place
@@ -38,7 +38,7 @@ LENGTHS = 2  # numbers of a place
 
 @dataclass(frozen=True)
 class Rest:
-    """A dwell: shaft angles from `begin` to `end`, rad, end > begin; its level and how flat it is, mm or rad."""
+    """A dwell: shaft angles from `begin` to `end`, rad, end > begin; its level and its flatness, mm or rad."""
 
     begin: float
     end: float
@@ -51,9 +51,9 @@ class Followed:
     """The motion that a contour gives a follower, over n equal steps of the shaft; lengths in mm, angles in radians.
 
     `unit` is that of the motion: mm on a line of travel, rad on an arm. `position` (n,) is the distance of the touch
-    along the line of travel from the foot of the shaft, or the angle at the pivot between the line to the shaft and the
-    arm; `velocity` and `acceleration` (n,) are by radian of the shaft. `pressure_angle` (n,) is above 0 where the cam
-    drives a rise, `radius` (n,) the contour's radius of curvature where it is touched, negative in a hollow, 0 at a
+    along the line of travel from its point nearest to the shaft, or the angle at the pivot between the line to the
+    shaft and the arm; `velocity` and `acceleration` (n,) are by radian of the shaft. `pressure_angle` (n,) is above 0
+    where the cam drives a rise, `radius` (n,) the contour's radius of curvature there, negative in a hollow, 0 at a
     corner. `bore` is the diameter of a round hole about the shaft, `blank` that of a round outline of a ring or of a
     groove's blank; None without one.
     """
@@ -84,85 +84,85 @@ class Followed:
 
     @property
     def theta(self) -> Array:
-        """Shaft angles (n,)."""
+        """Shaft angles (n,), rad."""
         return self._motion.phi
 
     @property
     def position(self) -> Array:
-        """Position of the follower (n,)."""
+        """Position of the follower (n,), mm or rad."""
         position: Array = self._motion.rows[0]
         return position
 
     @property
     def velocity(self) -> Array:
-        """First derivative of the position by the shaft angle (n,)."""
+        """First derivative of the position by the shaft angle (n,), mm/rad or rad/rad."""
         velocity: Array = self._motion.rows[1]
         return velocity
 
     @property
     def acceleration(self) -> Array:
-        """Second derivative of the position by the shaft angle (n,)."""
+        """Second derivative of the position by the shaft angle (n,), mm/rad^2 or rad/rad^2."""
         acceleration: Array = self._motion.rows[2]
         return acceleration
 
     @property
     def pressure_angle(self) -> Array:
-        """Pressure angle (n,)."""
+        """Pressure angle (n,), rad, above 0 where the cam drives a rise."""
         return self._motion.pressure
 
     @property
     def radius(self) -> Array:
-        """Radius of curvature of the contour where it is touched (n,)."""
+        """Radius of curvature of the contour at the contact (n,), mm, negative in a hollow, 0 at a corner."""
         return self._motion.radius
 
     @property
     def breadth(self) -> tuple[float, float] | None:
-        """Least and greatest distance between a yoke's faces, or its rollers' centres; None of one contact."""
+        """Least and greatest distance between a yoke's faces, or its rollers' centres, mm; None for one contact."""
         apart = self._motion.apart
         return (-apart[1], -apart[0]) if self.follower.yoke and apart is not None else None
 
     @property
     def play(self) -> tuple[float, float] | None:
-        """Least and greatest way of a roller from flank to flank of a groove, in the motion's unit; None elsewhere."""
+        """Least and greatest play of a roller between the flanks of a groove, mm or rad; None elsewhere."""
         return None if self.follower.yoke else self._motion.apart
 
     @property
     def contact_travel(self) -> tuple[float, float] | None:
-        """Least and greatest place of contact on a flat face, from the stem's axis or the pivot's foot; else None."""
+        """Least and greatest place of contact on a flat face, mm from the stem's axis or the pivot; else None."""
         return self._motion.travel
 
     @property
     def least(self) -> tuple[float, float]:
-        """Least position, and its shaft angle."""
+        """Least position, mm or rad, and its shaft angle, rad."""
         return self._motion.least
 
     @property
     def greatest(self) -> tuple[float, float]:
-        """Greatest position, and its shaft angle."""
+        """Greatest position, mm or rad, and its shaft angle, rad."""
         return self._motion.most
 
     @property
     def lift(self) -> float:
-        """Greatest position less the least."""
+        """Greatest position less the least, mm or rad."""
         return self._motion.lift
 
     @property
     def base_radius(self) -> float:
-        """Radius of the circle about the shaft on which the follower would stand as low as it does anywhere, mm."""
+        """Radius of the circle about the shaft that the follower would touch at its least position, mm."""
         return self.follower.base_radius(self._motion.least[0])
 
     @property
     def rests(self) -> tuple[Rest, ...]:
-        """Dwells: at least 10 degrees that rest within the reading of their level."""
+        """Dwells: at least 10 degrees in which the position is within the reading of its level."""
         return tuple(Rest(*dwell) for dwell in self._motion.dwells(self._reading))
 
     @property
     def _reading(self) -> float:
-        """The reading as one of the motion: mm, or on an arm the angle that it is at the touch."""
+        """The reading in the motion's unit: mm, or on an arm the angle that it is at the contact, rad."""
         return self.reading if self.unit == "mm" else self.reading / self.follower.lever
 
     def table(self) -> str:
-        """Everything over the turn as CSV: a header, then a row a step; angles in degrees."""
+        """The motion over the turn as CSV: a header, then a row a step; lengths in mm, angles in degrees."""
         arm = self.unit == "rad"
         scale, unit = (math.degrees(1.0), "deg") if arm else (1.0, "mm")
         finite = np.where(np.isfinite(self.radius), self.radius, np.nan)
@@ -185,8 +185,8 @@ class Followed:
     def lifts(self) -> str:
         """The motion as a table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
 
-        A yoke's is over half a turn, from its position at 0, with half of what the breadth is off its middle on either
-        face.
+        That of a yoke is over half a turn, from its position at 0; a deviation of the breadth from its mean is shared
+        by both faces.
         """
         scale = 1.0 if self.unit == "mm" else math.degrees(1.0)
         theta, lift = self.theta, scale * (self.position - self._motion.least[0])
@@ -200,16 +200,16 @@ class Followed:
     def recipe(self, table: str) -> str:
         """The recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion keeps to the rows within the reading, and so does its contour to that of the file, about. Raises
-        CallError for a yoke whose breadth varies by more than two readings or whose turn is in an odd number of steps,
-        and for a ring without a round outline.
+        Its motion is within the reading of the rows, and so about is its contour of that of the file. Raises CallError
+        for a yoke whose breadth varies by more than two readings, or with an odd number of steps, and for a ring
+        without a round outline.
         """
         is_a("table", table, str, "a str")
         if not table.isprintable() or not table:
             raise CallError(f"table is the name of a file of lifts, not {spelled(table)}")
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
         about = f"The motion of {self.path.name} under a {self.follower.words}, within {self.reading:.6g} mm"
-        cam = self._yoke() if self.follower.yoke else self._disc()
+        cam = self._yoke_keys() if self.follower.yoke else self._disc_keys()
         part = {"bore": self.bore, "outer": self.blank if self.follower.track != "external" else None}
         keys = ", ".join(f"{key}: {value:.9g}" for key, value in part.items() if value is not None)
         lines = [
@@ -226,7 +226,7 @@ class Followed:
         ]
         return "\n".join(lines)
 
-    def _disc(self) -> dict[str, str]:
+    def _disc_keys(self) -> dict[str, str]:
         """Keys of a cam of kind disc, without its motion."""
         keys = {"kind": "disc", "base_radius": f"{self.base_radius:.9g}", "follower": self.follower.keys}
         if self.follower.track == "internal":
@@ -241,7 +241,7 @@ class Followed:
             keys["track"] = f"{{groove: {{clearance: {clearance:.6g}}}}}"
         return keys
 
-    def _yoke(self) -> dict[str, str]:
+    def _yoke_keys(self) -> dict[str, str]:
         """Keys of a cam for a yoke, without its motion."""
         narrow, wide = self.breadth or (0.0, 0.0)
         if wide - narrow > 2.0 * self.reading:
@@ -259,7 +259,7 @@ class Followed:
 
 
 def _quoted(text: str) -> str:
-    """A text as a double-quoted scalar of YAML."""
+    """The text as a double-quoted scalar of YAML."""
     import json
 
     return json.dumps(text, ensure_ascii=False)
@@ -284,15 +284,15 @@ def follow(
     reading: float = READING,
     steps: int = STEPS,
 ) -> Followed:
-    """Let a follower run on the contour of a drawing or a solid, and give the motion that it makes; lengths in mm.
+    """Motion of a follower that runs on the contour of a drawing or a solid; lengths in mm.
 
     The follower has a `roller` or a curved `shoe` of a radius, a roller of 0 being a knife edge, or is `flat`, perhaps
     of a `width` that is centred on the stem's axis. It is led on a line of travel that passes the shaft at `offset`, or
     on an `arm`: the distance of its pivot from the shaft, and with a round touch the length. The arm trails, or is
     `leading`. A `yoke` has a second contact opposite. By its `track` a roller runs in the opening of a ring
-    ("internal") or in a "groove", where its motion is that on the inner flank. The shaft stands `at` a place of the
-    file and turns by `rotation` under a follower that stands along x at shaft angle 0. `units` is that of a file that
-    states none. A dwell rests within `reading` of its level.
+    ("internal") or in a "groove", where its motion is that on the inner flank. The shaft is `at` a place of the file
+    and turns by `rotation`; the follower is along x at shaft angle 0. `units` is that of a file that
+    states none. A dwell is within `reading` of its level.
 
     Raises CallError for what cannot be read or does not go together, where the follower does not meet the contour, and
     where the contact leaves a face of that width.
@@ -303,7 +303,7 @@ def follow(
     lengths = {"roller": roller, "shoe": shoe, "width": width}
     touch = {name: None if value is None else number_of(name, value) for name, value in lengths.items()}
     text_of("track", track, tuple(TRACKS), "a track")
-    follower = described(
+    follower = describe_follower(
         **touch,
         flat=flat,
         offset=number_of("offset", offset),
@@ -318,23 +318,23 @@ def follow(
     place = _numbers("at", at)
     if len(place) != LENGTHS or not all(math.isfinite(value) and abs(value) <= MOST for value in place):
         raise CallError("at is the place of the shaft in the file: two lengths in mm, x and y")
-    within, count = number_of("reading", reading), whole_of("steps", steps)
-    if not 0.0 < within <= MOST:
+    level, count = number_of("reading", reading), whole_of("steps", steps)
+    if not 0.0 < level <= MOST:
         raise CallError(f"a reading is a length above 0, not {spelled(reading)}")
     if not LEAST_STEPS <= count <= MOST_STEPS:
         raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {spelled(steps)}")
     unit = None if units is None else UNIT_MM[units]
-    outline = outline_of(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
+    outline = read_outline(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
     try:
         motion = measured(outline.contour, follower.contacts, count, follower.side, outline.outer)
     except ContactError as error:
         raise CallError(f"{escaped(str(path))}: {error}") from error
-    _demand_on_face(escaped(str(path)), motion, width)
-    _demand_groove(escaped(str(path)), motion, follower)
-    return Followed(path, follower, rotation, (place[0], place[1]), unit, within, outline, motion)
+    _require_on_face(escaped(str(path)), motion, width)
+    _require_groove(escaped(str(path)), motion, follower)
+    return Followed(path, follower, rotation, (place[0], place[1]), unit, level, outline, motion)
 
 
-def _demand_on_face(name: str, motion: MeasuredMotion, width: float | None) -> None:
+def _require_on_face(name: str, motion: MeasuredMotion, width: float | None) -> None:
     """Raise CallError where the contact leaves a face of a width that is centred on the stem's axis."""
     if width is None or motion.travel is None:
         return
@@ -347,7 +347,7 @@ def _demand_on_face(name: str, motion: MeasuredMotion, width: float | None) -> N
         )
 
 
-def _demand_groove(name: str, motion: MeasuredMotion, follower: FollowerDescription) -> None:
+def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescription) -> None:
     """Raise CallError where a roller has more play between two flanks, or overlaps them by more, than its diameter."""
     if follower.track != "groove" or motion.apart is None:
         return
@@ -360,12 +360,13 @@ def _demand_groove(name: str, motion: MeasuredMotion, follower: FollowerDescript
 
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:
+    """Numbers of an argument; raises CallError for another thing than a tuple of them."""
     is_a(name, values, tuple, "a tuple of numbers")
     return tuple(number_of(name, value) for value in values) if isinstance(values, tuple) else ()
 
 
-def shown(followed: Followed) -> Report:
-    """Judge the file by the recipe of its motion, with a page; raises RecipeErrors where there is no such cam."""
+def judged_by_recipe(followed: Followed) -> Report:
+    """Report, with a page, of the file judged by its motion's recipe; RecipeErrors or CallError where there is none."""
     import tempfile
     from pathlib import Path
 

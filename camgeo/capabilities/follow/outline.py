@@ -1,4 +1,4 @@
-"""The contours of a file on which a follower runs, about the shaft, in mm and as if that turned clockwise."""
+"""Reading the contours of a file on which a follower runs, in mm about the shaft, as if that turned clockwise."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ DEEPEST = {"external": 1, "internal": 1, "groove": 3}  # a groove's bore lies wi
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """What a follower runs on.
+    """The contours on which a follower runs, and round contours beside them.
 
     contour  the metal's contour, the opening of a ring, or the inner flank of a groove
     outer    outer flank of a groove; None of any other track
@@ -42,8 +42,8 @@ class Outline:
     blank: float | None = None
 
 
-def outline_of(path: Path, units: float | None, at: tuple[float, float], track: Track, *, mirrored: bool) -> Outline:
-    """Read the contours of a file about the shaft, which stands at a place in mm.
+def read_outline(path: Path, units: float | None, at: tuple[float, float], track: Track, *, mirrored: bool) -> Outline:
+    """Outline in a file about the shaft, which is `at` a place of the file, mm.
 
     `units`, mm, is that of a file that states none. A follower runs on the outermost closed contour round the shaft
     that is no circle about it, in a ring on the innermost one, in a groove between the two outermost. Raises CallError
@@ -58,14 +58,14 @@ def outline_of(path: Path, units: float | None, at: tuple[float, float], track: 
     record = format_of(path)
     if large := oversize(path, record.name):
         raise CallError(f"{name}: {large}")
-    read = _drawn if record.contents == "drawing" else _cut
+    read = _read_drawing if record.contents == "drawing" else _read_section
     try:
         chains = read(path, units, track)
     except ReadError as error:
         remedy = "; of a groove give track groove" if error.reason == "island" and track != "groove" else ""
         raise CallError(f"{name}: {error.message}{remedy}") from error
-    moved = [chain.contour.moved(-at[0], -at[1]) for chain in chains]
-    contours = tracks(moved)
+    shifted = [chain.contour.moved(-at[0], -at[1]) for chain in chains]
+    contours = tracks(shifted)
     where = f"the shaft at {at[0]:.9g}, {at[1]:.9g} mm"
     if not contours:
         raise CallError(f"{name}: no closed contour goes round {where}{_remedy(chains)}")
@@ -73,27 +73,30 @@ def outline_of(path: Path, units: float | None, at: tuple[float, float], track: 
         raise CallError(f"{name}: one closed contour goes round {where}, and a groove has two flanks: leave track out")
     outer, inner = (contours[0], contours[1]) if track == "groove" else (None, contours[-1])
     contour = contours[0] if track == "external" else inner
-    circles = [(circle_about(other), abs(other.area)) for other in moved if goes_round(other) and other is not contour]
+    circles = [
+        (circle_about(other), abs(other.area)) for other in shifted if goes_round(other) and other is not contour
+    ]
     bores = [width for width, area in circles if width is not None and area < abs(contour.area)]
     blanks = [width for width, area in circles if width is not None and area > abs(contour.area)]
-    turned = [other if other is None or not mirrored else other.mirrored() for other in (contour, outer)]
-    return Outline(turned[0] or contour, turned[1], max(bores, default=None), max(blanks, default=None))
+    clockwise = [other if other is None or not mirrored else other.mirrored() for other in (contour, outer)]
+    return Outline(clockwise[0] or contour, clockwise[1], max(bores, default=None), max(blanks, default=None))
 
 
-def _drawn(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+    """Closed chains of a drawing, mm; raises CallError without a unit, or with two."""
     drawing = read_drawing(path, deepest=DEEPEST[track])
     if drawing.units_mm is None:
         if units is None:
             raise CallError(f"{escaped(str(path))}: the drawing states no unit: give units")
         return scaled(drawing.chains, units)
-    _demand_same(path, units, drawing.units_mm)
+    _require_same_unit(path, units, drawing.units_mm)
     return drawing.chains
 
 
-def _cut(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+def _read_section(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
     """Chains of a solid's section: that of the plain disc, or of a groove the one below the top face."""
     if format_of(path).units:
-        _demand_same(path, units, None)
+        _require_same_unit(path, units, None)
     solid = read_solid(path, (), units, DEEPEST[track])
     if track != "groove" or len(solid.faces) < 2:
         return solid.chains
@@ -101,14 +104,14 @@ def _cut(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
     return read_solid(path, (height,), units, DEEPEST[track]).section(height).chains
 
 
-def _demand_same(path: Path, units: float | None, stated: float | None) -> None:
-    """Raise CallError where a file states its unit, and another one is given."""
+def _require_same_unit(path: Path, units: float | None, stated: float | None) -> None:
+    """Raise CallError where a file states its unit, and the call another one."""
     if units is not None and units != stated:
         raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
 
 
 def _remedy(chains: Sequence[Chain]) -> str:
-    """Offer the middles of round holes for the shaft."""
+    """Remedy: the middles of round holes as places of the shaft."""
     boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
     middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]
     places = [f"{x:.6g},{y:.6g}" for hole, x, y in middles if circle_about(hole, x, y) is not None]

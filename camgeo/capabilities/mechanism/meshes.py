@@ -72,7 +72,7 @@ def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh
 
 
 def _stacks(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
-    """Indices of outlines from one height to another, upward, equal ones directly above each other in one list.
+    """Indices of walls (outline, lower z, upper z), upward; equal outlines directly above each other in one list.
 
     Each level's corners would be rounded by itself where walls cross, and leave slivers when they are joined.
     """

@@ -1,4 +1,4 @@
-"""A second opinion on files: what ezdxf, shapely, trimesh and manifold3d say of them, beside the judge's own checks."""
+"""A second opinion on files: checks by ezdxf, shapely, trimesh and manifold3d, beside the judge's own."""
 
 from camgeo.registry.label import Label
 

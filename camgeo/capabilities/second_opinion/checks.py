@@ -1,4 +1,4 @@
-"""The checks of a second opinion: which library is asked about which file, and what would let each hold."""
+"""The checks of a second opinion: which library judges which file, and the remedies of failed checks."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from camgeo.registry.formats import Format
 
 AUDITED = frozenset({"dxf"})  # formats for which ezdxf has an auditor
-SHOWN = {"csv": "a table has no contour", "glb": "a GLB is to look at", "html": "a page is to look at"}
+REASONS = {"csv": "a table has no contour", "glb": "a GLB is to look at", "html": "a page is to look at"}
 
 
 def libraries(record: Format) -> frozenset[str]:
-    """Names of the libraries that are asked about files of a format."""
+    """Names of the libraries that judge files of a format; none for a format without a contour."""
     if not record.contour or not record.part:
         return frozenset()
     meshed = {"trimesh"} if record.numbers is not None else set()
@@ -27,48 +27,48 @@ def libraries(record: Format) -> frozenset[str]:
     return frozenset({"shapely", *meshed, *audited})
 
 
-def silence(record: Format) -> str:
-    """Why no library is asked about files of a format; empty where one is."""
+def reason_without(record: Format) -> str:
+    """Why no library judges files of a format; empty where one does."""
     if libraries(record):
         return ""
     if record.program:
         return "no library of these reads a milling program"
-    return SHOWN.get(record.name, "it holds no contour that is judged")
+    return REASONS.get(record.name, "it holds no contour that is judged")
 
 
-def _seen_by(library: str) -> OfFile:
-    """Whether a library is asked about a file; one of all bodies is not the cam's alone."""
+def _judged_by(library: str) -> OfFile:
+    """Predicate whether a library judges a file; a file of all bodies is left out."""
 
-    def seen(_: Scene, file: FileRequest) -> bool:
+    def judged(_: Scene, file: FileRequest) -> bool:
         return library in libraries(file.format) and not file.united
 
-    return seen
+    return judged
 
 
-def exported_anew(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell of the file that the recipe itself makes."""
+def own_export(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
+    """Remedy: the file that the recipe itself makes."""
     return "the file that `camgeo export` writes from this recipe"
 
 
 def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell of the tolerance that a contour keeps, measured between polygons within a tenth of the file's of it."""
-    anew = exported_anew(check, report, recipe)
+    """Remedy: the tolerance that the contour keeps, measured as polygons within a tenth of it, or the own export."""
+    export = own_export(check, report, recipe)
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
     if check["value"] is None or tolerance is None:
-        return anew
-    return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
+        return export
+    return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {export}"
 
 
-_DRAWN, _MESHED = _seen_by("shapely"), _seen_by("trimesh")
-AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_seen_by("ezdxf"), remedy=exported_anew)
-CONTOUR_VALID = Declared("shapely:valid", ("faults",), of_file=_DRAWN, remedy=exported_anew)
-CONTOUR_AREA = Declared("shapely:area", ("mm^2",), of_file=_DRAWN, field="export.tolerance", remedy=exported_anew)
+_DRAWN, _MESHED = _judged_by("shapely"), _judged_by("trimesh")
+AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_judged_by("ezdxf"), remedy=own_export)
+CONTOUR_VALID = Declared("shapely:valid", ("faults",), of_file=_DRAWN, remedy=own_export)
+CONTOUR_AREA = Declared("shapely:area", ("mm^2",), of_file=_DRAWN, field="export.tolerance", remedy=own_export)
 CONTOUR_DISTANCE = Declared("shapely:distance", ("mm",), of_file=_DRAWN, field="export.tolerance", remedy=wider)
-MESH_WATERTIGHT = Declared("trimesh:watertight", ("faults",), of_file=_MESHED, remedy=exported_anew)
-MESH_WINDING = Declared("trimesh:winding", ("faults",), of_file=_MESHED, remedy=exported_anew)
-MESH_BODIES = Declared("trimesh:bodies", ("bodies",), of_file=_MESHED, remedy=exported_anew)
-MESH_VOLUME = Declared("trimesh:volume", ("mm^3",), of_file=_MESHED, field="part.thickness", remedy=exported_anew)
-MESH_STATUS = Declared("manifold3d:status", ("faults",), of_file=_MESHED, remedy=exported_anew)
+MESH_WATERTIGHT = Declared("trimesh:watertight", ("faults",), of_file=_MESHED, remedy=own_export)
+MESH_WINDING = Declared("trimesh:winding", ("faults",), of_file=_MESHED, remedy=own_export)
+MESH_BODIES = Declared("trimesh:bodies", ("bodies",), of_file=_MESHED, remedy=own_export)
+MESH_VOLUME = Declared("trimesh:volume", ("mm^3",), of_file=_MESHED, field="part.thickness", remedy=own_export)
+MESH_STATUS = Declared("manifold3d:status", ("faults",), of_file=_MESHED, remedy=own_export)
 SECOND_OPINIONS = (
     AUDIT,
     CONTOUR_VALID,
@@ -80,4 +80,4 @@ SECOND_OPINIONS = (
     MESH_VOLUME,
     MESH_STATUS,
 )
-"""All of them, in the order in which they are foreseen."""
+"""All checks of a second opinion, in the order of a report."""

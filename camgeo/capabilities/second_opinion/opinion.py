@@ -1,8 +1,8 @@
-"""A second opinion on files: what ezdxf, shapely, trimesh and manifold3d say of them, as checks beside the judge's own.
+"""A second opinion on files: checks by ezdxf, shapely, trimesh and manifold3d, beside the judge's own.
 
-Whoever receives a file opens it with these libraries. They are imported here, when a second opinion is wanted, and
-nowhere else: reading and judging do without them (docs/architecture.md). The contour comes from kin's reader, the exact
-one from the design as a polygon with a proved bound; meshes are read by trimesh itself.
+Other programs open files with these libraries. They are imported here alone, when a second opinion is requested:
+reading and judging do without them (docs/architecture.md). The contour comes from kin's reader, the exact one from the
+design as a polygon with a proved bound; meshes are read by trimesh itself.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from camgeo.capabilities.second_opinion.checks import (
     MESH_WATERTIGHT,
     MESH_WINDING,
     SECOND_OPINIONS,
-    silence,
+    reason_without,
 )
 from camgeo.checks.declared import READABLE
 from camgeo.common.errors import SurroundingsError
@@ -53,18 +53,18 @@ if TYPE_CHECKING:
 
 MOST_NAMED = 5  # faults named in a message
 MOST_TRIANGLES = 200_000  # trimesh and manifold3d take seconds beyond
-SHARE = 0.1  # of the tolerance, within which exact contour and file are made polygons
+SHARE = 0.1  # of the tolerance, within which exact contour and file become polygons
 NOTHING = "there is nothing to measure, or to hold it against"
 UNMADE = "a check of the exact contour fails"
 LIBRARIES = ("shapely", "trimesh", "scipy.sparse", "networkx", "lxml", "manifold3d")
 
 
 class _Skip(Exception):  # noqa: N818 - no error: a row that is left out, with the reason
-    """Leaves a library's rows on one file out."""
+    """A library's rows on one file are left out, for the reason in its message."""
 
 
 def demand_libraries(recipe: Recipe) -> None:
-    """Import the libraries; raises SurroundingsError, saying how to get it, where one is missing."""
+    """Import the libraries; raises SurroundingsError, with the command that installs it, where one is missing."""
     from importlib import import_module
 
     from kin.read.home import prepare_home
@@ -80,20 +80,20 @@ def demand_libraries(recipe: Recipe) -> None:
 
 
 def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Sequence[Check], clock: Clock) -> Results:
-    """Ask the libraries about files that were judged, with `checks` as the outcome.
+    """Checks of the libraries on files that were judged with `checks`, and the rows left out.
 
-    A file that kin refuses to read is left out: what would cost without bound is refused there.
+    A file that kin refuses to read is left out, as it refuses files that would take without bound.
     """
     if not design.contours:
         return Results(skipped=[(f"second opinion[{file.path.name}]", UNMADE) for file in files])
     job = Job.of(recipe, design, clock)
     unread = {check.file for check in checks if check.name == READABLE.name and not check.ok}
     scene = scene_of(recipe, design)
-    every: list[Check] = []
+    opinions: list[Check] = []
     skipped: list[Skipped] = []
     for file in files:
         name = file.path.name
-        why = silence(file.request.format)
+        why = reason_without(file.request.format)
         if file.body != "cam" or file.request.united:
             why = "it holds other bodies than the cam"
         elif name in unread:
@@ -103,22 +103,22 @@ def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Se
             continue
         due = [row.name for row in SECOND_OPINIONS if row.of_file is not None and row.of_file(scene, file.request)]
         with clock.stage("second opinion"):
-            for libraries, ask in ASKED:
+            for libraries, judge in JUDGES:
                 rows = [row for row in due if row.partition(":")[0] in libraries]
                 why = NOTHING
                 try:
-                    with warnings.catch_warnings():  # of a volume of 0 and the like, which the rows tell
+                    with warnings.catch_warnings():  # of a volume of 0 and the like, which the rows report
                         warnings.simplefilter("ignore")
-                        made = ask(job, file) if rows else []
-                except _Skip as left:
-                    made, why = [], str(left)
-                every += [about(check, name) for check in made]
-                skipped += [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in made}]
-    return Results(checks=every, skipped=skipped)
+                        verdicts = judge(job, file) if rows else []
+                except _Skip as skip:
+                    verdicts, why = [], str(skip)
+                opinions += [about(check, name) for check in verdicts]
+                skipped += [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in verdicts}]
+    return Results(checks=opinions, skipped=skipped)
 
 
-def _of_audit(_: Job, file: FileResult) -> list[Check]:
-    """Have ezdxf's auditor look at a DXF: what it finds wrong counts, also where it would mend it."""
+def _audit(_: Job, file: FileResult) -> list[Check]:
+    """Check of ezdxf's auditor on a DXF: the number of faults that it reports, also of those that it would mend."""
     from kin.read.drawing.dxf import damage_reported, parsed
 
     try:
@@ -134,50 +134,51 @@ def _of_audit(_: Job, file: FileResult) -> list[Check]:
 # --- shapely ----------------------------------------------------------------------------------------------------------
 
 
-def _of_contour(job: Job, file: FileResult) -> list[Check]:
-    """Hold each contour as read, cut into a polygon, against the exact one as a polygon: valid, area, distance."""
-    read = {one.name: one.contour for one in file.surfaces if one.contour is not None}
+def _compare_contours(job: Job, file: FileResult) -> list[Check]:
+    """Checks of each contour of a file against the exact one, both as polygons: valid, area, distance."""
+    read = {surface.name: surface.contour for surface in file.surfaces if surface.contour is not None}
     if not read or file.tolerance is None:
         raise _Skip("no contour could be read from the file")
     job, failures = job.of_file(file.request)
     if failures:
         raise _Skip("there is no exact contour to compare with")
     fits = {surface.name: fit for (surface, _), fit in zip(job.design.contours, job.fits, strict=True)}
-    found = []
+    checks: list[Check] = []
     for name, contour in read.items():
         try:
-            checks = _held_by_shapely(fits[name], contour, file.tolerance)
+            rows = _compare_polygons(fits[name], contour, file.tolerance)
         except (ToleranceError, ValueError) as error:
             raise _Skip(f"no polygon within a tenth of the tolerance: {error}") from error
-        found += [replace(check, surface=name) for check in checks]
-    return found
+        checks += [replace(check, surface=name) for check in rows]
+    return checks
 
 
-def _held_by_shapely(fit: Fits, contour: Contour, tolerance: float) -> list[Check]:
+def _compare_polygons(fit: Fits, contour: Contour, tolerance: float) -> list[Check]:
+    """Checks of a contour as read against the fit of the exact one, by shapely."""
     import shapely
 
     exact = fit.within("polyline", SHARE * tolerance)
     if not isinstance(exact, Polygon):
         raise TypeError("the exact contour is compared as a polygon")
     drawn = polygon_of(contour, SHARE * tolerance)
-    shape, meant = shapely.Polygon(drawn), shapely.Polygon(exact.vertices)
-    area, reach = float(meant.area), float(meant.length)
+    shape, nominal = shapely.Polygon(drawn), shapely.Polygon(exact.vertices)
+    area, length = float(nominal.area), float(nominal.length)
     reason = "" if shape.is_valid else str(shapely.is_valid_reason(shape))
-    off = abs(float(shape.area) - area)
-    told = f"{float(shape.area):.9g} mm^2, of the exact contour {area:.9g}"
-    away = max(_farthest(drawn, exact.vertices), _farthest(exact.vertices, drawn))
-    where = f"at ({away.x:.6g}, {away.y:.6g}) mm; both as polygons, each within a tenth of the tolerance"
+    error = abs(float(shape.area) - area)
+    areas = f"{float(shape.area):.9g} mm^2, of the exact contour {area:.9g}"
+    farthest = max(_farthest(drawn, exact.vertices), _farthest(exact.vertices, drawn))
+    place = f"at ({farthest.x:.6g}, {farthest.y:.6g}) mm; both as polygons, each within a tenth of the tolerance"
     return [
         at_most(CONTOUR_VALID.name, 0 if shape.is_valid else 1, 0, "faults", detail=reason),
-        at_most(CONTOUR_AREA.name, off, 2.0 * reach * tolerance, "mm^2", detail=told),
-        at_most(CONTOUR_DISTANCE.name, away.distance, (1.0 + 2.0 * SHARE) * tolerance, "mm", detail=where),
+        at_most(CONTOUR_AREA.name, error, 2.0 * length * tolerance, "mm^2", detail=areas),
+        at_most(CONTOUR_DISTANCE.name, farthest.distance, (1.0 + 2.0 * SHARE) * tolerance, "mm", detail=place),
     ]
 
 
 def polygon_of(contour: Contour, tolerance: float) -> Array:
     """Vertices (n, 2) of a polygon within `tolerance` mm of a contour: splines as arcs, arcs as equal chords.
 
-    The half of the tolerance is for each. Raises ValueError where more than a million chords are needed.
+    Half of the tolerance is for each. Raises ValueError where more than MOST_PIECES chords are needed.
     """
     arcs, _ = contour.as_arcs(0.5 * tolerance) if contour.beziers.count else contour.as_arcs()
     bent = np.abs(arcs.curvature)
@@ -190,32 +191,36 @@ def polygon_of(contour: Contour, tolerance: float) -> Array:
     return vertices
 
 
-class _Away(NamedTuple):
+class _Distance(NamedTuple):
+    """Distance from a polygon, mm, of a point at x, y."""
+
     distance: float
     x: float
     y: float
 
 
-def _farthest(points: Array, polygon: Array) -> _Away:
-    """The vertex or edge's middle of one polygon that is farthest from another's edges."""
+def _farthest(points: Array, polygon: Array) -> _Distance:
+    """Greatest distance from a polygon's edges of the vertices and edges' middles of another."""
     import shapely
 
-    tried = np.concatenate([points, 0.5 * (points + np.roll(points, -1, axis=0))])
+    candidates = np.concatenate([points, 0.5 * (points + np.roll(points, -1, axis=0))])
     edges = shapely.STRtree(shapely.linestrings(np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1)))
-    (place, _), distance = edges.query_nearest(shapely.points(tried), return_distance=True, all_matches=False)
+    (place, _), distance = edges.query_nearest(shapely.points(candidates), return_distance=True, all_matches=False)
     k = int(np.argmax(distance))
-    return _Away(float(distance[k]), *map(float, tried[place[k]]))
+    return _Distance(float(distance[k]), *map(float, candidates[place[k]]))
 
 
 # --- trimesh and manifold3d -------------------------------------------------------------------------------------------
 
 
-def _of_mesh(job: Job, file: FileResult) -> list[Check]:
-    """Have trimesh read a mesh: closed, turned one way, one body, of the exact volume; and manifold3d take it."""
+def _judge_mesh(job: Job, file: FileResult) -> list[Check]:
+    """Checks of trimesh on a mesh: watertight, winding, bodies and volume; and the status by manifold3d."""
     import trimesh
 
+    from kin.read.files import read_meshes
+
     try:
-        count = _triangles(file)
+        count = sum(len(mesh.corners) for mesh in read_meshes(file.path))  # kin's reader is quick
     except ReadError as error:
         raise _Skip(f"the file cannot be read: {error.message}") from error
     if count > MOST_TRIANGLES:
@@ -229,46 +234,42 @@ def _of_mesh(job: Job, file: FileResult) -> list[Check]:
         return [failed(MESH_WATERTIGHT.name, f"trimesh does not read it: {str(error) or type(error).__name__}")]
     inward = turned and float(read.volume) <= 0.0
     return [
-        _held(MESH_WATERTIGHT.name, closed, "not every edge has two triangles"),
-        _held(MESH_WINDING.name, turned and not inward, "the triangles face inward" if inward else "they differ"),
+        _no_fault(MESH_WATERTIGHT.name, closed, "not every edge has two triangles"),
+        _no_fault(MESH_WINDING.name, turned and not inward, "the triangles face inward" if inward else "they differ"),
         at_most(MESH_BODIES.name, bodies, len(_discs_of(job, file)), "bodies"),
         *_volume(job, file, read),
-        _held(MESH_STATUS.name, status == "NoError", status),
+        _no_fault(MESH_STATUS.name, status == "NoError", status),
     ]
 
 
 def _status(read: Any) -> str:  # noqa: ANN401 - trimesh has no types
-    """What manifold3d says of a mesh."""
+    """Status of a mesh by manifold3d: NoError, or its word for the fault."""
     import manifold3d
 
     points, triangles = np.asarray(read.vertices, np.float64), np.asarray(read.faces, np.uint64)
     return str(manifold3d.Manifold(manifold3d.Mesh64(points, triangles)).status()).rpartition(".")[2]
 
 
-def _held(name: str, holds: bool, why: str) -> Check:
+def _no_fault(name: str, holds: bool, why: str) -> Check:
+    """Check that there is no fault, with the reason where there is one."""
     return at_most(name, 0 if holds else 1, 0, "faults", detail="" if holds else why)
 
 
-def _triangles(file: FileResult) -> int:
-    """Count a mesh's triangles by kin's reader, which is quick."""
-    from kin.read.files import read_meshes
-
-    return sum(len(one.corners) for one in read_meshes(file.path))
-
-
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
-    """Hold trimesh's volumes against the exact ones, as the judge holds its own; of several discs each body's."""
+    """Checks of the volume by trimesh against the exact one, for each disc; none without a unit or tolerance."""
     from kin.judge.volume import layers_volume_check, volume_check
 
     mm, tolerance = file.units, file.tolerance
     parts = _discs_of(job, file)
-    bodies = [read] if len(parts) == 1 else sorted(read.split(only_watertight=False), key=lambda one: one.bounds[0][2])
+    bodies = [read]
+    if len(parts) > 1:
+        bodies = sorted(read.split(only_watertight=False), key=lambda body: body.bounds[0][2])
     if mm is None or tolerance is None or len(bodies) != len(parts):
         return []
     checks = []
     for body, part in zip(bodies, parts, strict=True):
         names, volume = {surface.name for surface in part.surfaces}, mm**3 * float(body.volume)
-        contours = [one.contour for one in file.surfaces if one.name in names and one.contour is not None]
+        contours = [s.contour for s in file.surfaces if s.name in names and s.contour is not None]
         if not contours or part.thickness is None:
             continue
         if part.layers:
@@ -280,15 +281,15 @@ def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN4
 
 
 def _discs_of(job: Job, file: FileResult) -> tuple[PartIntent, ...]:
-    """The discs that a file holds, as kin is given them."""
+    """The discs that a file holds, as the judge compares them."""
     job, _ = job.of_file(file.request)
     parts = shaft_of_file(job.recipe, job.design, file.request.kind).parts
     return parts if file.disc is None else (parts[file.disc],)
 
 
-ASKED: tuple[tuple[frozenset[str], Callable[[Job, FileResult], list[Check]]], ...] = (
-    (frozenset({"ezdxf"}), _of_audit),
-    (frozenset({"shapely"}), _of_contour),
-    (frozenset({"trimesh", "manifold3d"}), _of_mesh),
+JUDGES: tuple[tuple[frozenset[str], Callable[[Job, FileResult], list[Check]]], ...] = (
+    (frozenset({"ezdxf"}), _audit),
+    (frozenset({"shapely"}), _compare_contours),
+    (frozenset({"trimesh", "manifold3d"}), _judge_mesh),
 )
-"""Libraries, and what makes their rows of a file."""
+"""Libraries, and the function that gives their checks of a file."""

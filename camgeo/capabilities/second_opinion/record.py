@@ -1,4 +1,4 @@
-"""What a second opinion adds to a run that is called with its option: checks of files, and their declarations."""
+"""Record of the second opinion: its checks, and the functions that a run with its option calls."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class _CentredCam(NamedTuple):
 
     @staticmethod
     def missing(count: int) -> _CentredCam:
-        """A cam that does not exist."""
+        """Entry for a cam that does not exist: nan, with the fault IMPOSSIBLE."""
         return _CentredCam(np.nan, np.nan, np.full((3, count), np.nan), smooth=False, fault=IMPOSSIBLE)
 
     @staticmethod

@@ -164,6 +164,7 @@ class Evaluator:
 
     @cached_property
     def _by_words(self) -> dict[tuple[float, ...], Evaluator | None]:
+        """Evaluators made so far by `_with_words`."""
         return {}
 
     def _evaluate_by_words(self, values: Array) -> FigureTable:
@@ -191,7 +192,7 @@ class Evaluator:
 
     @property
     def estimator(self) -> Screen | None:
-        """The screen, where figures are to be estimated and can be."""
+        """The screen, where figures are to be estimated and can be; else None."""
         screen = self.screen if self.screened else ""
         return None if isinstance(screen, str) else screen
 
@@ -310,7 +311,7 @@ class Evaluator:
         return index, self._dwells(motion) if index.size else {}
 
     def _keep(self, index: Indices, motion: Motion, figures: dict[str, Array], reason: Codes) -> tuple[Indices, Motion]:
-        """Those of the designs that have no fault so far and keep the limits, and their motion."""
+        """Indices of the designs without a fault so far that keep the limits, and their motion; marks the others."""
         part = reason[index]
         self._mark_broken({name: column[index] for name, column in figures.items()}, part)
         reason[index] = part

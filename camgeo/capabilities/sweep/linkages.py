@@ -320,7 +320,7 @@ class SliderLoop(CouplerLoop):
 
     @cached_property
     def root(self) -> Array:
-        """Root of near: D_x."""
+        """D_x, mm: the signed root of `near`."""
         return self.signed_root(self.near)
 
     @property

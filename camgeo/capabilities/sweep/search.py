@@ -226,6 +226,7 @@ def _polish(polish: Polish, task: Task, design: Best) -> Best:
 
 
 def _by_path(task: Task, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
+    """Values of a design by the paths of their fields."""
     return {axis.path: float(value) for axis, value in zip(task.plan.axes, row, strict=True)}
 
 

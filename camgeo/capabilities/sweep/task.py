@@ -65,7 +65,7 @@ class Task:
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
-        """Figures of every design: those that cost little, and the others where they rank or limit.
+        """Names of the figures of every design: those that cost little, and the others where they rank or limit.
 
         So limits on cheap figures leave what was computed as it is. Designs with a linkage that are made one by one get
         all, which then cost next to nothing.
@@ -78,12 +78,12 @@ class Task:
 
     @property
     def _needed_figures(self) -> set[str]:
-        """Figures that rank or limit."""
+        """Names of the figures that rank or limit."""
         return {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
 
     @property
     def _estimated_figures(self) -> tuple[str, ...]:
-        """Figures that can be estimated, and those that must be, as they rank or limit."""
+        """Names of the figures that can be estimated, and those that must be, as they rank or limit."""
         names = {*estimable_figures(self.recipe), *self._needed_figures}
         return tuple(name for name in self.all_figures if name in names)
 
@@ -116,7 +116,7 @@ class Task:
 
     @property
     def all_figures(self) -> tuple[str, ...]:
-        """Figures that the best designs are given: those that the recipe has with each word."""
+        """Names of the figures of the best designs: those that the recipe has with each word."""
         names = [figure_names(recipe) for recipe in (self.recipe, *self.variants)]
         return tuple(name for name in names[0] if all(name in others for others in names))
 

@@ -37,7 +37,7 @@ class Samples(NamedTuple):
 
 
 class Windows(NamedTuple):
-    """Longest window of each of m functions over each of a abscissae, (a, m): first node, and number of whole cells."""
+    """Longest windows of m functions over each abscissa, (a, m): first node, and number of whole cells."""
 
     start: Indices
     cells: Indices

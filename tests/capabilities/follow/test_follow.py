@@ -13,7 +13,7 @@ from support.heavy import ezdxf
 from support.places import RECIPES
 
 import camgeo
-from camgeo.capabilities.follow.library import shown
+from camgeo.capabilities.follow.library import judged_by_recipe
 from camgeo.cli.exit_status import OK, WRONG
 from camgeo.cli.main import main
 from kin.contour.about import tracks
@@ -211,7 +211,7 @@ def test_the_shaft_stands_where_the_call_says(tmp_path: Path) -> None:
     followed = camgeo.follow(moved, flat=True, at=(100.0, 40.0))
     np.testing.assert_allclose(followed.position, 20.0 + 5.0 * np.cos(followed.theta), atol=2e-4)
     with pytest.raises(camgeo.CallError, match="move the shaft there, or leave page out"):
-        shown(followed)
+        judged_by_recipe(followed)
 
 
 @pytest.mark.thin(2)
