@@ -8,13 +8,13 @@ from functools import reduce
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.capabilities.sheet.dxf import annotation
-from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed, free, notes_at, title_block
-from camgeo.capabilities.sheet.lettering import unknown, wrapped
+from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed_page, free, notes_at, title_block
+from camgeo.capabilities.sheet.lettering import unknown, wrap
 from camgeo.capabilities.sheet.options import Sheet, build_sheet
-from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, table_of, table_pages
-from camgeo.capabilities.sheet.part import Drawn, loops_of, number
+from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, polar_table, table_pages
+from camgeo.capabilities.sheet.part import Drawn, disc_loops, number
 from camgeo.capabilities.sheet.pdf import write_pdf
-from camgeo.capabilities.sheet.views import NoRoomError, Tolerance, draw_views, laid_out, sizes_of
+from camgeo.capabilities.sheet.views import NoRoomError, Tolerance, disc_sizes, draw_views, lay_out
 from camgeo.fit.bound import Bound
 from camgeo.formats.dxf import write_dxf
 from camgeo.measures.file_result import FileResult
@@ -45,12 +45,12 @@ def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
     paths = [path.with_name(name_of_disc(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
     pairs = enumerate(zip(jobs, paths, strict=True))
     sheet = build_sheet(request.own)
-    drawings = [_made(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]
+    drawings = [_make_sheet(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]
     judged = drawings[0] if len(drawings) == 1 else run.job.closed(ARCS, drawings)
     return Made((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
 
 
-def _made(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> Made:
+def _make_sheet(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> Made:
     recipe, field = run.recipe, f"{run.recipe.field_of(request)}.sheet"
     name = recipe.name if len(run.design.discs) == 1 else f"{recipe.name}, disc {rank + 1}"
     sheet = sheet if sheet.title else replace(sheet, words=tuple({**sheet.texts, "title": name}.items()))
@@ -61,7 +61,7 @@ def _made(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet,
     with job.refusals(ARCS), job.clock.stage("sheet"):
         contours = job.outlines("arcs", job.tolerance(ARCS))
         outlines = [*contours_of(job.design, contours), *rim_of(job.body), *openings_of(job.body)]
-        drawn = Drawn(loops_of(outlines, job.body, len(contours)), job.body, recipe.part, recipe.rotation == "ccw")
+        drawn = Drawn(disc_loops(outlines, job.body, len(contours)), job.body, recipe.part, recipe.rotation == "ccw")
         pages = _pages(run, job, sheet, drawn, tolerance=tolerance, field=field, rank=rank)
         write_pdf(path, pages.all, sheet.title)
         drawing = path.with_suffix(".dxf")
@@ -109,18 +109,18 @@ class Pages(NamedTuple):
 
 def _pages(run: Run, job: Job, sheet: Sheet, drawn: Drawn, *, tolerance: Tolerance, field: str, rank: int) -> Pages:
     recipe, contours = run.recipe, job.design.contours
-    sizes = sizes_of(drawn, _base(job), tolerance)
+    sizes = disc_sizes(drawn, _base(job), tolerance)
     names = [(surface.name if len(contours) > 1 else "", contour) for surface, contour in contours]
-    table = table_of(names, sheet.step, ccw=drawn.ccw)
+    table = polar_table(names, sheet.step, ccw=drawn.ccw)
     last = full_size(drawn)
     notes = _notes(drawn, recipe, wide=notes_at(sheet.paper)[2], full=last is not None)
     area = free(sheet.paper, block=True, notes=LINE * len(notes) + 6.0)
     sense = 1.0 if sheet.projection == "first" else -1.0
     try:
-        layout = laid_out(drawn, sizes, area, sheet.scale, sense)
+        layout = lay_out(drawn, sizes, area, sheet.scale, sense)
     except NoRoomError as error:
         raise _no_room(recipe, sheet, field, error) from error
-    first = framed("Part", sheet.paper)
+    first = framed_page("Part", sheet.paper)
     draw_views(first, drawn, sizes, layout)
     left, low, _ = notes_at(sheet.paper)
     for k, note in enumerate(reversed(notes)):
@@ -169,7 +169,7 @@ def _mass(run: Run, rank: int) -> str:
 
 
 def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str]:
-    """What stands in words on the first page."""
+    """Notes on the first page, in words."""
     body, part = drawn.body, drawn.part
     sense = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
     notes = [
@@ -186,4 +186,4 @@ def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str
         notes.append("The groove is milled from the upper face; both flanks are contours of the table.")
     if not full:
         notes.append("No page at 1 : 1: the part is larger than A0.")
-    return [line for note in notes for line in wrapped(note, wide)]
+    return [line for note in notes for line in wrap(note, wide)]

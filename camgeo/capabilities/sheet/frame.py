@@ -66,8 +66,8 @@ class Facts(NamedTuple):
     pages: int
 
 
-def framed(name: str, paper: str) -> Page:
-    """Give an empty page with its frame and the marks of its middles."""
+def framed_page(name: str, paper: str) -> Page:
+    """An empty page with its frame and centring marks."""
     wide, high = SIZES[paper]
     page = Page(name, wide, high)
     page.box((BINDING, EDGE), wide - BINDING - EDGE, high - 2.0 * EDGE, BORDER, "FRAME")
@@ -89,7 +89,7 @@ def free(paper: str, *, block: bool, notes: float = 0.0) -> Area:
 
 
 def notes_at(paper: str) -> tuple[float, float, float]:
-    """Where notes stand: left edge, the lowest line's baseline, width, mm."""
+    """Place of notes on a page: left edge, the lowest line's baseline, width, mm."""
     wide, _ = SIZES[paper]
     beside = wide - BINDING - EDGE - BLOCK > 100.0
     room = wide - BINDING - EDGE - (BLOCK if beside else 0.0)

@@ -16,7 +16,7 @@ MM = 25.4 / 72.0  # of a point
 SMALL, PLAIN, LARGE = 2.5, 3.5, 5.0  # mm: heights of ISO 3098, none below 2.5
 
 
-def opened() -> FPDF:
+def new_pdf() -> FPDF:
     """Give an empty PDF in mm with the font."""
     from fpdf import FPDF
 
@@ -26,14 +26,14 @@ def opened() -> FPDF:
     return pdf
 
 
-def size_of(height: float) -> float:
+def font_points(height: float) -> float:
     """Size of the font, points, whose capitals are `height` mm high."""
     return height / CAPITALS / MM
 
 
 @cache
 def _measuring() -> FPDF:
-    pdf = opened()
+    pdf = new_pdf()
     pdf.set_font(FAMILY, size=1000.0)
     return pdf
 
@@ -41,7 +41,7 @@ def _measuring() -> FPDF:
 @cache
 def width(text: str, height: float) -> float:
     """Width of a text, mm."""
-    return float(_measuring().get_string_width(text)) * size_of(height) / 1000.0
+    return float(_measuring().get_string_width(text)) * font_points(height) / 1000.0
 
 
 def unknown(text: str) -> str:
@@ -50,7 +50,7 @@ def unknown(text: str) -> str:
     return "".join(dict.fromkeys(c for c in text if ord(c) not in known))
 
 
-def wrapped(text: str, wide: float) -> list[str]:
+def wrap(text: str, wide: float) -> list[str]:
     """Lines of a text that are no wider than this, mm."""
     lines: list[str] = []
     line = ""

@@ -62,7 +62,7 @@ class Text:
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        """Least x and y, greatest x and y of what it covers."""
+        """Least x and y, greatest x and y of the text, mm."""
         long = width(self.text, self.height)
         start = {"left": 0.0, "middle": -0.5 * long, "right": -long}[self.anchor]
         low, high = -BELOW * self.height, LETTERS * self.height
@@ -121,7 +121,7 @@ class Page:
         *,
         turned: bool = False,
     ) -> None:
-        """Add a text; an empty one is not there."""
+        """Add a text; nothing for an empty one."""
         if text:
             self.marks.append(Text(at, text, height, anchor, layer, turned))
 

@@ -34,7 +34,7 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     "finish": ("surface finish", ""),
     "general": ("general tolerances", "ISO 2768-m"),
 }
-"""Texts of the title block by their options: what they are, and what stands where none is given."""
+"""Texts of the title block by their options: what they are, and the text by default."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ OPTIONS = Table(
 
 
 def check_sheet(file: Values, _: Values, reader: Reader) -> None:
-    """Note a step by which a turn cannot be divided."""
+    """Add a fault for a step, degrees, that does not divide a turn."""
     step = file.get("step")
     if step is not None:
         turns = 2.0 * math.pi / step
@@ -114,7 +114,7 @@ def check_sheet(file: Values, _: Values, reader: Reader) -> None:
 
 
 def build_sheet(options: Mapping[str, Any]) -> Sheet:
-    """Make the drawing of options in which there is no fault."""
+    """Options of a drawing without faults, the step in rad."""
     values = {name: value for name, value in options.items() if value != AUTO or name != "scale"}
     texts = {name: values.pop(name, default) for name, (_, default) in TEXTS.items()}
     return Sheet(tuple(texts.items()), **values)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed, free
-from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width, wrapped
+from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed_page, free
+from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width, wrap
 from camgeo.capabilities.sheet.marks import THICK, THIN, Line, Page, shifted
 from camgeo.capabilities.sheet.part import number
 
@@ -36,7 +36,7 @@ class Table(NamedTuple):
     notes: tuple[str, ...]
 
 
-def table_of(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> Table:
+def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> Table:
     """Polar radii of contours, by name, at every step; places X, Y where a ray may cross one more than once."""
     from camgeo.curve.measures import StarError, polar_radius
 
@@ -101,13 +101,13 @@ def table_pages(table: Table, paper: str) -> list[Page]:
     texts = [[head, *(row[k] for row in cells)] for k, head in enumerate(table.heads)]
     wides = [max(width(text, SMALL) for text in column) + 3.0 for column in texts]
     block = sum(wides) + COLUMN
-    notes = [line for note in table.notes for line in wrapped(note, area.right - area.left)]
+    notes = [line for note in table.notes for line in wrap(note, area.right - area.left)]
     above = 9.0 + LINE * len(notes)
     each = int((area.high - area.low - above - LINE - 3.0) // LINE)
     beside = max(1, int((area.right - area.left + COLUMN) // block))
     pages = []
     for first in range(0, len(cells), each * beside):
-        page = framed("Contour", paper)
+        page = framed_page("Contour", paper)
         page.text((area.left, area.high - PLAIN), "Contour, theoretically exact, from the shaft, in mm", PLAIN)
         for k, note in enumerate(notes):
             page.text((area.left, area.high - 9.0 - LINE * k - 0.5), note)
@@ -144,7 +144,7 @@ def _draw_rows(
 
 def motion_page(design: Design, findings: Findings, paper: str, sources: Sequence[tuple[str, str]]) -> Page:
     """The follower's motion over a turn above, the verdict and the files that it is of below."""
-    page, area = framed("Motion and verdict", paper), free(paper, block=False)
+    page, area = framed_page("Motion and verdict", paper), free(paper, block=False)
     lines = _verdict(findings)
     rows = len(lines) + 2 * len(sources) + 2
     split = area.low + LINE * rows + 6.0
@@ -222,7 +222,7 @@ def full_size(drawn: Drawn) -> Page | None:
             break
     else:
         return None
-    page = framed("1 : 1", paper)
+    page = framed_page("1 : 1", paper)
     x = 0.5 * (area.left + area.right) - 0.5 * (x0 + x1)
     y = 0.5 * (area.low + 14.0 + area.high - 8.0) - 0.5 * (y0 + y1)
     for loop in drawn.loops:

@@ -57,7 +57,7 @@ class Drawn:
         return -at if self.ccw else at
 
     def degrees(self, at: float) -> str:
-        """The same in words: degrees from 0 to less than 360."""
+        """The direction in words: degrees from 0 to less than 360."""
         angle = math.degrees(self.direction(at)) % 360.0
         return f"{number(angle if angle < 359.99995 else 0.0)}°"
 
@@ -87,7 +87,7 @@ def chords(outline: ArcSpline) -> Array:
     return points
 
 
-def loops_of(outlines: Sequence[LayerOutline], body: Body, contours: int) -> tuple[Loop, ...]:
+def disc_loops(outlines: Sequence[LayerOutline], body: Body, contours: int) -> tuple[Loop, ...]:
     """Loops of a disc's outlines, of which the first are its contours and those of its openings the last."""
     depths = [opening.depth for opening in body.openings]
     through = [True] * (len(outlines) - len(depths)) + [depth is None for depth in depths]
@@ -113,7 +113,7 @@ class Metal:
 
 
 def metal(loops: Sequence[Loop]) -> list[Metal]:
-    """Where the y axis runs through metal that lies within an odd number of loops."""
+    """Stretches of the y axis, mm, within an odd number of loops, which are metal."""
     ends = []
     for loop in loops:
         x, y = loop.points.T
@@ -150,7 +150,7 @@ def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
 
 
 def _side(
-    one: Metal,
+    stretch: Metal,
     raised: Sequence[Metal],
     heights: tuple[float, float],
     hub: tuple[float, tuple[float, float]],
@@ -163,10 +163,10 @@ def _side(
     ground, face = heights
     far, (low, high) = hub
     cut, chain = abs(chamfer), list[tuple[float, float]]()
-    if one.low < raised[0].low:
-        chain.append((ground, one.low))
+    if stretch.low < raised[0].low:
+        chain.append((ground, stretch.low))
     for k, each in enumerate(raised):
-        if k or one.low < each.low:
+        if k or stretch.low < each.low:
             chain.append((ground, each.low))
         chain += (
             [(face + chamfer, each.low), (face, each.low + cut)] if each.low_contour and cut else [(face, each.low)]
@@ -176,10 +176,10 @@ def _side(
         chain += (
             [(face, each.high - cut), (face + chamfer, each.high)] if each.high_contour and cut else [(face, each.high)]
         )
-        if k + 1 < len(raised) or each.high < one.high:
+        if k + 1 < len(raised) or each.high < stretch.high:
             chain.append((ground, each.high))
-    if raised[-1].high < one.high:
-        chain.append((ground, one.high))
+    if raised[-1].high < stretch.high:
+        chain.append((ground, stretch.high))
     return [point for k, point in enumerate(chain) if not k or point != chain[k - 1]]
 
 

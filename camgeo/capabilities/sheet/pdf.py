@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sheet.lettering import FAMILY, opened, size_of
+from camgeo.capabilities.sheet.lettering import FAMILY, font_points, new_pdf
 from camgeo.capabilities.sheet.marks import Circle, Dimension, Line, Text
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ AROUND = 180  # chords of a circle that is drawn in a pattern
 
 def write_pdf(path: Path, pages: Sequence[Page], title: str) -> None:
     """Write pages as one PDF."""
-    pdf = opened()
+    pdf = new_pdf()
     pdf.set_creation_date(EPOCH)
     pdf.set_title(title)
     pdf.set_producer("camgeo")
@@ -80,7 +80,7 @@ def _pieces(line: Line) -> list[Array]:
 
 def _letter(pdf: FPDF, height: float, mark: Text) -> None:
     x0, y0 = mark.box[:2]
-    pdf.set_font(FAMILY, size=size_of(mark.height))
+    pdf.set_font(FAMILY, size=font_points(mark.height))
     if not mark.turned:
         pdf.text(x0, height - mark.at[1], mark.text)
         return

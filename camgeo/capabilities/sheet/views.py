@@ -148,7 +148,7 @@ class Sizes:
     tolerance: Tolerance
 
 
-def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance) -> Sizes:
+def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance) -> Sizes:
     """Sort every size of a disc; `base` is the name and radius of a circle that the contour is described from."""
     part, body = drawn.part, drawn.body
     column: list[Callout] = []
@@ -192,7 +192,9 @@ def sizes_of(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance)
     bore = None
     if plain and part.bore is not None:
         bore = Across(body.bottom, part.bore, f"Ø{number(part.bore)} {part.fit}".rstrip())
-    return Sizes(tuple(column), tuple(sorted(under, key=lambda one: one.high - one.low)), tuple(right), bore, tolerance)
+    return Sizes(
+        tuple(column), tuple(sorted(under, key=lambda length: length.high - length.low)), tuple(right), bore, tolerance
+    )
 
 
 def _holes(drawn: Drawn) -> list[Callout]:
@@ -259,19 +261,19 @@ class Layout(NamedTuple):
     sense: float = 1.0
 
 
-def laid_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: float) -> Layout:
+def lay_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: float) -> Layout:
     """Place the views at a scale, or at the largest that fits; raises NoRoomError."""
     words = SCALES if scale is None else (scale,)
     for word in words:
         for beside in (True, False):
-            layout = _tried(drawn, sizes, area, word, beside=beside)
+            layout = _lay_out_at(drawn, sizes, area, word, beside=beside)
             if layout is not None:
                 return layout._replace(sense=sense)
-    fits = (word for word in SCALES for beside in (True, False) if _tried(drawn, sizes, area, word, beside=beside))
+    fits = (word for word in SCALES for beside in (True, False) if _lay_out_at(drawn, sizes, area, word, beside=beside))
     raise NoRoomError("" if scale is None else next(fits, ""))
 
 
-def _tried(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -> Layout | None:
+def _lay_out_at(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -> Layout | None:
     """Place the views at a scale, the bore's own view beside the others or below; None where there is no room."""
     k = SCALES[word]
     reach = k * drawn.reach
@@ -279,7 +281,7 @@ def _tried(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -
     face = max(LEFT + 2.0 * reach + ROUND, sizes.tolerance.long - column)
     bore = NARROW + LANE if sizes.bore is not None else NARROW
     section = bore + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
-    own = _own(drawn, k)
+    own = _bore_view(drawn, k)
     below = max(UNDER, LANE * len(sizes.under))
     wide = column + face + section + (own.wide if beside else 0.0)
     high = STRIP + 2.0 * (reach + ROUND) + below + (0.0 if beside else own.above + own.below)
@@ -299,7 +301,7 @@ def _beyond(sizes: Sizes, k: float) -> float:
     return max(LANE * len(sizes.right), *texts) + 1.0
 
 
-class Own(NamedTuple):
+class BoreView(NamedTuple):
     """What the bore's own view takes on the paper: its width, and how far it reaches above and below the shaft, mm."""
 
     wide: float
@@ -307,20 +309,22 @@ class Own(NamedTuple):
     below: float
 
 
-def _own(drawn: Drawn, k: float) -> Own:
+def _bore_view(drawn: Drawn, k: float) -> BoreView:
     """Give the size of the bore's own view at a scale; none for a round bore."""
     part = drawn.part
     if part.bore is None or not (part.sides or part.keyway or part.flat):
-        return Own(0.0, 0.0, 0.0)
+        return BoreView(0.0, 0.0, 0.0)
     reach = k * next(opening.reach for opening in drawn.body.openings if opening.name == "bore")
     above, below = reach + 4.0, reach + LANE + 2.0
     if part.keyway is not None:
         above = max(above, 0.5 * k * part.keyway.width + 2.0 * ARROW + width(number(part.keyway.width), SMALL) + 4.0)
         below = max(below, 0.5 * k * part.keyway.width + DATUM + 2.0)
-    return Own(max(2.0 * reach + 4.0 * LANE + 8.0, width(_of_bore(drawn)[1], SMALL) + 4.0), above, below + UNDER)
+    return BoreView(
+        max(2.0 * reach + 4.0 * LANE + 8.0, width(_bore_label(drawn)[1], SMALL) + 4.0), above, below + UNDER
+    )
 
 
-def _of_bore(drawn: Drawn) -> tuple[float, str]:
+def _bore_label(drawn: Drawn) -> tuple[float, str]:
     """Direction of a bore's keyway, flat or side in the recipe, rad, and the words under its own view."""
     part = drawn.part
     at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
@@ -341,7 +345,7 @@ def draw_views(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
     _draw_tolerance(page, drawn, layout, sizes.tolerance)
     if drawn.body.thickness is not None:
         _draw_section(page, drawn, sizes, layout)
-    if _own(drawn, 1.0).wide:
+    if _bore_view(drawn, 1.0).wide:
         _draw_bore(page, drawn, layout, sizes.tolerance)
 
 
@@ -360,9 +364,9 @@ def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
     solid = drawn.body.thickness is not None
     end = reach + (5.0 if solid else 4.0)
     page.line((x, y - end), (x, y + end), layer="CENTRE", pattern="chain")
-    for one in sizes.column:
-        if one.value is not None and one.centre == (0.0, 0.0) and not one.datum:
-            page.marks.append(Circle(layout.face, k * one.radius, THIN, "CENTRE", "chain"))
+    for callout in sizes.column:
+        if callout.value is not None and callout.centre == (0.0, 0.0) and not callout.datum:
+            page.marks.append(Circle(layout.face, k * callout.radius, THIN, "CENTRE", "chain"))
     for opening in drawn.body.openings:
         if opening.circle is not None and opening.name != "bore":
             (cx, cy), r = opening.circle
@@ -538,7 +542,7 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
     part, k, (x, y) = drawn.part, layout.scale, layout.bore
     bore = part.bore or 0.0
     points = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
-    at, words = _of_bore(drawn)
+    at, words = _bore_label(drawn)
     turned = _turned(points, -drawn.direction(at))
     page.marks.append(Line(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
     low, high = k * float(turned[:, 1].min()), k * float(turned[:, 1].max())
@@ -567,7 +571,7 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
         ends = (x - 0.5 * k * bore, y), (x + 0.5 * k * bore, y)
         page.marks.append(across(*ends, base, bore, number(bore), before=True))
         _draw_datum(page, (x + right, y), (1.0, 0.0), "A")
-    page.text((x, y - _own(drawn, k).below + 3.0), words, SMALL, "middle")
+    page.text((x, y - _bore_view(drawn, k).below + 3.0), words, SMALL, "middle")
 
 
 def _turned(points: Array, angle: float) -> Array:

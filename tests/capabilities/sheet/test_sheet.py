@@ -68,10 +68,10 @@ SIZES = [
 def drawn(monkeypatch: pytest.MonkeyPatch) -> list[drawing.Pages]:
     """The pages of every drawing that is made in a test."""
     found: list[drawing.Pages] = []
-    laid_out = drawing._pages
+    lay_out = drawing._pages
 
     def kept(*arguments: Any, **options: Any) -> drawing.Pages:
-        found.append(laid_out(*arguments, **options))
+        found.append(lay_out(*arguments, **options))
         return found[-1]
 
     monkeypatch.setattr(drawing, "_pages", kept)
