@@ -12,7 +12,7 @@ import yaml
 from camgeo.cli.main import main
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, read
-from camgeo.registry import formats
+from camgeo.registry import formats, registry
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import either
 from camgeo.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
@@ -27,6 +27,9 @@ NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
 FORMATS = f"give {either(formats.FORMATS)}"
+OF_TABLES = either(
+    [*("correct" for name in registry.labels() if name == "made"), *formats.FORMATS["csv"].options.keys], "and"
+)
 HELD = either([name for name, record in formats.FORMATS.items() if "tolerance" in record.options.keys])
 
 
@@ -745,12 +748,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[DXF]", [f"18: export.files[0]: unknown file format, given 'DXF'; {FORMATS}"]),
         (
             "[{csv: }]",
-            [
-                (
-                    "23: export.files[0].csv: nothing given; give a mapping with as, step, for, suffix, roller, units "
-                    "and tolerance, or leave the key out"
-                )
-            ],
+            [(f"23: export.files[0].csv: nothing given; give a mapping with {OF_TABLES}, or leave the key out")],
         ),
         (
             "[{dxf: {as: curves, version: R14, tolerance: 0}}]",
