@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 LIFTS = (0.02, 0.15, 0.5, 1.27, 2.5, 5.08, 8.0)
 WITHIN = 1e-6  # crank degrees, by which the figure may be off a card that is met
-VALVES = (  # needs: valve
-    "valve: {ratio: 1.6, lash: 0.3}\n",
-    "valve: {ratio: 1, lash: 40}\n",
-    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [12, 1.55]]}}\n",
-    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [7, 0.01]]}, lash: 0.2}\n",
-    "valve: {ratio: -1}\n",
+VALVES: tuple[str, ...] = (
+    "valve: {ratio: 1.6, lash: 0.3}\n",  # needs: valve
+    "valve: {ratio: 1, lash: 40}\n",  # needs: valve
+    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [12, 1.55]]}}\n",  # needs: valve
+    "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [7, 0.01]]}, lash: 0.2}\n",  # needs: valve
+    "valve: {ratio: -1}\n",  # needs: valve
 )
 REFUSED = re.compile(r"give|let|lies? between|longer than|shorter durations|leaves nothing|half and powers")
 
