@@ -351,7 +351,7 @@ def test_power_of_random_linkages(lift, linkage, demands, body):
     """T = M v + m a v_c + I alpha omega, and T = S' V - S1' H, to 1e-12 of what adds up to them."""
     mechanism = Mechanism(linkage, lift, BREADTH)
     theta = np.linspace(0.1, 6.2, 7)
-    if not (linkage.margin(*mechanism.at(theta, 0).faces[:, 0], BREADTH) > 1.0).all():
+    if not (linkage.margins(*mechanism.at(theta, 0).faces[:, 0], BREADTH) > 1.0).all():
         return
     motion = mechanism.at(theta, 2)
     if motion.shaft[1].min() < 0.05:
