@@ -117,13 +117,23 @@ def rising_root(coefficients: Array) -> Array:
 
     To within `SETTLED`, mostly to rounding. Raises UnsettledError where a coefficient is not a number.
     """
-    found = np.where(coefficients[:, 0] >= 0.0, 0.0, 1.0)
-    inside = np.flatnonzero(~((coefficients[:, 0] >= 0.0) | (coefficients[:, -1] <= 0.0)))
+    first, last = _first_sign(coefficients), _first_sign(coefficients[:, ::-1])
+    root = np.where(first >= 0.0, 0.0, 1.0)
+    inside = np.flatnonzero(~((first >= 0.0) | (last <= 0.0)))
     c, ends = coefficients[inside], (np.zeros(len(inside)), np.ones(len(inside)))
     slope = np.diff(c, axis=1) * (c.shape[1] - 1)
-    t = c[:, 0] / (c[:, 0] - c[:, -1])
-    found[inside] = zeros(lambda t: (values(c, t), values(slope, t)), *ends, t, SETTLED)
-    return found
+    with np.errstate(invalid="ignore", divide="ignore"):
+        t = c[:, 0] / (c[:, 0] - c[:, -1])
+    t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
+    root[inside] = zeros(lambda t: (values(c, t), values(slope, t)), *ends, t, SETTLED)
+    return root
+
+
+def _first_sign(coefficients: Array) -> Array:
+    """First coefficient of each row (n, k+1) that is not 0: its sign is that of the polynomial just behind 0, (n,)."""
+    place = np.argmax(coefficients != 0.0, axis=1)
+    sign: Array = coefficients[np.arange(len(coefficients)), place]
+    return sign
 
 
 def roots(coefficients: Array) -> list[float]:

@@ -201,9 +201,10 @@ class Pieces:
         c = self.coefficients[piece]
         rising = np.where(c[:, -1] >= c[:, 0], 1.0, -1.0)
         c = (c - level[:, None]) * rising[:, None]
-        for end in (0, -1):
-            c[np.abs(c[:, end]) <= self.blur[piece], end] = 0.0
-        t = rising_root(c)
+        begins, ends = (np.abs(c[:, end]) <= self.blur[piece] for end in (0, -1))
+        inside = ~(begins | ends)
+        t = np.where(begins, 0.0, 1.0)
+        t[inside] = rising_root(c[inside])
         return self.x[piece] + np.clip(t, 0.0, 1.0) * self.width[piece]
 
     def crossings(self, level: float) -> Array:

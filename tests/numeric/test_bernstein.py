@@ -70,6 +70,11 @@ def test_rising_roots_are_found_or_the_end_beyond_which_they_lie(degree):
         assert (rising_root(rows - rows[:, [end]] + beyond) == -end).all()
 
 
+def test_a_polynomial_that_falls_from_zero_first_rises_through_it_inside():
+    rows = np.array([[0.0, -1.0, 1.0], [0.0, 0.0, -1.0], [0.0, 1.0, 2.0], [-2.0, -1.0, 0.0], [-1.0, 1.0, 0.0]])
+    assert rising_root(rows) == pytest.approx([2.0 / 3.0, 1.0, 0.0, 1.0, 1.0 / 3.0], abs=1e-15)
+
+
 def test_a_root_of_what_is_not_a_number_is_refused():
     with pytest.raises(UnsettledError, match="1 zeros were not found"):
         rising_root(np.array([[-1.0, 1.0], [-1.0, np.nan]]))
