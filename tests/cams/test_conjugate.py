@@ -224,7 +224,6 @@ def test_figures_are_of_the_worst_disc() -> None:
     assert found["pressure-angle-rise"].value == pytest.approx(-math.degrees(math.atan(low.value)), abs=1e-9)
 
 
-@pytest.mark.slow
 def test_remarks_say_which_size_would_keep_the_rules() -> None:
     cam = recipe(STEM, "distance: 85, radius: 8")
     told = {remark.name: remark.sentence for remark in remarks_of(cam, designed(cam))}

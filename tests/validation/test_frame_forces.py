@@ -480,7 +480,6 @@ def test_what_is_refused(text, dynamics, field, words, remedied):
 # --- report, page, table, figures -------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_report_page_table_and_figures(tmp_path):
     """f07 through a recipe: the same in the report, on the page, in the CSV file and as limits."""
     text = FOUR_BAR + (
@@ -593,7 +592,6 @@ def test_speeds_from_which_faces_are_lost(text):
         assert below.contacts[rank][0].value > 0.0
 
 
-@pytest.mark.slow
 def test_files_of_a_preloaded_frame(tmp_path):
     """The metal is made larger and judged about that; a file of the nominal cam, and of one twice too large, fails."""
     from camgeo import verify

@@ -125,7 +125,6 @@ def test_an_outlier_is_named_counted_and_left_out_of_the_motion(tmp_path):
     assert abs(found["made"]["motion"]["error"]["max"]) < 0.002
 
 
-@pytest.mark.slow
 def test_lifts_of_an_indicator(tmp_path):
     """Its zero is free; a roller of another radius is told by --probe-radius."""
     recipe, _ = measured(tmp_path, limited(ROLLER, profile=1.0, motion=1.0))

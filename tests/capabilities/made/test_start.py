@@ -206,7 +206,6 @@ def test_inches_and_a_shaft_that_turns_the_other_way(tmp_path):
     assert new.count("law: modified-sine") == 2
 
 
-@pytest.mark.slow
 def test_a_worn_cam_becomes_a_table(tmp_path, capsys):
     """A groove worn 0.2 mm deep beside the top of the rise: no law has it."""
     assert start(tmp_path, RECIPES["roller on a stem"], bump(-0.2, 5.0)) == 0

@@ -106,7 +106,6 @@ def test_paths_lie_near_enough_and_end_on_the_flanks():
         assert 0.0 in ways
 
 
-@pytest.mark.slow
 def test_a_groove_in_a_blank_with_holes_and_a_path_in_its_drawing(tmp_path):
     part = ", outer: 170, bore: 16, bolts: {count: 3, circle: 40, hole: 7}"
     _, outcome, path = made(tmp_path, 6.0, ", holes: true, layer: true", part=part, files="gcode, dxf")

@@ -218,7 +218,6 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
     }
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
     from camgeo.capabilities.sweep.command import procedures
@@ -363,7 +362,6 @@ def test_the_next_design_follows_where_one_falls(swept):
     assert not set(best[:2]) & set(indices)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     hard = SEARCH.replace("at_most: 35", "at_most: 4")
@@ -378,7 +376,6 @@ def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     assert sum(report["screen"]["fell"].values()) == 1
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_polishing_goes_by_estimates_and_keeps_exact_designs(swept):
     plain, _ = swept()
