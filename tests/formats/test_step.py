@@ -100,7 +100,6 @@ def kinds_in(path):
 # --- what is written ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
 @kernel
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_plain_disc_in_each_form(tmp_path, form):

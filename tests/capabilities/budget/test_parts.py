@@ -119,7 +119,7 @@ def design_of(name: str):
     return designed(of_recipe(name))
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -> None:
     recipe = of_recipe(name)
@@ -174,7 +174,7 @@ def test_finite_errors() -> None:
     assert np.abs(errors - worked).max() < 1e-9
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FAMILIES)
 def test_deviations_are_those_foreseen(name: str) -> None:
     recipe, design = of_recipe(name), design_of(name)
@@ -214,7 +214,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", READ)
 def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> None:
     """Nothing off, the error by contact is the one that the judge finds of the file."""

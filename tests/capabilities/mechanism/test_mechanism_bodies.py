@@ -102,7 +102,7 @@ def made(name: str) -> tuple[Recipe, Design, Assembly]:
     return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str) -> None:
     import shapely
