@@ -6,6 +6,7 @@ type, through which a small text could grow without bound, is refused.
 
 from __future__ import annotations
 
+import errno
 import re
 import zipfile
 import zlib
@@ -116,7 +117,9 @@ def read_placed(path: Path | str) -> tuple[Placed, ...]:
                 raise ReadError("syntax", f"the archive names {len(links.targets)} models, where one should be", path)
             model = _Model(path)
             _parse(archive, links.targets[0].lstrip("/"), model.start, model.end, path)
-    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError) as error:
+        if isinstance(error, OSError) and error.errno != errno.EINVAL:  # which is a place before the file's beginning
+            raise
         raise ReadError("syntax", "not a sound 3MF file: its archive is damaged, or has a password", path) from error
     return model.placed()
 
