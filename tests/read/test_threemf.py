@@ -532,7 +532,7 @@ def test_encodings_that_are_none_or_are_not_read(plain, encoding):
 def test_a_directory_that_points_before_the_file_is_a_damaged_archive(tmp_path, plain):
     data = bytearray(plain[2].read_bytes())
     end = data.rindex(b"PK\x05\x06") + 16  # where the directory begins, of four bytes
-    data[end : end + 4] = (int.from_bytes(data[end : end + 4], "little") + 5).to_bytes(4, "little")
+    data[end : end + 4] = (int.from_bytes(data[end : end + 4], "little") + (1 << 30)).to_bytes(4, "little")
     path = tmp_path / "cam.3mf"
     path.write_bytes(data)
     with pytest.raises(ReadError, match="its archive is damaged"):
