@@ -170,7 +170,7 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("text", "sign", "sense"),
     few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),
@@ -196,7 +196,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -367,7 +367,7 @@ SLIGHT = ROLLER.replace("625", "20")
 FINE = "export: {tolerance: 0.0001, "
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [
@@ -595,7 +595,7 @@ REMEDIES = [
 ]
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [row for row in REMEDIES if row[1] in FIGURES],  # those of a capability are where it is

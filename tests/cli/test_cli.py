@@ -141,7 +141,7 @@ def test_verify_judges_a_file_and_says_what_is_wrong(
     assert main(["verify", str(good), str(good)]) == 2
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("kind", few(OF_CAMS, 3))
 def test_new_gives_a_recipe_that_passes(kind: str, tmp_path: Path) -> None:
     path = tmp_path / f"my-{kind}.yaml"

@@ -154,7 +154,7 @@ export: {tolerance: 0.01, files: [{dxf: {as: spline}}, {dxf: {as: polyline}}, st
 """
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["shu-wu", "rabinowitz", "reuleaux-nine", "w-booth", "w-ellipse", None])
 def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> None:
     path = RECIPES / f"{name}.yaml" if name else tmp_path / "flat.yaml"
@@ -176,7 +176,7 @@ manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5
 
 
 # needs: milling
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
 @pytest.mark.parametrize(
     "part",

@@ -115,7 +115,7 @@ def distance(curve: Curve, points: np.ndarray) -> np.ndarray:
     return across
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 3))
 def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)
@@ -134,7 +134,7 @@ def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     assert np.abs(gap).max() >= arcs.bound.worst - 0.1 * tolerance
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("tolerance", few([1e-2, 1e-4], 2))
 def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     """The other half of a two-sided bound: no point of the curve is farther from every arc than promised."""
@@ -148,7 +148,7 @@ def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     assert step < 1.0
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 def test_never_more_than_biarcs(curve: Curve, monkeypatch: pytest.MonkeyPatch) -> None:
     free = [fit_arcs(curve, tolerance).count for tolerance in TOLERANCES]
     monkeypatch.setattr(free_arcs, "free_arcs", lambda _curve, parts, _aim, _limit: [None] * len(parts))

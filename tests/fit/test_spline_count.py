@@ -108,7 +108,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour

@@ -120,7 +120,6 @@ def test_a_plain_disc_in_each_form(tmp_path, form):
     assert path.read_text().count("SI_UNIT(.MILLI.,.METRE.)") == 1
 
 
-@pytest.mark.slow
 @kernel
 def test_every_feature_is_exact_and_is_found(tmp_path):
     design, path = made(step_recipe(FULL), tmp_path)

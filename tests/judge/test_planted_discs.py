@@ -58,7 +58,7 @@ def rotated(points, degrees):
     return points @ np.array([[c, s], [-s, c]])
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_sound_file_passes(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -69,7 +69,7 @@ def test_a_sound_file_passes(tmp_path, name):
     assert verdict.pieces == made.count
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
@@ -94,7 +94,7 @@ def test_a_spline_at_the_edge_of_its_tolerance(tmp_path):
         assert check.value == pytest.approx(error, abs=2e-9)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -107,7 +107,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
-@pytest.mark.thin(32)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -148,7 +148,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.thin(24)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]

@@ -88,7 +88,7 @@ def assert_near(estimates, exact):
             assert math.isnan(value) or error_of(name, float(estimate), float(value)) < most, name
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", CAMS)
 def test_estimates_are_near_the_exact_designs(name):
     text, ranges = CAMS[name]
