@@ -30,7 +30,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, Path]:
     out = tmp_path_factory.mktemp("out")
     recipe = out / "cam.yaml"
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8}\nverify: {angles: 90}\n")
-    assert main.main(["study", str(recipe), "--out", str(out), "--patience", "0.5", "--json"]) == 0
+    assert main.main(["study", str(recipe), "--out", str(out), "--patience", "2", "--json"]) == 0
     return json.loads((out / "cam" / "study.json").read_text(encoding="utf-8")), out / "cam"
 
 
@@ -51,7 +51,9 @@ def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict,
             # with many pieces the tolerance is used, with few a whole number of them may leave some of it
             least = 0.9 if row["pieces"] > 100 and form != "spline" else 0.2
             assert least * row["tolerance"] <= row["geometry_error"] <= row["tolerance"] * (1 + 1e-6)
-            assert row["geometry_error"] <= row["proved"] + 1e-10
+            # a spline is judged by arcs within a thousandth of the tolerance, which counts
+            within = 1e-3 * row["tolerance"] if form == "spline" else 1e-10
+            assert row["geometry_error"] <= row["proved"] + within
             assert row["seconds"] == pytest.approx(math.fsum(row["stages"].values()))
             assert set(row["stages"]) == {"fit", "write", "judge"}
         assert [row["pieces"] for row in rows] == sorted(row["pieces"] for row in rows)
