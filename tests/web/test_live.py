@@ -166,6 +166,7 @@ FOLLOWER: dict[str, Any] = {
         ("disc-roller", {"roller": "9", "offset": "8"}, "roller of radius 9 mm on a stem, offset 8 mm"),
         ("disc-flat", {"flat": True, "width": "34"}, "a centred face is"),
         ("disc-shoe", {"shoe": "6 cm", "reading": "0.02"}, "shoe of radius 60 mm"),
+        # needs: milling
         ("disc-ring", {"roller": "6", "track": "internal"}, "inside a ring"),
         ("disc-groove", {"roller": "8", "track": "groove"}, "play in the groove"),
         ("disc-arm", {"roller": "8", "pivot": "80", "arm": "65"}, "on a trailing arm of 65 mm"),
