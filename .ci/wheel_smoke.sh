@@ -29,7 +29,7 @@ for python in "$@"; do
         cd "$work/empty$number"
         [ "$("$bin/camgeo" --version)" = "camgeo $version" ]
         cat >small.yaml <<'YAML'
-cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [10, 4]}
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4]}
 part: {thickness: 8, bore: 10, hub: {diameter: 18, height: 4}}
 export: {tolerance: 0.01, files: [dxf, svg, stl, 3mf, glb, csv, html]}
 verify: {angles: 360}
