@@ -160,9 +160,7 @@ def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> No
     assert all(len(words) > 20 and words.endswith(".") for _, words in rows)
     assert main(["new", "disc"]) == 0
     discs = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
-    assert [row for row in rows if row in discs] == discs
-    assert {name for name, _ in rows if name.startswith("disc-")} <= {name for name, _ in discs}
-    assert "shu-wu" not in dict(discs)
+    assert discs == [row for row in rows if row[0].startswith("disc-") or row[0] == "valve-train"]
     assert len(discs) >= 10
 
 
