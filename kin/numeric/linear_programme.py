@@ -43,11 +43,18 @@ def minimise(cost: Array, rows: Array, right: Array, enough: float = 1e-10) -> O
         row = int(np.argmax(table[:, column]))
         if table[row, column] == 1.0 and basis[row] >= size:
             basis[row] = column
+    whole = table.copy()
     artificial = basis >= size
     first = -table[artificial].sum(axis=0)
     first[size : size + count] = 0.0
     _pivot(table, first, basis, size)
     missed = max(-float(first[-1]), 0.0)
+    if missed > enough:  # perhaps by what the rounding of all pivots has left alone: the table is worked out anew
+        table, *_ = np.linalg.lstsq(whole[:, basis], whole, rcond=None)
+        first = -table[basis >= size].sum(axis=0)
+        first[size : size + count] = 0.0
+        _pivot(table, first, basis, size)
+        missed = max(-float(first[-1]), 0.0)
     if missed > enough:
         return Optimum(np.inf, _point(rows, right, basis, size), missed)
     costs = np.concatenate([cost, np.zeros(count + 1)])

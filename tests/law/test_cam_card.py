@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import optimize
@@ -71,20 +71,18 @@ def test_it_falls_from_its_nose_without_a_turn():
     assert (rates < 0.0).all()
 
 
-ALONE = (2, 10, 20, 34, 60)
-
-
 @pytest.mark.slow
+@example((2, 10, 20, 34, 60), 50.0, 12.0, 3)  # the rounding of its programme's pivots was taken for a row missed
+@example((2, 10, 20, 34, 60), 85.0, 3.0, 3)
 @settings(max_examples=examples(12), deadline=None)
 @given(
-    st.sampled_from([(2, 8, 14, 20, 26), (2, 6, 10, 14, 18), ALONE, (2, 4, 8, 26, 44)]),
+    st.sampled_from([(2, 8, 14, 20, 26), (2, 6, 10, 14, 18), (2, 10, 20, 34, 60), (2, 4, 8, 26, 44)]),
     st.floats(50.0, 85.0),
     st.floats(3.0, 12.0),
     st.integers(1, 3),
 )
 def test_a_card_of_a_member_is_met_with_no_greater_peak(powers, half, lift, count):
     """Whatever the card of one member says can be met: its own peak is a bound of the least."""
-    assume(powers != ALONE or count < 3)  # see the test below
     single = lobe(lift, math.radians(half), powers)
     shares = (0.14, 0.5, 0.02)[:count]
     card = [(share * lift, 2.0 * crank_degrees(single, share * lift)) for share in shares]
@@ -93,17 +91,6 @@ def test_a_card_of_a_member_is_met_with_no_greater_peak(powers, half, lift, coun
     for at, degrees in card:
         assert 2.0 * crank_degrees(motion, at) == pytest.approx(degrees, abs=1e-9)
     assert peak(motion, mixture.side.half) <= peak(single, math.radians(half)) * (1.0 + 2e-3)
-
-
-@pytest.mark.slow
-def test_a_card_that_one_angle_alone_meets_is_refused_with_one_that_is_near():
-    """Three crossings of a member on the edge of the family: no other angle has them, and the search passes it by."""
-    single = lobe(12.0, math.radians(85.0), ALONE)
-    card = [(share * 12.0, 2.0 * crank_degrees(single, share * 12.0)) for share in (0.14, 0.5, 0.02)]
-    with pytest.raises(
-        IntentError, match=r"the nearest has 265\.03, 195\.20, 301\.49 degrees in their order, 0\.0247 off"
-    ):
-        solved(card, 12.0)
 
 
 @pytest.mark.slow
