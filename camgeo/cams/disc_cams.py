@@ -54,11 +54,11 @@ class DiscCam(GuidedCam):
 
     @property
     def open(self) -> Open | None:
-        """Those of its motion."""
+        """Angles of its motion that are yet to be found; None where all are given."""
         return self.motion.open
 
     def with_motion(self, motion: MotionAsked) -> DiscCam:
-        """Of the same size under the same follower."""
+        """Give the cam of the same size and follower for another motion."""
         return replace(self, motion=motion)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002

@@ -91,7 +91,7 @@ class MadeFigure(NamedTuple):
 
 
 class MadeFigures(NamedTuple):
-    """What a capability says of a made motion: figures, and sentences on what it does not find."""
+    """Figures of a made motion by a capability, and sentences on those that it cannot give."""
 
     figures: Sequence[MadeFigure] = ()
     remarks: Sequence[str] = ()

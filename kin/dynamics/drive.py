@@ -89,7 +89,7 @@ class Drive:
 
     @cached_property
     def _cut(self) -> dict[bytes, Drive]:
-        """What was cut last, by the bytes of its parts."""
+        """The last drive that was cut from this one, by the bytes of its numbers of parts."""
         return {}
 
     def _split(self, parts: Indices) -> Drive:

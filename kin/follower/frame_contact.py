@@ -177,7 +177,7 @@ def _missed(width: Array, low: Array, middle: Array, high: Array, allowed: Array
 
 
 def resolution(mechanism: Mechanism, output: Array) -> float:
-    """What is to be resolved of the output; its values (n,), rad or mm, are given."""
+    """Least change of the output that counts, in the unit of its values `output` (n,), rad or mm."""
     least = RESOLUTION * mechanism.breadth if mechanism.unit == "mm" else RESOLUTION_ANGLE
     return max(least, ROUNDING * float(np.abs(output).max()))
 

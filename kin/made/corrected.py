@@ -248,7 +248,7 @@ class Corrected(Follower):
         return np.stack([self._errors(at[None])[:, 0], rates[0] / step, rates[1] / step**2], axis=1)
 
     def _errors(self, shaft: Array) -> Array:
-        """What the metal adds to each contact's position at shaft angles (m, n): (c, m, n)."""
+        """Deviation of each contact's position from the intended, mm or rad, at shaft angles (m, n): (c, m, n)."""
         positions, _ = self.metal.positions(shaft.ravel())
         errors = positions - self.metal.follower.intended(shaft.ravel())
         each: Array = errors.reshape(-1, *shaft.shape)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STEPS = 40  # of Newton's method
 STILL = 1e-12  # rad
-FAR = 0.5  # rad: a crossing that is farther from where it is meant is another one
+FAR = 0.5  # rad: a crossing that is farther from the nominal one is another
 RESTS = 1e-9  # of the stroke: so near to the lowest position the follower rests
 NEIGHBOURS = np.arange(-1, 3)  # places of the errors between which they are interpolated
 
@@ -99,10 +99,10 @@ class MadeMotion:
             Estimate(0.5 * (made_o + made_c), 0.5 * (opening + closing), influence(0.5 * (first + last))),
         )
 
-    def _crossing(self, meant: float) -> tuple[float, Array] | None:
+    def _crossing(self, nominal: float) -> tuple[float, Array] | None:
         """Where the made motion is as high as the intended one is at a shaft angle, and weights of errors in it."""
-        level, _ = self._intended(meant)
-        angle = meant
+        level, _ = self._intended(nominal)
+        angle = nominal
         for _ in range(STEPS):
             position, velocity = self._intended(angle)
             weights, rate = self._weights(angle)
@@ -111,7 +111,7 @@ class MadeMotion:
                 return None
             step = (position + float(weights @ self.errors.rows[0]) - level) / slope
             angle -= step
-            if not abs(angle - meant) < FAR:
+            if not abs(angle - nominal) < FAR:
                 return None
             if abs(step) < STILL:
                 return angle, -weights / slope

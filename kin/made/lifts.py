@@ -54,7 +54,7 @@ class Readings(NamedTuple):
 
     @property
     def exact(self) -> Exact:
-        """What the exact cam would give the probe."""
+        """The probe's position on the exact cam over the shaft angle."""
         probe = probe_of(self.follower, self.side, self.touch)
 
         def position(angle: Array, raised: float = 0.0) -> tuple[Array, Array]:
@@ -68,7 +68,7 @@ class Readings(NamedTuple):
 
 
 class Exact(Protocol):
-    """What a probe shows on metal that is the exact one, or more by as much all round."""
+    """Position of a probe on the exact contour, or on one that is larger all round."""
 
     def __call__(self, angle: Array, raised: float = 0.0, /) -> tuple[Array, Array]:
         """Position, mm or rad, at shaft angles (n,), and the parameters where it touches, of metal `raised`, mm."""
@@ -100,9 +100,9 @@ def points_of_lifts(readings: Readings, *, aligned: bool = False) -> Lifts:
     follower, side, shaft, lift, touch = readings
     exact = readings.exact
     turn = turn_of([readings]) if aligned else 0.0
-    meant, places = exact(shaft + turn)
-    zero = float((lift - meant).mean())
-    off = lift - meant - zero
+    expected, places = exact(shaft + turn)
+    zero = float((lift - expected).mean())
+    off = lift - expected - zero
     _demand_alike(readings, off, aligned=aligned)
     gain = (exact(shaft + turn, RAISED)[0] - exact(shaft + turn, -RAISED)[0]) / (2.0 * RAISED)
     frame = follower.envelope.frames(places)
@@ -127,7 +127,7 @@ def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
 
 
 def turn_of(readings: Sequence[Readings]) -> float:
-    """What the shaft angles lack, rad, the same for all readings, by least squares; the zero of each is free."""
+    """Angle, rad, to add to the shaft angles of all readings, by least squares; the zero of each one's lift is free."""
     every = equal_steps(COARSE_TURNS)
     each = [(one.exact, one.shaft, one.lift) for one in readings]
     tables = [exact(every)[0] for exact, _, _ in each]

@@ -40,7 +40,7 @@ COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 
 
 class Felt(NamedTuple):
-    """What a contact feels of the metal at n shaft angles: the motion has `gain` (n,) of the deviation of `curve`.
+    """A contact with the metal at n shaft angles: the motion's error is `gain` (n,) times the deviation of `curve`.
 
     That is the deviation at `places` (n,), where the metal's outward normals are `normals` (n, 2).
     """
@@ -52,7 +52,7 @@ class Felt(NamedTuple):
 
 
 class Influence(NamedTuple):
-    """What adds to a weighted sum of a motion's errors, in its unit.
+    """Uncertainties of a weighted sum of a motion's errors, in its unit.
 
     sd            standard deviation by the noise of the points
     worst         what a mm of metal adds, of either sign at every place, where it adds the most
@@ -140,7 +140,7 @@ class Errors:
         return weights
 
     def influence(self, weights: Array) -> Influence:
-        """What adds to the sum of the errors with these weights (n,)."""
+        """Give the uncertainties of the sum of the errors with these weights (n,)."""
         each = [(felt, weights * felt.gain) for felt in self.felt]
         sd = math.sqrt(sum(felt.curve.deviation_of_sum(felt.places, share) ** 2 for felt, share in each))
         shifted: Array = np.sum([share @ felt.normals for felt, share in each], axis=0)

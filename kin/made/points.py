@@ -285,7 +285,7 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
 
 
 def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, bool, bool]) -> str:
-    """What points look like, by their placing; `about` is whether they are mirrored, turned already, may be shifted."""
+    """Sentence on what points look like by their placing; `about`: whether mirrored, turned already, free to shift."""
     words, remedies = [], []
     mirrored, aligned, shiftable = about
     if factor != 1.0:

@@ -53,7 +53,7 @@ class Stroke(NamedTuple):
 
 
 class Hidden(NamedTuple):
-    """What a programme takes of a form deviation for motion, of the number of waves a turn that hides the most.
+    """The form deviation of few waves a turn that a programme takes for motion with the greatest share.
 
     waves       of that form
     share       of it that the programme takes for motion, at the phase that hides the most; the rest is left over
@@ -304,7 +304,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
 
 def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
-    """What the unknowns, whose columns (n, f) these are, take of the waves of a form."""
+    """Give the form that is hidden the most by the unknowns, whose columns (n, f) these are."""
     base, _ = np.linalg.qr(columns)
     most: Hidden | None = None
     for waves in motion.alike(MOST_WAVES):

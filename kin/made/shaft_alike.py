@@ -32,7 +32,7 @@ NEAR = 1.2  # ratio of mean radii within which points may be of these cams
 class Radii(NamedTuple):
     """Radii over equal steps of the polar angle, mm: of the points of each cam (m, k), and of every contour (n, k).
 
-    `owner` (m,) is which contour each is meant to be of, `names` those of the contours, `other_end` (n,) which contour
+    `owner` (m,) is which contour each is of, `names` those of the contours, `other_end` (n,) which contour
     stands at the place of each where the shaft is counted from its other end.
     """
 
@@ -62,44 +62,44 @@ def lone_turns(shaft: Radii, *, aligned: bool) -> dict[int, float]:
     `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for points that look like
     those of a shaft that is turned, mirrored, in another unit, or has cams for one another.
     """
-    meant = shaft.contours[shaft.owner]
-    off = _off(shaft.measured, meant)
+    nominal = shaft.contours[shaft.owner]
+    off = _off(shaft.measured, nominal)
     alone = {
-        rank: _turn(shaft.measured[rank : rank + 1], meant[rank : rank + 1])
-        for rank in np.flatnonzero(off > ODD * FAR * meant.mean(axis=1)).tolist()
+        rank: _turn(shaft.measured[rank : rank + 1], nominal[rank : rank + 1])
+        for rank in np.flatnonzero(off > ODD * FAR * nominal.mean(axis=1)).tolist()
     }
     if off.max() > FAR * shaft.size:
-        _demand_shaft(shaft, meant, off, aligned=aligned)
-    return alone if _mean(_off(shaft.measured, meant, alone)) <= BETTER * _mean(off) else {}
+        _demand_shaft(shaft, nominal, off, aligned=aligned)
+    return alone if _mean(_off(shaft.measured, nominal, alone)) <= BETTER * _mean(off) else {}
 
 
-def _demand_shaft(shaft: Radii, meant: Array, off: Array, *, aligned: bool) -> None:
+def _demand_shaft(shaft: Radii, nominal: Array, off: Array, *, aligned: bool) -> None:
     """Raise UnlikePointsError for points that lie far off as those of another shaft do."""
     problem = f"the points lie {_mean(off):.3g} mm off the contours on average"
-    ratio = float(meant.mean() / shaft.measured.mean())
+    ratio = float(nominal.mean() / shaft.measured.mean())
     factor = next((value for value in FACTORS if 1.0 / NEAR < value / ratio < NEAR), None)
     if factor is not None:
         large, word = max(factor, 1.0 / factor), "small" if factor > 1.0 else "large"
         raise UnlikePointsError(f"{problem}: they look {large:.6g} times too {word}: `--units {FACTORS[factor]}`")
-    looks = [*_shaft_looks(shaft, meant, aligned=aligned), *_swap_looks(shaft, off)]
+    looks = [*_shaft_looks(shaft, nominal, aligned=aligned), *_swap_looks(shaft, off)]
     explained = [look for look in looks if look.left <= BETTER * _mean(off)]
     if explained:
         raise UnlikePointsError(f"{problem}: {min(explained).words}")
 
 
 class _Look(NamedTuple):
-    """What points look like, and how far off they are then, mm on average."""
+    """A likeness of points: how far off they are under it, mm on average, and its words."""
 
     left: float
     words: str
 
 
-def _shaft_looks(shaft: Radii, meant: Array, *, aligned: bool) -> Iterator[_Look]:
+def _shaft_looks(shaft: Radii, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
     """The shaft as one turned, mirrored, or measured from its other end."""
     turned_over = shaft.contours[shaft.other_end[shaft.owner]]
     for mirrored, contours, looks, remedy in (
-        (False, meant, "", ""),
-        (True, meant, "mirrored", MIRRORED),
+        (False, nominal, "", ""),
+        (True, nominal, "mirrored", MIRRORED),
         (True, turned_over, "measured from its other end", TURNED_OVER),
     ):
         measured = np.roll(shaft.measured[:, ::-1], 1, axis=1) if mirrored else shaft.measured
@@ -127,20 +127,20 @@ def _mean(off: Array) -> float:
     return float(np.sqrt(np.mean(off**2)))
 
 
-def _off(measured: Array, meant: Array, turns: dict[int, float] | None = None) -> Array:
+def _off(measured: Array, nominal: Array, turns: dict[int, float] | None = None) -> Array:
     """Root mean square (m,) of the radii's difference, mm, those of some cams turned back."""
     back = measured.copy()
     for rank, turn in (turns or {}).items():
         every = equal_steps(LOOKS)
         back[rank] = np.interp(every + turn, every, measured[rank], period=TURN)
-    off: Array = np.sqrt(np.mean((back - meant) ** 2, axis=1))
+    off: Array = np.sqrt(np.mean((back - nominal) ** 2, axis=1))
     return off
 
 
-def _turn(measured: Array, meant: Array) -> float:
+def _turn(measured: Array, nominal: Array) -> float:
     """Turn of all cams as one, rad, from -pi to pi, by the correlation of their radii (m, k)."""
     count = measured.shape[1]
-    spectrum = (np.fft.rfft(measured) * np.conj(np.fft.rfft(meant))).sum(axis=0)
+    spectrum = (np.fft.rfft(measured) * np.conj(np.fft.rfft(nominal))).sum(axis=0)
     spectrum[0] = 0.0
     likeness = np.fft.irfft(spectrum, count)
     best = int(np.argmax(likeness))

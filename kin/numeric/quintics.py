@@ -1,7 +1,7 @@
 """Periodic functions by quintics, from values and two derivatives at both ends of intervals that cover the period.
 
 Over an interval of width h the quintic misses the function by h^6 |f^(6)| / 46080 at most (Hermite's remainder), in
-the middle. Whoever makes one sees to it that the intervals are short enough.
+the middle. The caller chooses intervals that are short enough.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
 
 
 def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str, str], Array]:
-    """What is looked at over shaft angles (n,), by name and unit, for a motion (3, n)."""
+    """Forces, pressures and torque (n,) at shaft angles (n,), rad, by name and unit, of a motion (3, n)."""
     state, names = running.in_motion(shaft, rows), running.turn.names
     of = [f", {name}" if len(names) > 1 else "" for name in names]
     found = {(f"contact force{ending}", "N"): row for ending, row in zip(of, state.normal, strict=True)}

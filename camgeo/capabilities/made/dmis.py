@@ -55,7 +55,7 @@ def _make(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 class _Disc(NamedTuple):
-    """What is measured of a disc: its profile's zone and half its height, mm, its contours, and its turn, rad."""
+    """A disc to be measured: width of its profile's zone, mm, half its height, mm, its contours, and its turn, rad."""
 
     zone: float | None
     height: float

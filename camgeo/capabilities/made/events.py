@@ -1,4 +1,4 @@
-"""What engine people ask of a made cam: lift, velocity and durations at stated lifts, made against intended.
+"""Events of a made cam as engines have them: lift, velocity and durations at stated lifts, made against intended.
 
 The lifts are those of the recipe's limits that have one, of the follower or of what it moves, such as a valve; where
 something is moved, those at which its own figures are usually taken; on a shaft that of its events. Limits of a figure
@@ -34,7 +34,7 @@ ANGLES, DURATION = ("opens_deg", "closes_deg", "centre_deg"), "duration_crank_de
 
 
 class StatedLift(NamedTuple):
-    """A lift at which events are told, mm or rad: of what is moved, or of the follower (None), and the follower's."""
+    """A lift at which there are events, mm or rad: of what is `moved`, or of the follower, and the follower's there."""
 
     moved: Moved | None
     lift: float

@@ -50,7 +50,7 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
 
 
 def _run(recipe: Recipe, design: Design, run: RunMade) -> dict[str, Any]:
-    """What a run shows on each surface; of several files also their standard deviation about the mean."""
+    """Give the report of a run: each surface's deviation, and the scatter of several files about their mean."""
     surfaces = []
     for name, curve in run.curves.items():
         entry = {"points": run.points[name], "spans": curve.spans, **_surface(recipe, design, name, curve, run.error)}
@@ -87,7 +87,7 @@ def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
 def _correction(
     recipe: Recipe, design: Design, totals: Mapping[str, Smooth], error: float, corrected: tuple[float, list[str]]
 ) -> dict[str, Any]:
-    """What a share takes off in files, and what that alone would do to the motion of a part that came out as drawn.
+    """Give the report of a correction: what files have less, and the motion of a part made as these are drawn.
 
     `error`, mm, is the sum of what is stated for the probes of all runs.
     """

@@ -1,4 +1,4 @@
-"""What kin refuses of points, as an error of the call that names their files."""
+"""Errors of measured points, raised as those of the call that names their files."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ class Phase:
 
 
 class CamMade(NamedTuple):
-    """What the points of one cam of a shaft tell."""
+    """One measured cam of a shaft: its points, its part as made, and its phase."""
 
     points: CamPoints
     result: PartMade
@@ -95,7 +95,7 @@ class CamMade(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ShaftMade:
-    """What the points of a shaft tell.
+    """A measured shaft.
 
     cams     those that were measured, in the order of the recipe
     missing  names of those that were not
@@ -216,7 +216,7 @@ def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: floa
 
 
 def _heights_alike(cams: Sequence[ShaftCam], height: Array) -> str:
-    """What heights look like of which some are on no cam: where all would be on one if scaled, turned or shifted."""
+    """Sentence on heights (n,), mm, of which some are on no cam: how all would be on one, scaled, turned or shifted."""
     levels = np.unique(np.round(height, 3))
     low, high = np.array([[cam.low, cam.high] for cam in cams]).T
 
@@ -343,7 +343,7 @@ def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call
 
 
 def _on_shaft(part: Influence, at: float) -> Influence:
-    """What adds to a cam's phase, its axes turned by an angle, in those of the shaft."""
+    """Give an influence on a cam's phase in the shaft's axes, from which the cam's are turned by an angle, rad."""
     c, s = math.cos(at), math.sin(at)
     return part._replace(shifted=np.array([[c, -s], [s, c]]) @ part.shifted)
 
@@ -361,7 +361,7 @@ def _lone_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> lis
 def _remarks(
     measured: Sequence[CamPoints], results: Sequence[PartMade], late: float | None, missing: Sequence[str]
 ) -> list[str]:
-    """What holds of all cams once, and what does of some with their names."""
+    """Remarks: one that all cams have stands once, one of some cams with their names."""
     cams_of: dict[str, list[str]] = {}
     for points, result in zip(measured, results, strict=True):
         for text in result.remarks:

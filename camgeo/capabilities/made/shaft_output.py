@@ -1,4 +1,4 @@
-"""What the points of a shaft told, in a folder: the files of each cam as of one alone, and a page of the shaft."""
+"""The folder of a measured shaft: the files of each cam as of one alone, and a page of the shaft."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the points of a shaft told, as a section of the report."""
+"""The section of the report on a measured shaft."""
 
 from __future__ import annotations
 

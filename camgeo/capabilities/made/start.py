@@ -70,7 +70,7 @@ class Started(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _MeasuredCam:
-    """What points say of a motion: base radius and its uncertainty (k = 2), mm, and strokes where there are such.
+    """A measured cam: base radius and its uncertainty (k = 2), mm, its motion, and its strokes where it has any.
 
     `base` is None where other lengths fix the size, `wave` what the form that hides the most adds to it, of height 1.
     """
@@ -377,7 +377,7 @@ def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
 
 
 def _hidden(measured: _MeasuredCam, programme: Programme) -> str:
-    """What of the part's form cannot be told from its motion."""
+    """Sentence on the form of few waves a turn that the recipe takes for motion: its share, and what it moves."""
     waves, share, boundaries, levels = programme.hidden
     high, unit = _in_unit(measured, measured.reading), _unit(measured)
     moved = [f"heights by {levels.max() * high:.2g} {unit}"]
@@ -393,7 +393,7 @@ def _hidden(measured: _MeasuredCam, programme: Programme) -> str:
 
 
 def _play(measured: _MeasuredCam) -> list[str]:
-    """What both contacts of a follower leave beside what the recipe says."""
+    """Sentences on the play of two contacts, least, mean and greatest, beyond that of the recipe; none without two."""
     if measured.motion.play is None:
         return []
     least, mean, most = (_in_unit(measured, value) for value in measured.motion.play)

@@ -60,7 +60,7 @@ class Engine:
 
 @dataclass(frozen=True)
 class Work:
-    """What a run did: designs computed, designs reused from disk, damaged chunk files, and seconds spent."""
+    """Counts of a run: designs computed, designs reused from disk, damaged chunk files, and seconds spent."""
 
     computed: int
     reused: int

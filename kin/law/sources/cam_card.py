@@ -344,7 +344,7 @@ class _Joined(NamedTuple):
 
 
 def _joined(lift: float, sides: Sequence[SideCard], own: Sequence[_Side], nose: float | None) -> _Joined:
-    """What sides have together over their angles."""
+    """Give the least peak of sides with one acceleration at the nose, each over its own angle; infinite without one."""
     programme = _programme(lift, sides, [side.half for side in own], nose)
     peak, weights = programme.least_peak(_first_cuts(len(sides)))
     if not weights:
