@@ -57,8 +57,11 @@ class ReadError(CamgeoError, ValueError):
 
 
 def xml_fault(error: Exception) -> str:
-    """Say where the text of an XML file breaks, by what a parser raised: ExpatError and ParseError have a line."""
-    line = getattr(error, "lineno", None)
+    """Say where the text of an XML file breaks, by what a parser raised.
+
+    ExpatError has `lineno` and `offset`; ParseError has both in `position`, and a `lineno` of None.
+    """
+    line, column = getattr(error, "position", (getattr(error, "lineno", None), getattr(error, "offset", 0)))
     if line is None:
         return "its encoding is not known"
-    return f"its XML breaks at line {line}, column {getattr(error, 'offset', 0)}"
+    return f"its XML breaks at line {line}, column {column}"

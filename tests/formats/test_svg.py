@@ -339,7 +339,7 @@ BARE = '<svg xmlns="http://www.w3.org/2000/svg" '
         (HEAD, '<g transform="scale(a)"><circle r="2"/></g>', "syntax", "a transform is 'scale(a)'"),
         (HEAD, '<g style="transform:scale(2)"><circle r="2"/></g>', "unsupported", "transformed by its style"),
         (HEAD, "<g>" * 200 + DISC + "</g>" * 200, "unsupported", "groups within groups"),
-        (HEAD, "<g>", "syntax", "not a sound SVG file"),
+        (HEAD, "<g>", "syntax", "not a sound SVG file: its XML breaks at line"),
         (BARE + 'transform="scale(2)">', DISC, "unsupported", "the page itself is transformed"),
         (BARE + 'width="6em">', DISC, "syntax", "the size of the page is '6em'"),
         (BARE + 'width="6mm" height="7mm" viewBox="0 0 6 6">', DISC, "unsupported", "along the height"),
