@@ -13,7 +13,7 @@ from support.cases import few
 from support.starters import OF_CAMS
 
 from camgeo.cli.main import main
-from camgeo.recipe.starter import starter
+from camgeo.recipe.starter import STARTERS, starter
 from camgeo.registry import registry
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> No
     assert all(len(words) > 20 and words.endswith(".") for _, words in rows)
     assert main(["new", "disc"]) == 0
     discs = [line.split(None, 1) for line in capsys.readouterr().out.splitlines()]
-    assert discs == [row for row in rows if row[0].startswith("disc-") or row[0] == "valve-train"]
+    assert discs == [row for row in rows if row[0] in STARTERS and STARTERS[row[0]].kind == "disc"]
     assert len(discs) >= 10
 
 
