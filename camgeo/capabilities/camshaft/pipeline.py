@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.camshaft.keys import SHAFT_FILES
+from camgeo.capabilities.camshaft.keys import DRAWN, SHAFT_FILES
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
 from camgeo.common.units import UNIT_MM
@@ -22,7 +22,7 @@ from camgeo.synthesis.intent import intended, permitted
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
@@ -185,26 +185,33 @@ def _foresee(request: FileRequest) -> None:
 
 def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
     """Write one file; a solid is read back and judged."""
-    recipe = job.recipe
-    match request.kind:
-        case "csv":
-            from camgeo.capabilities.camshaft.tables import write_csv
+    if request.kind in _UNJUDGED:
+        return _UNJUDGED[request.kind](job, request, path), ()
+    recipe, write = job.recipe, request.format.shaft
+    if write is None:
+        return _solid(job, request, path)
+    with job.clock.stage(request.kind):
+        write(recipe, [lobe.on_shaft(recipe.engine) for lobe in job.lobes], request, path)
+    return FileResult(path, request, units=UNIT_MM[request.told_in(recipe.units)]), ()
 
-            with job.clock.stage("table"):
-                write_csv(path, recipe, job.lobes, request)
-            return FileResult(path, request, units=recipe.mm), ()
-        case "svg":
-            from camgeo.capabilities.camshaft.diagrams import diagram
 
-            with job.clock.stage("timing"):
-                path.write_text(diagram(recipe, job.lobes, request.as_), encoding="utf-8", newline="\n")
-            return FileResult(path, request), ()
-        case _ if request.format.shaft is not None:
-            with job.clock.stage(request.kind):
-                request.format.shaft(recipe, [lobe.on_shaft(recipe.engine) for lobe in job.lobes], request, path)
-            return FileResult(path, request, units=UNIT_MM[request.told_in(recipe.units)]), ()
-        case _:
-            return _solid(job, request, path)
+def _table(job: _Job, request: FileRequest, path: Path) -> FileResult:
+    from camgeo.capabilities.camshaft.tables import write_csv
+
+    with job.clock.stage("table"):
+        write_csv(path, job.recipe, job.lobes, request)
+    return FileResult(path, request, units=job.recipe.mm)
+
+
+def _drawing(job: _Job, request: FileRequest, path: Path) -> FileResult:
+    from camgeo.capabilities.camshaft.diagrams import diagram
+
+    with job.clock.stage("timing"):
+        path.write_text(diagram(job.recipe, job.lobes, request.as_), encoding="utf-8", newline="\n")
+    return FileResult(path, request)
+
+
+_UNJUDGED: Mapping[str, Callable[[_Job, FileRequest, Path], FileResult]] = {"csv": _table, DRAWN: _drawing}
 
 
 def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
