@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 def _settle(recipe: Recipe) -> Recipe:
-    from camgeo.measures.least_angle import settled
+    from camgeo.measures.least_angle import with_least_angle
 
-    return settled(recipe)
+    return with_least_angle(recipe)
 
 
 def _design(recipe: Recipe) -> Design:

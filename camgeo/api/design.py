@@ -70,13 +70,13 @@ class Design:
     @cached_property
     def figures(self) -> Figures:
         """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
-        from camgeo.measures.figures import of_design
+        from camgeo.measures.figures import design_figures
         from camgeo.recipe.figures import FIGURES
 
         given = set(self.recipe.marks)
         offers = self.recipe.cam.arrangement.offers
         names = [name for name, one in FIGURES.items() if one.of == "design" and one.needs.there(offers, given)]
-        found = of_design(self.recipe, self.exact, self.exact.checks, names)
+        found = design_figures(self.recipe, self.exact, self.exact.checks, names)
         return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
 
     @property

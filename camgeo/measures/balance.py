@@ -29,10 +29,10 @@ NODES, WEIGHTS = gauss(3)
 
 @dataclass(frozen=True)
 class Balance:
-    """Of one disc: mass, kg; centre of mass (3,), mm, as the part is drawn; inertia about the shaft, kg mm^2.
+    """Mass of a disc, kg; centre of mass (3,), mm, as the part is drawn; moment of inertia about the shaft, kg mm^2.
 
-    `unbalance` is mass times distance of that centre from the shaft, kg mm. `error` is the greatest of their errors by
-    the integrals, as shares. `without` names features that are left out, `surface` the disc's where there are several.
+    `unbalance` is mass times distance of that centre from the shaft, kg mm. `error` is the greatest relative error of
+    the integrals. `without` names features that are left out, `surface` the disc where there are several.
     """
 
     mass: float
@@ -56,21 +56,21 @@ class Balance:
 
 
 def balances_of(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
-    """The balance of each disc at `part.density`, none without it, or of a part that is no single body."""
+    """Mass properties of each disc at `part.density`; empty without a density or where no disc is a single body."""
     density = recipe.part.density
     if density is None:
         return ()
-    turned = -1.0 if recipe.rotation == "ccw" else 1.0
-    found = []
+    mirror = -1.0 if recipe.rotation == "ccw" else 1.0
+    balances = []
     for disc in design.discs:
         if disc.body is None or not disc.contours or (len(disc.contours) > 1 and disc.body.pocket is None):
             continue
-        names = disc.name if len(design.discs) > 1 else ""
-        found.append(replace(_balance(disc, disc.body, density * KG, turned), surface=names))
-    return tuple(found)
+        name = disc.name if len(design.discs) > 1 else ""
+        balances.append(replace(_balance(disc, disc.body, density * KG, mirror), surface=name))
+    return tuple(balances)
 
 
-def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
+def _balance(disc: Disc, body: Body, density: float, mirror: float) -> Balance:
     from camgeo.synthesis.part.as_intent import layers_of
 
     volume, error = np.zeros(5), np.zeros(4)  # integrals of 1, x, y, r^2 and z
@@ -86,7 +86,7 @@ def _balance(disc: Disc, body: Body, density: float, turned: float) -> Balance:
     size = max(contour.size for _, contour in disc.contours)
     share = float((error / (volume[0] * np.array([1.0, size, size, size * size]))).max())
     without = () if body.screw is None else ("set screw",)
-    centre = (x / mass, turned * y / mass, z / mass)
+    centre = (x / mass, mirror * y / mass, z / mass)
     return Balance(mass, centre, inertia, math.hypot(x, y), share, without)
 
 
@@ -99,8 +99,8 @@ def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array,
         outlines = [(float(surface.side), moments(contour, inset)) for surface, contour in disc.contours]
         if body.rim is not None:
             outlines.append((1.0, moments_of_chain(body.rim.chain)))
-    total = sum((sign * _row(one) for sign, one in outlines), np.zeros(4)) - sum(map(_row, holes), np.zeros(4))
-    return total, sum((np.array(one.error) for _, one in outlines), np.zeros(4))
+    solid = sum((sign * _row(area) for sign, area in outlines), np.zeros(4))
+    return solid - sum(map(_row, holes), np.zeros(4)), sum((np.array(area.error) for _, area in outlines), np.zeros(4))
 
 
 def _row(moments: Moments) -> Array:

@@ -1,4 +1,4 @@
-"""Where the follower touches the exact cam, for what is to be measured: places and outward normals."""
+"""Points in which the follower touches the exact cam, with outward normals."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 
 
 class ContactPoints(NamedTuple):
-    """Places (n, 2), mm, and normals (n, 2) out of the metal, in the cam's axes as if it were not mirrored.
+    """Points of contact (n, 2), mm, and unit normals (n, 2) out of the metal, in the axes of the cam before mirroring.
 
-    `angles` (n,) are the shaft angles, rad, at which they are touched.
+    `angles` (n,) are the shaft angles, rad, of the contacts.
     """
 
     angles: Array
     places: Array
     normals: Array
 
-    def drawn(self, turned: float, rotation: str) -> ContactPoints:
-        """The points of the cam turned by an angle, rad, as it is drawn: mirrored for `ccw`."""
+    def as_drawn(self, angle: float, rotation: str) -> ContactPoints:
+        """The same points with the cam turned counter-clockwise by `angle`, rad, then mirrored for rotation `ccw`."""
         places, normals = self.places, self.normals
-        if turned:
-            c, s = math.cos(turned), math.sin(turned)
+        if angle:
+            c, s = math.cos(angle), math.sin(angle)
             back = np.array([[c, s], [-s, c]])
             places, normals = places @ back, normals @ back
         mirror = np.array([1.0, -1.0 if rotation == "ccw" else 1.0])
@@ -40,9 +40,9 @@ class ContactPoints(NamedTuple):
 
 
 def contact_points(design: Design, shaft: Array, contours: Sequence[tuple[Surface, Curve]]) -> Iterator[ContactPoints]:
-    """Give what each contact touches of contours at shaft angles (n,), rad; nothing where a contour is trimmed away."""
+    """Yield the contact points of each contact on each contour at shaft angles (n,), rad, without trimmed places."""
     relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
     for parameter in design.motion.parameters(shaft, relative).values():
         for surface, contour in contours:
-            frame, there = contour.sample(parameter), touched(contour, parameter)
-            yield ContactPoints(shaft[there], frame.point[there], (surface.side * frame.normal)[there])
+            frame, kept = contour.sample(parameter), touched(contour, parameter)
+            yield ContactPoints(shaft[kept], frame.point[kept], (surface.side * frame.normal)[kept])

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.measures.units import UNIT_NAMES
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
@@ -38,9 +39,9 @@ class Extreme(NamedTuple):
 
 
 class Turn(ABC):
-    """What moves over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
+    """A mechanism over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
 
-    `corners` are shaft angles, rad, at which what is found over the turn is not smooth, besides those of the motion.
+    `corners` are shaft angles, rad, at which functions of it are not smooth, besides those of the motion.
     """
 
     corners: tuple[float, ...]
@@ -53,7 +54,7 @@ class Turn(ABC):
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """What reports call each contact."""
+        """Name of each contact in reports."""
 
     @abstractmethod
     def rows(self, t: Array) -> Array:
@@ -65,32 +66,32 @@ class Turn(ABC):
         """Parameters, rising over a whole turn, between which the motion is smooth."""
 
     def shaft(self, t: Array) -> Array:
-        """Shaft angles (n,) at parameters (n,): the same, unless said otherwise."""
+        """Shaft angles (n,), rad, at parameters (n,): the same, unless overridden."""
         return t
 
     def parameter(self, phi: Array) -> Array:
-        """Parameters (n,) at shaft angles (n,)."""
+        """Parameters (n,) at shaft angles (n,), rad."""
         return phi
 
     @property
     def unit(self) -> str:
-        """Of forces along the travel, as reported."""
+        """Unit of forces along the travel, as reported."""
         return "N m" if self.swings else "N"
 
     def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
-        """Functions of the parameter, values(t (n,)) -> (r, n), in monotone pieces. RoughError where they leap."""
+        """Monotone pieces of r functions of the parameter, values(t (n,)) -> (r, n); raises RoughError if they leap."""
         from kin.numeric.monotone import between, cells, pieces
 
         corners = self.parameter(np.array(self.corners)) if self.corners else ()
-        made = cells(values, between(0.0, TURN, [*self.places, *corners]), share=SHARE)
-        return [pieces(made, row) for row in range(len(made.coefficients))]
+        functions = cells(values, between(0.0, TURN, [*self.places, *corners]), share=SHARE)
+        return [pieces(functions, row) for row in range(len(functions.coefficients))]
 
     def degrees(self, t: float) -> float:
         """Shaft angle in degrees, from 0 to less than 360, at a parameter."""
         return degrees(float(self.shaft(np.array([t]))[0]))
 
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
-        """Least and greatest of such functions over the turn, none sampled past."""
+        """Least and greatest value of each of r such functions over the turn, proved, not sampled."""
 
         def placed(extreme: tuple[float, float]) -> Extreme:
             return Extreme(extreme[0], self.degrees(extreme[1]))
@@ -112,19 +113,20 @@ class FollowerTurn(Turn):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """By its surface, or by its touch with a letter where there are several."""
+        """Each contact's surface, or its touch, with a letter where there are several."""
         contacts = self.design.follower.contacts
         letters = "AB" if len(contacts) > 1 else ("",)
         return tuple(
-            one.surface or f"{one.touch.word} {letter}".rstrip() for one, letter in zip(contacts, letters, strict=True)
+            contact.surface or f"{contact.touch.word} {letter}".rstrip()
+            for contact, letter in zip(contacts, letters, strict=True)
         )
 
     def rows(self, t: Array) -> Array:
-        """Position and two derivatives, mm or rad."""
+        """Position and two derivatives by the shaft angle (3, n), mm or rad."""
         return self.design.motion.travel(t, 2)
 
     def lines(self, rows: Array) -> tuple[ContactLine, ...]:
-        """The line of each contact at positions of the follower."""
+        """Line of each contact at positions of the follower, `rows` (3, n)."""
         from kin.follower.contact_lines import contact_line
 
         return tuple(contact_line(contact, rows) for contact in self.design.follower.contacts)
@@ -135,14 +137,19 @@ class FollowerTurn(Turn):
         from kin.numeric.monotone import between
 
         shaft_deg = self.design.motion.shaft_deg
-        return between(0.0, TURN, sorted(math.radians(shaft_deg(float(at))) for at in self.design.exact.breaks))
+        return between(
+            0.0, TURN, sorted(math.radians(shaft_deg(float(parameter))) for parameter in self.design.exact.breaks)
+        )
 
 
 # --- preload by interference ------------------------------------------------------------------------------------------
 
 
-def elastic(turn: FollowerTurn, preload: Preload, rows: Array) -> Elastic:
-    """Both contacts under preload, N and mm or N mm and rad; raises ValueError where no stiffness is given."""
+def elastic_contacts(turn: FollowerTurn, preload: Preload, rows: Array) -> Elastic:
+    """Forces of both contacts under preload at positions `rows` (3, n), N and mm, or N mm and rad.
+
+    Raises ValueError without a stiffness.
+    """
     from kin.dynamics.contact_forces import preloaded
 
     if preload.stiffness is None:
@@ -156,7 +163,7 @@ def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
     """Least and greatest force of the preload along the travel over the turn, N, or N m about a pivot."""
     turn = FollowerTurn(design)
     scale = PER_MM if turn.swings else 1.0
-    ((least, greatest),) = turn.extremes(lambda t: scale * elastic(turn, preload, turn.rows(t)).preload[None])
+    ((least, greatest),) = turn.extremes(lambda t: scale * elastic_contacts(turn, preload, turn.rows(t)).preload[None])
     return least, greatest
 
 
@@ -167,7 +174,7 @@ def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
         return None
     section: dict[str, object] = {
         "interference": preload.interference / recipe.mm,
-        "unit": "in" if recipe.units == "inch" else "mm",
+        "unit": UNIT_NAMES[recipe.units],
     }
     if preload.stiffness is None:
         return section
@@ -175,11 +182,11 @@ def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
     scale = PER_MM if turn.swings else 1.0
 
     def forces(t: Array) -> Array:
-        held = elastic(turn, preload, turn.rows(t))
-        return scale * np.array([held.preload, held.loses_second, held.loses_first])
+        contacts = elastic_contacts(turn, preload, turn.rows(t))
+        return scale * np.array([contacts.preload, contacts.loses_second, contacts.loses_first])
 
     (least, most), (second, _), (_, first) = turn.extremes(forces)
-    named = zip(turn.names, (first, second), strict=True)
+    lost = zip(turn.names, (first, second), strict=True)
     return section | {
         "stiffness": list(preload.stiffness),
         "force": {
@@ -190,6 +197,6 @@ def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
             "max_at_deg": most.at_deg,
         },
         "lost": [
-            {"contact": name, "load": load.value, "unit": turn.unit, "at_deg": load.at_deg} for name, load in named
+            {"contact": name, "load": load.value, "unit": turn.unit, "at_deg": load.at_deg} for name, load in lost
         ],
     }

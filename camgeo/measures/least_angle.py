@@ -1,10 +1,9 @@
 """The least angle of a segment that all limits of a recipe allow, in place of `over: least`.
 
-Whatever a recipe limits is held here by the checks that a run makes of a design, so no figure need be monotone in the
-angle. Angles are tried on a ladder that reaches up to all that the other segments leave; between the first that holds
-and the one below it they are halved to a step of 1/`STEPS` degrees. So the angle found holds, one step less does not,
-and every shorter angle of the ladder fails. What may pass unnoticed is a stretch of shorter angles that holds and lies
-between two of the ladder, a ratio `RATIO` apart.
+An angle holds if every check of a run's design passes, so no figure need be monotone in the angle. Angles are tried on
+a ladder that reaches up to all that the other segments leave; between the first that holds and the rung below it they
+are halved to a step of 1/`STEPS` degrees. So the result holds, one step less does not, and every shorter rung fails. A
+stretch of shorter angles that holds and lies between two rungs, a ratio `RATIO` apart, may be missed.
 """
 
 from __future__ import annotations
@@ -37,43 +36,43 @@ if TYPE_CHECKING:
 STEPS = 100  # of a degree: every angle that is tried is a whole number of them
 RATIO = 1.2  # of neighbours on the ladder, whose lowest rung is above a degree
 OF_MOTION = frozenset({*ORDERS, PRESSURE.name, ON_RISE, ON_RETURN})
-"""Figures of the exact cam before its undercut is known, which takes ten times as long to find."""
+"""Figures of the exact cam that need no undercut, whose search takes ten times as long."""
 
 
 @dataclass(frozen=True)
 class _Search:
-    """Angles in steps, and what fails at those that were tried."""
+    """Checks and errors that fail at the angles tried so far, by the angle in steps."""
 
     recipe: Recipe
-    open: Open
+    segments: Open
     failing: dict[int, tuple[Check, ...]] = field(default_factory=dict)
     errors: dict[int, RecipeErrors] = field(default_factory=dict)
 
-    def at(self, steps: int) -> Recipe:
-        """Give the recipe with an angle."""
-        motion, _ = self.open.filled(steps / STEPS)
+    def recipe_at(self, steps: int) -> Recipe:
+        """The recipe with an angle."""
+        motion, _ = self.segments.with_least(steps / STEPS)
         return replace(self.recipe, cam=self.recipe.cam.with_motion(motion))
 
     def holds(self, steps: int) -> bool:
         """Whether every check of a design holds at an angle."""
         if steps not in self.failing and steps not in self.errors:
             try:
-                self.failing[steps] = tuple(check for check in _checks(self.at(steps)) if not check.ok)
+                self.failing[steps] = tuple(check for check in _checks(self.recipe_at(steps)) if not check.ok)
             except RecipeErrors as errors:
                 self.errors[steps] = errors
         return steps not in self.errors and not self.failing[steps]
 
     def reasons(self, steps: int) -> tuple[str, ...]:
-        """Say what fails at an angle that was tried: checks by their names, or why there is no cam."""
+        """Names of the checks that fail at an angle tried before, or why it gives no cam."""
         if steps in self.errors:
             return tuple(error.problem for error in self.errors[steps].errors)
         return tuple(dict.fromkeys(check.name for check in self.failing.get(steps, ())))
 
 
-def settled(recipe: Recipe) -> Recipe:
-    """Give the recipe with the least angle that its limits allow.
+def with_least_angle(recipe: Recipe) -> Recipe:
+    """The recipe with the least angle that its limits allow; the recipe itself where no angle is open.
 
-    Raises RecipeErrors where none was found, and for a limit of files, of which none is made here.
+    Raises RecipeErrors where no angle holds, and for a limit of files, as none is written here.
     """
     angles = recipe.cam.open
     if angles is None:
@@ -85,37 +84,31 @@ def settled(recipe: Recipe) -> Recipe:
     search = _Search(recipe, angles)
     least, rest = angles.index(LEAST), angles.index(REST)
     path = f"cam.motion{'.segments' if 'cam.motion.segments' in recipe.marks else ''}"
-    longest = math.ceil(angles.left * STEPS - 1e-6) - 1  # the dwell takes the last step
-    rungs = _ladder(longest)
-    held = [rung for rung in rungs if search.holds(rung)]
-    if not held:
-        raise _refused(search, longest, f"{path}[{least}].over")
-    high = held[0]
+    longest = math.ceil(angles.remaining * STEPS - 1e-6) - 1  # the dwell takes the last step
+    rungs = [longest]
+    while (shorter := int(rungs[0] / RATIO)) >= STEPS:
+        rungs.insert(0, shorter)
+    holding = [rung for rung in rungs if search.holds(rung)]
+    if not holding:
+        raise _refusal(search, longest, f"{path}[{least}].over")
+    high = holding[0]
     low = max((rung for rung in rungs if rung < high), default=0)
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if search.holds(middle) else (middle, high)
-    motion, dwell = angles.filled(high / STEPS)
-    found = Settled(
+    motion, dwell = angles.with_least(high / STEPS)
+    choice = Settled(
         angles.motion.segments[least].kind,
         Angle(f"{path}[{least}].over", high / STEPS),
         Angle(f"{path}[{rest}].dwell", dwell),
         search.reasons(low),
         tuple(rung / STEPS for rung in rungs if rung > high and not search.holds(rung)),
     )
-    return replace(recipe, cam=recipe.cam.with_motion(motion), settled=found)
+    return replace(recipe, cam=recipe.cam.with_motion(motion), settled=choice)
 
 
-def _ladder(longest: int) -> list[int]:
-    """Rungs, rising to the longest."""
-    rungs = [longest]
-    while (shorter := int(rungs[-1] / RATIO)) >= STEPS:
-        rungs.append(shorter)
-    return rungs[::-1]
-
-
-def _refused(search: _Search, longest: int, path: str) -> RecipeErrors:
-    """The error of angles none of which holds: what fails at the longest."""
+def _refusal(search: _Search, longest: int, path: str) -> RecipeErrors:
+    """Error for a ladder on which no angle holds: what fails at the longest."""
     if longest in search.errors:
         return search.errors[longest]
     check, angle = search.failing[longest][0], f"{longest / STEPS:.10g} degrees"
@@ -131,7 +124,7 @@ def _refused(search: _Search, longest: int, path: str) -> RecipeErrors:
 
 
 def _checks(recipe: Recipe) -> Sequence[Check]:
-    """All checks of a design that need no file; of one that fails a limit of its motion those limits alone."""
+    """Checks of a design that need no file; where a limit of its motion fails, those limits alone."""
     limits = tuple(limit for limit in recipe.limits if limit.figure in OF_MOTION)
     if limits:
         try:
@@ -145,7 +138,7 @@ def _checks(recipe: Recipe) -> Sequence[Check]:
     design = designed(recipe)
     checks = list(design.checks)
     runs: dict[str, Mapping[str | None, Measured]] = {}
-    if all(check.ok for check in checks):  # which take the most
+    if all(check.ok for check in checks):  # runs take the most time
         owners = {FIGURES.owner(limit.figure) for limit in recipe.limits if FIGURES[limit.figure].of == "run"}
         for capability in registry.in_order(filter(None, owners)):
             results = capability.examine(recipe, design, (), Clock())

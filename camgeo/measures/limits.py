@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import LIMIT, Scene, declaration
 from camgeo.checks.remedies import Missed, of_limit
-from camgeo.measures.figures import of_design, of_file
+from camgeo.measures.figures import design_figures, file_figure
 from camgeo.recipe.figures import FIGURES
 from kin.judge.check import Check
 
@@ -31,28 +31,28 @@ def limit_checks(
     files: Sequence[FileResult],
     runs: Mapping[str, Mapping[str | None, Measured]] | None = None,
 ) -> list[Check]:
-    """Hold every figure that the recipe limits against its bounds.
+    """Checks of every figure that the recipe limits, one for each bound.
 
-    `checks` are all that were made, `runs` figures of runs (`Results`). A figure that cannot be had fails, and says
-    why.
+    `checks` are all checks of the run, `runs` figures by run (`Results`). A figure without a value fails with its
+    reason.
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
     names = [limit.figure for limit in recipe.limits if FIGURES[limit.figure].at_lift is None]
-    measured = of_design(recipe, design, checks, names, speeds)
-    found: list[Check] = []
+    measured = design_figures(recipe, design, checks, names, speeds)
+    results: list[Check] = []
     for limit in recipe.limits:
-        name, of = limit.figure, FIGURES[limit.figure].of
-        if FIGURES[name].at_lift is not None:
+        name, figure = limit.figure, FIGURES[limit.figure]
+        if figure.at_lift is not None:
             from camgeo.measures.lobe import figure_at
 
-            found += _held(recipe, limit, figure_at(recipe, design, name, limit.lift))
+            results += _bound_checks(recipe, limit, figure_at(recipe, design, name, limit.lift))
         elif name in measured:
-            found += _held(recipe, limit, measured[name])
+            results += _bound_checks(recipe, limit, measured[name])
         elif runs is not None and name in runs:
             for run, value in runs[name].items():
-                found += _held(recipe, limit, value, run)
-        elif of == "file":
+                results += _bound_checks(recipe, limit, value, run)
+        elif figure.of == "file":
             declared = declaration(LIMIT + name)
             if declared is None:
                 raise KeyError(name)
@@ -61,16 +61,16 @@ def limit_checks(
                 if closed and not file.closures:
                     continue  # it stands on the last file of a pair
                 if file.body == "cam" and declared.of_file is not None and declared.of_file(scene, file.request):
-                    value = of_file(name, file, checks)
-                    found += _held(recipe, limit, value, file.path.name, file.tolerance)
-    return found
+                    value = file_figure(name, file, checks)
+                    results += _bound_checks(recipe, limit, value, file.path.name, file.tolerance)
+    return results
 
 
-def _held(
+def _bound_checks(
     recipe: Recipe, limit: Limit, measured: Measured, file: str | None = None, tolerance: float | None = None
 ) -> list[Check]:
-    """Hold a figure against each bound that is given; `tolerance` is the file's. What fails says what would do."""
-    found = []
+    """Checks of a figure against each bound given; `tolerance` is the file's. A failed one has its remedy as detail."""
+    checks = []
     bounds: tuple[tuple[Sense, float | None], ...] = (("at_least", limit.at_least), ("at_most", limit.at_most))
     for sense, bound in bounds:
         if bound is None:
@@ -84,6 +84,8 @@ def _held(
         if FIGURES[limit.figure].at_lift is not None and value is not None:
             lift = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
             detail = f"{lift}: {detail}" if detail else lift
-        name, of = LIMIT + limit.figure, measured.surface
-        found.append(Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, of))
-    return found
+        name = LIMIT + limit.figure
+        checks.append(
+            Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, measured.surface)
+        )
+    return checks

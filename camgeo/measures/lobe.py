@@ -1,7 +1,7 @@
 """Figures of a lobe at a stated lift, in the words of engine people: duration, lobe centre, ramp velocity, lift area.
 
-All come from where the lift crosses that lift. The motion is followed by polynomials of which no crossing is missed
-(`kin.numeric.monotone`). Cam degrees are half the crank's.
+All come from the shaft angles at which the lift has that value. The motion is followed by polynomials of which no
+crossing is missed (`kin.numeric.monotone`). Cam degrees are half the crank's.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ class EventError(CamgeoError, ValueError):
 
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> Event:
-    """Where a lift, mm from the lowest, is crossed. Raises EventError unless it is once upwards and once down."""
-    pieces = monotone(exact)
+    """Crossings of a lift, mm from the lowest. Raises EventError unless there is one upwards and one downwards."""
+    pieces = lift_pieces(exact)
     datum, _ = pieces.least()
     crossings = _crossings(pieces, datum + lift)
     if len(crossings) != 2:
@@ -75,7 +75,7 @@ def event_of(exact: ExactCam, lift: float) -> Event:
 
 
 def _off_rest(event: Event, exact: ExactCam) -> Event:
-    """An event that begins and ends where the lowest rest does, at breaks: near them the lift is less than rounding."""
+    """The event at lift 0, its ends moved to the breaks where the lowest rest ends: near them the lift is rounding."""
     breaks = np.concatenate([exact.breaks + turns * TURN for turns in (0.0, 1.0, 2.0)])
     rest = breaks[(breaks >= event.closing - ROUNDING) & (breaks <= event.opening + TURN + ROUNDING)]
     if len(rest) < _TWO or np.ptp(rest) <= ROUNDING:
@@ -84,7 +84,7 @@ def _off_rest(event: Event, exact: ExactCam) -> Event:
 
 
 def _crossings(pieces: Pieces, level: float) -> Array:
-    """Where a level is crossed, rising: the end of the turn is its beginning, and on a rest through it none is."""
+    """Places at which a level is crossed, ascending: 0 and the whole turn are one, and a rest on the level is none."""
     places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
         return places
@@ -95,8 +95,8 @@ def _crossings(pieces: Pieces, level: float) -> Array:
 
 
 @lru_cache(maxsize=16)
-def monotone(exact: ExactCam) -> Pieces:
-    """Give the follower's position over a turn, mm or rad, as monotone pieces; raises EventError if it is too rough."""
+def lift_pieces(exact: ExactCam) -> Pieces:
+    """The follower's position over a turn, mm or rad, in monotone pieces; raises EventError if it is too rough."""
     position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
     try:
         return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
@@ -113,22 +113,22 @@ def _centre(event: Event, _: ExactCam) -> Measured:
 
 
 def _ramp_velocity(event: Event, exact: ExactCam) -> Measured:
-    """The greater of the velocities at both crossings, mm a cam degree; at a break the limit nearer to rest."""
+    """The greater speed of both crossings, mm a cam degree; at a break that of the side nearer to rest."""
     opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
     rates = exact.motion.rows(opening, 1, -1)[1], exact.motion.rows(closing, 1, 1)[1]
-    rate, at = max((abs(float(rates[0][0])), event.opening), (abs(float(rates[1][0])), event.closing))
-    return Measured(math.radians(rate), "mm/deg", degrees(at % TURN))
+    rate, parameter = max((abs(float(rates[0][0])), event.opening), (abs(float(rates[1][0])), event.closing))
+    return Measured(math.radians(rate), "mm/deg", degrees(parameter % TURN))
 
 
 def _area(event: Event, exact: ExactCam) -> Measured:
-    """Integral of the lift above the stated one between the crossings, mm times cam degrees."""
-    breaks = [at + turns * TURN for at in exact.breaks.tolist() for turns in (0.0, 1.0)]
+    """Area between the lift and the stated one from crossing to crossing, mm times cam degrees."""
+    breaks = [parameter + turns * TURN for parameter in exact.breaks.tolist() for turns in (0.0, 1.0)]
     places = between(event.opening, event.closing, sorted(breaks))
     return Measured(math.degrees(_integral(exact, places, event.lift)), "mm deg")
 
 
 def _integral(exact: ExactCam, places: Array, lift: float) -> float:
-    """Integral of the lift above another between places, breaks among them, mm times rad."""
+    """Integral of the lift less `lift` over `places`, rad, which include the breaks; mm times rad."""
     share = np.linspace(0.0, 1.0, PARTS, endpoint=False)
     knots = np.append((places[:-1, None] + np.diff(places)[:, None] * share).ravel(), places[-1])
     half = 0.5 * np.diff(knots)
@@ -137,16 +137,17 @@ def _integral(exact: ExactCam, places: Array, lift: float) -> float:
     return float((s @ WEIGHTS) @ half)
 
 
-_MADE: dict[str, Callable[[Event, ExactCam], Measured]] = {
+_FIGURES: dict[str, Callable[[Event, ExactCam], Measured]] = {
     DURATION: _duration,
     LOBE_CENTRE: _centre,
     RAMP_VELOCITY: _ramp_velocity,
+    LIFT_AREA: _area,
 }
 _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_AREA: "mm deg"}
 
 
 def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
-    """Measure a figure at a lift, mm from the lowest; without a value where that is not crossed just twice."""
+    """Figure of a lobe at a lift, mm from the lowest; without a value where that is not crossed just twice."""
     if name == LIFT_AREA and lift == 0.0:
         turn = between(0.0, TURN, exact.breaks.tolist())
         return Measured(math.degrees(_integral(exact, turn, 0.0)), _UNITS[name])
@@ -154,17 +155,11 @@ def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
         event = event_of(exact, lift)
     except EventError as error:
         return Measured(None, _UNITS[name], detail=str(error))
-    return _MADE.get(name, _area)(event, exact)
-
-
-def of_lobe(name: str, recipe: Recipe, design: Design) -> Measured:
-    """Measure a figure at the lift that the recipe's first limit of it states, or at its usual one."""
-    lift = next((limit.lift for limit in recipe.limits if limit.figure == name), FIGURES[name].at_lift or 0.0)
-    return lobe_figure(name, design.exact, lift)
+    return _FIGURES[name](event, exact)
 
 
 def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
-    """Measure a figure of the lobe, or of what a capability adds to it, at a lift, mm."""
+    """Figure of the lobe, or of a capability that adds to lobes, at a lift, mm."""
     owner = FIGURES.owner(name)
     if owner:
         return registry.capability(owner).measure_at(recipe, design, name, lift)
@@ -172,6 +167,6 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
 
 
 def moved_by(recipe: Recipe, design: Design) -> Moved | None:
-    """What the follower moves besides itself, such as a valve; None where nothing is told of it."""
-    each = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
-    return next((moved for moved in each if moved is not None), None)
+    """Motion of what the follower moves besides itself, such as a valve; None without it."""
+    motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
+    return next((moved for moved in motions if moved is not None), None)

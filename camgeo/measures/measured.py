@@ -1,4 +1,4 @@
-"""What was measured of a figure."""
+"""The value of a figure, with its unit and place."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ ABRUPT = "the motion changes too abruptly to be resolved"
 
 
 class Measured(NamedTuple):
-    """A figure, None where there is none, which `detail` then explains; `at_deg` is the shaft angle of its place.
+    """Value of a figure, None for the reason in `detail`; `at_deg` is the shaft angle of its place.
 
-    `surface` is the name of the one that it is of, the worst of several; empty where the cam has one.
+    `surface` names the surface of the value where the cam has several; empty where it has one.
     """
 
     value: float | None

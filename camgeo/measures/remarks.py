@@ -1,4 +1,4 @@
-"""Remarks: what an engineer would look at twice, and that fails nothing."""
+"""Remarks: what an engineer would look at twice, though no check fails."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from camgeo.checks.declared import LAW, MOTION, PRESSURE
 from camgeo.checks.remedies import MORE_HARMONICS
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
-from camgeo.measures.figures import of_design
-from camgeo.measures.units import of_displacements
+from camgeo.measures.figures import design_figures
+from camgeo.measures.units import UNIT_NAMES, displacement_unit
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
@@ -92,9 +92,9 @@ class Remark:
 def remarks_of(
     recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
 ) -> tuple[Remark, ...]:
-    """Make every remark that there is to make on a recipe, its design, and the checks of its files."""
-    made: dict[str, Sequence[Remark | None]] = {
-        "sizing": [_size_found(recipe, design), _angle_found(recipe)],
+    """All remarks on a recipe, its design, and the checks of its files, in the order of the report."""
+    remarks: dict[str, Sequence[Remark | None]] = {
+        "sizing": [_sizing(recipe, design), _least_angle(recipe)],
         "pressure-angle": [_pressure(recipe, design)],
         "large-roller": [_roller(recipe, design)],
         "sharp-corner": [_corner(recipe, design)],
@@ -113,35 +113,35 @@ def remarks_of(
     }
     for capability in registry.in_order(recipe.uses):
         for after, more in capability.remarks.items():
-            made[after] = [*made[after], *more(recipe, design)]
-    return tuple(remark for group in made.values() for remark in group if remark is not None)
+            remarks[after] = [*remarks[after], *more(recipe, design)]
+    return tuple(remark for group in remarks.values() for remark in group if remark is not None)
 
 
-def _size_found(recipe: Recipe, design: Design) -> Remark | None:
-    """What `sizing` found, and what bounds it."""
-    said = recipe.cam.advice.size_found(design.exact, recipe.mm)
-    return Remark("sizing", None, None, "", said) if said else None
+def _sizing(recipe: Recipe, design: Design) -> Remark | None:
+    """The size that `sizing` gave, and what bounds it."""
+    sentence = recipe.cam.advice.size_found(design.exact, recipe.mm)
+    return Remark("sizing", None, None, "", sentence) if sentence else None
 
 
-def _angle_found(recipe: Recipe) -> Remark | None:
+def _least_angle(recipe: Recipe) -> Remark | None:
     """The least angle that all limits allow, and what fails below it."""
-    found = recipe.settled
-    if found is None:
+    choice = recipe.settled
+    if choice is None:
         return None
-    least, rest = found.least.degrees, found.rest.degrees
-    told = f"{found.kind} over {least:.10g} deg, the least that all limits allow"
-    if found.bound:
-        told += f": a hundredth less fails {' and '.join(found.bound)}"
-    told += f"; the dwell takes {rest:.10g}"
-    if found.again:
-        told += f"; not all longer ones are allowed, such as {found.again[0]:.4g} deg"
-    return Remark("least-angle", least, None, "deg", told)
+    least, rest = choice.least.degrees, choice.rest.degrees
+    sentence = f"{choice.kind} over {least:.10g} deg, the least that all limits allow"
+    if choice.bound:
+        sentence += f": a hundredth less fails {' and '.join(choice.bound)}"
+    sentence += f"; the dwell takes {rest:.10g}"
+    if choice.again:
+        sentence += f"; not all longer ones are allowed, such as {choice.again[0]:.4g} deg"
+    return Remark("least-angle", least, None, "deg", sentence)
 
 
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:
-    """Of a roller past the rule of thumb, unless the recipe has a limit of its own; with the size that keeps it.
+    """A pressure angle of a roller beyond the rule of thumb, with the size that keeps the rule.
 
-    On the return a follower that a spring holds may be steeper.
+    None where the recipe limits that angle itself. On the return a follower held by a spring may be steeper.
     """
     if "roller" not in recipe.cam.arrangement.offers or "cam.sizing.pressure-angle" in recipe.marks:
         return None
@@ -149,13 +149,13 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     if not {PRESSURE.name, ON_RISE, ON_RETURN}.isdisjoint(bounded):
         return None
     angles = [check for check in design.checks if check.name == PRESSURE.name and check.value is not None]
-    made = max(angles, key=lambda check: check.value or 0.0, default=None)
+    steepest = max(angles, key=lambda check: check.value or 0.0, default=None)
     kind = "oscillating" if recipe.cam.arrangement.unit == "deg" else "translating"
     rule = PRESSURE_RULE[kind]
-    if made is None or made.value is None or made.value <= rule or not made.ok:
+    if steepest is None or steepest.value is None or steepest.value <= rule or not steepest.ok:
         return None
     slopes = [slope for surface in design.exact.surfaces if (slope := surface.extremes("slope")) is not None]
-    falling, value, at_deg, of = rule, made.value, made.at_deg, ""
+    falling, value, at_deg, where = rule, steepest.value, steepest.at_deg, ""
     if slopes and not design.follower.closure:
         falling = RETURN_RULE
         sides = [
@@ -163,25 +163,25 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
             for least, most in slopes
             for side in ((most, 1.0, rule, " on the rise"), (least, -1.0, falling, " on the return"))
         ]
-        over = [(one, math.degrees(math.atan(sign * one.value)), most, name) for one, sign, most, name in sides]
-        over = [row for row in over if row[1] > row[2]]
+        flanks = [(side, math.degrees(math.atan(sign * side.value)), most, name) for side, sign, most, name in sides]
+        over = [row for row in flanks if row[1] > row[2]]
         if not over:
             return None
-        worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
+        worst, value, rule, where = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
-    if made.surface and not of:
-        of = f" on {made.surface}"
-    told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
-    found = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
-    if found is not None:
-        size, other = found
+    if steepest.surface and not where:
+        where = f" on {steepest.surface}"
+    sentence = f"the pressure angle reaches {value:.4g} deg{where}; up to {rule:.0f} is the rule for {kind} followers"
+    remedy = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
+    if remedy is not None:
+        size, other = remedy
         against = _against(recipe, other, design)
-        told += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
-    return Remark("pressure-angle", value, rule, "deg", told, at_deg)
+        sentence += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
+    return Remark("pressure-angle", value, rule, "deg", sentence, at_deg)
 
 
 def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
-    """Say what stands against a cam of another size for the same motion; empty where nothing does."""
+    """The objection to a cam of another size for the same motion; empty where there is none."""
     from camgeo.curve.curve import CurveError
     from camgeo.curve.measures import farthest, nearest
     from camgeo.synthesis.design import sound
@@ -193,26 +193,26 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
         surfaces = [sound(replace(recipe, cam=cam), exact, surface) for surface in exact.surfaces]
     except (CurveError, IntentError):
         return "its curve cannot be made"
-    contours = [made.contour for made in surfaces if made.contour is not None]
+    contours = [surface.contour for surface in surfaces if surface.contour is not None]
     if len(contours) < len(surfaces):
-        return f"fails {next(check.name for made in surfaces for check in made.checks if not check.ok)}"
+        return f"fails {next(check.name for surface in surfaces for check in surface.checks if not check.ok)}"
     part = recipe.part
     if part.outer is not None:
         reach = 2.0 * max(farthest(contour).value for contour in contours)
         return f"needs a part.outer above {upward(reach / recipe.mm)}" if reach >= part.outer else ""
-    room = SHAFT * size_of(design) if part.bore is None else 0.5 * part.bore
-    return "leaves no metal round the shaft" if min(nearest(contour).value for contour in contours) <= room else ""
+    shaft = SHAFT * size_of(design) if part.bore is None else 0.5 * part.bore
+    return "leaves no metal round the shaft" if min(nearest(contour).value for contour in contours) <= shaft else ""
 
 
 def _roller(recipe: Recipe, design: Design) -> Remark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
-    round_about = [made for made in design.surfaces if made.surface.side > 0]
-    bent = [(made.bent.value, made) for made in round_about if made.bent.value is not None]
-    if not design.contours or not bent:
+    discs = [disc for disc in design.surfaces if disc.surface.side > 0]
+    radii = [(disc.bent.value, disc) for disc in discs if disc.bent.value is not None]
+    if not design.contours or not radii:
         return None
-    radius, sharpest = min(bent, key=lambda row: HALF * row[0] - row[1].surface.radius)
+    radius, sharpest = min(radii, key=lambda row: HALF * row[0] - row[1].surface.radius)
     roller, surface = sharpest.surface.radius, sharpest.surface.name
     if not HALF * radius < roller:
         return None
@@ -222,11 +222,11 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     if not size:
         return None
     where = f" on {surface}" if sharpest.surface.disc else ""
-    told = (
+    sentence = (
         f"the roller's radius{where}, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's "
         f"least convex radius; up to half is the rule, which {size} keeps"
     )
-    return Remark("large-roller", roller, HALF * radius, "mm", told, sharpest.bent.at_deg)
+    return Remark("large-roller", roller, HALF * radius, "mm", sentence, sharpest.bent.at_deg)
 
 
 def _corner(recipe: Recipe, design: Design) -> Remark | None:
@@ -235,32 +235,33 @@ def _corner(recipe: Recipe, design: Design) -> Remark | None:
     if not sharp or any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
         return None
     runs = sharp[0].runs
-    after = [*runs[1:], runs[0]]
-    turns = [(two.low - one.high) % sharp[0].shape.period for one, two in zip(runs, after, strict=True)]
+    pairs = zip(runs, [*runs[1:], runs[0]], strict=True)
+    turns = [(after.low - before.high) % sharp[0].shape.period for before, after in pairs]
     longest = max(range(len(runs)), key=turns.__getitem__)
-    told = (
+    sentence = (
         f"the contact stays on a sharp corner for {math.degrees(turns[longest]):.4g} degrees: its edge wears, the "
         "contact pressure has no bound; a reuleaux.rounding above 0 rounds it"
     )
     at_deg = design.motion.shaft_deg(runs[longest].high)
-    return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", told, at_deg)
+    return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", sentence, at_deg)
 
 
 def _cutter(recipe: Recipe, design: Design) -> Remark | None:
     """A hollow that the cutter does not reach into, where no program says so by its checks."""
-    made = recipe.manufacture
-    if made is None or not design.contours or "roller" not in recipe.cam.arrangement.offers:
+    manufacture = recipe.manufacture
+    if manufacture is None or not design.contours or "roller" not in recipe.cam.arrangement.offers:
         return None
-    if made.layer or any(request.format.program for request in recipe.export.files):
+    if manufacture.layer or any(request.format.program for request in recipe.export.files):
         return None
-    radius, at = min(hollow_radius(surface.side, contour) for surface, contour in design.contours)
-    if radius >= made.radius:
+    radius, parameter = min(hollow_radius(surface.side, contour) for surface, contour in design.contours)
+    if radius >= manufacture.radius:
         return None
-    told = (
+    sentence = (
         f"the contour has a hollow of radius {_length(recipe, radius)}, which a cutter of "
-        f"{_length(recipe, made.cutter)} does not reach into; a cutter of {downward(2.0 * radius / recipe.mm)} does"
+        f"{_length(recipe, manufacture.cutter)} does not reach into; "
+        f"a cutter of {downward(2.0 * radius / recipe.mm)} does"
     )
-    return Remark("large-cutter", radius, made.radius, "mm", told, design.motion.shaft_deg(at))
+    return Remark("large-cutter", radius, manufacture.radius, "mm", sentence, design.motion.shaft_deg(parameter))
 
 
 def _pivot(recipe: Recipe, design: Design) -> Remark | None:
@@ -269,30 +270,30 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
         return None
     if any(limit.figure == PIVOT_CLEARANCE and limit.at_least is not None for limit in recipe.limits):
         return None
-    found = of_design(recipe, design, design.checks, [PIVOT_CLEARANCE])[PIVOT_CLEARANCE]
-    if found.value is None or found.value > 0.0:
+    clearance = design_figures(recipe, design, design.checks, [PIVOT_CLEARANCE])[PIVOT_CLEARANCE]
+    if clearance.value is None or clearance.value > 0.0:
         return None
-    told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
-    return Remark("pivot-clearance", found.value, 0.0, "mm", told, found.at_deg)
+    sentence = f"the disc passes over the arm's pivot, by {_length(recipe, -clearance.value)}"
+    return Remark("pivot-clearance", clearance.value, 0.0, "mm", sentence, clearance.at_deg)
 
 
 def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remark | None:
     """A roller that files within a coarse tolerance leave no play in its groove, though the recipe gives it some."""
     first, *others = design.follower.contacts
     clearance = max((other.touch.radius - first.touch.radius for other in others), default=0.0)
-    left = [(closure, file) for file in files for closure in file.closures]
-    if not (clearance > 0.0 and left and design.follower.arrangement.contacts == 1):
+    closures = [(closure, file) for file in files for closure in file.closures]
+    if not (clearance > 0.0 and closures and design.follower.arrangement.contacts == 1):
         return None
-    closure, file = min(left, key=lambda pair: pair[0].play.least)
+    closure, file = min(closures, key=lambda pair: pair[0].play.least)
     play = closure.play
     if play.least > 0.0:
         return None
-    least = _length(recipe, play.least) if play.unit == "mm" else f"{play.least:.3g} deg"
-    told = (
-        f"{file.path.name} leaves the roller {least} between {closure.pushes} and {closure.stops}: it sticks there; "
-        f"a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
+    play_words = _length(recipe, play.least) if play.unit == "mm" else f"{play.least:.3g} deg"
+    sentence = (
+        f"{file.path.name} leaves the roller {play_words} between {closure.pushes} and {closure.stops}: "
+        f"it sticks there; a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
     )
-    return Remark("no-play", play.least, 0.0, play.unit, told, play.least_at_deg)
+    return Remark("no-play", play.least, 0.0, play.unit, sentence, play.least_at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
@@ -303,25 +304,25 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
         return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
     files = [request for request in recipe.export.files if request.format.contour]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
-    found = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]
+    remarks = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]
     error = recipe.verify.motion_error
     if error is not None:
         error *= arm
-        found.append(_share(recipe, "loose-motion-error", ("verify.motion_error", error), length))
-    return found
+        remarks.append(_share(recipe, "loose-motion-error", ("verify.motion_error", error), length))
+    return remarks
 
 
 def _law_error(recipe: Recipe, design: Design) -> Remark | None:
     """A swing that is far from the one wanted, where the recipe does not limit it."""
-    found = next((check for check in design.checks if check.name == LAW.name), None)
-    if found is None or found.value is None or any(limit.figure == LAW.name for limit in recipe.limits):
+    check = next((check for check in design.checks if check.name == LAW.name), None)
+    if check is None or check.value is None or any(limit.figure == LAW.name for limit in recipe.limits):
         return None
     swing = math.degrees(_stroke(design)[0])
-    if not 0.0 < NEAR * swing < found.value:
+    if not 0.0 < NEAR * swing < check.value:
         return None
-    off = f"the swing is off delta.law by up to {found.value:.4g} deg, {found.value / swing:.3g} times the swing"
-    told = f"{off}; {MORE_HARMONICS} would be nearer"
-    return Remark("wanted-law", found.value, NEAR * swing, "deg", told, found.at_deg)
+    off = f"the swing is off delta.law by up to {check.value:.4g} deg, {check.value / swing:.3g} times the swing"
+    sentence = f"{off}; {MORE_HARMONICS} would be nearer"
+    return Remark("wanted-law", check.value, NEAR * swing, "deg", sentence, check.at_deg)
 
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
@@ -331,7 +332,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
     if recipe.verify.motion_error is not None or not files:
         return None
     tolerances = {file.path.name: file.tolerance for file in files}
-    follower, found = design.exact.gauge, []
+    follower, loose = design.exact.gauge, []
     closure = follower.closure
     word = "swing" if follower.unit == "deg" else "stroke"
     for check in checks:
@@ -346,46 +347,46 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
             continue
         size = partial(stroke_of, follower) if radius is None else partial(float, radius)
         if is_loose(check.limit, direct, size, LOOSE):
-            of = word if radius is None else "roller's radius"
-            found.append((check.limit / size(), check.limit, of, check))
-    if not found:
+            reference = word if radius is None else "roller's radius"
+            loose.append((check.limit / size(), check.limit, reference, check))
+    if not loose:
         return None
-    share, limit, of, check = max(found, key=lambda row: row[0])
+    share, limit, reference, check = max(loose, key=lambda row: row[0])
     unit = check.unit
-    told = f"{limit / recipe.mm if unit == 'mm' else limit:.4g} {_unit(recipe) if unit == 'mm' else unit}"
-    told = (
-        f"the limit of {check.name} that follows from the tolerance, {told}, is {share:.3g} times the {of}; "
+    amount = _length(recipe, limit) if unit == "mm" else f"{limit:.4g} {unit}"
+    sentence = (
+        f"the limit of {check.name} that follows from the tolerance, {amount}, is {share:.3g} times the {reference}; "
         "verify.motion_error gives one of your own"
     )
-    return Remark("loose-motion-error", limit, LOOSE * limit / share, unit, told, check.at_deg)
+    return Remark("loose-motion-error", limit, LOOSE * limit / share, unit, sentence, check.at_deg)
 
 
 def _stroke(design: Design) -> tuple[float, float]:
-    """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
+    """Stroke in mm and 1, or swing in rad and the length of the arm, mm."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
 
 
 def _table(design: Design) -> list[Remark]:
-    """What its rows say of a table, in its own units."""
+    """Remarks that the rows of a table gave when they were read, in the table's units."""
     kept = design.exact.kept
     return [] if kept is None else [Remark(name, None, None, "", sentence) for name, sentence in kept.remarks]
 
 
 def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
-    """Where the acceleration jumps, the follower is struck; that the jerk jumps is in the report alone."""
-    found = [(abs(b - a), joint) for joint in joints for k, a, b in joint.jumps if k == 2]
-    if not found:
+    """The greatest jump of acceleration, which strikes the follower; jumps of jerk are in the report alone."""
+    jumps = [(abs(b - a), joint) for joint in joints for k, a, b in joint.jumps if k == 2]
+    if not jumps:
         return None
-    value, worst = max(found, key=lambda one: one[0])
-    scale, unit = of_displacements(recipe)
-    told = Joint(worst.at, tuple(jump for jump in worst.jumps if jump[0] == 2)).scaled(scale).said(unit)
-    if len(found) > 1:
-        told += f", and at {len(found) - 1} other joint{'s' if len(found) > 2 else ''} by no more"
+    value, worst = max(jumps, key=lambda row: row[0])
+    scale, unit = displacement_unit(recipe)
+    sentence = Joint(worst.at, tuple(jump for jump in worst.jumps if jump[0] == 2)).scaled(scale).said(unit)
+    if len(jumps) > 1:
+        sentence += f", and at {len(jumps) - 1} other joint{'s' if len(jumps) > 2 else ''} by no more"
     if unit == "deg":
         value *= scale
     return Remark(
-        "acceleration-jump", value, 0.0, f"{'deg' if unit == 'deg' else 'mm'}/rad^2", told, math.degrees(worst.at)
+        "acceleration-jump", value, 0.0, f"{'deg' if unit == 'deg' else 'mm'}/rad^2", sentence, math.degrees(worst.at)
     )
 
 
@@ -393,48 +394,50 @@ def _share(recipe: Recipe, name: RemarkName, limit: tuple[str, float], length: f
     (what, value), rule = limit, SHARE * length
     if value <= rule:
         return None
-    told = f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
-    return Remark(name, value, rule, "mm", told)
+    sentence = (
+        f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
+    )
+    return Remark(name, value, rule, "mm", sentence)
 
 
 def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
-    """Of a linkage: an error or a band that is a good part of the output's swing."""
+    """Limits of a linkage's error and dwell that are a good part of the output's swing."""
     if design.driven is None or design.driven.figures is None:
         return []
     swing, unit = design.driven.figures.swing, design.driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
     band = None if recipe.dwell is None else recipe.dwell.band
-    asked: tuple[tuple[RemarkName, str, float | None], ...] = (
+    limits: tuple[tuple[RemarkName, str, float | None], ...] = (
         ("loose-output-error", "verify.output_error", recipe.verify.output_error),
         ("wide-dwell-band", "dwell.band", band),
     )
-    found: list[Remark | None] = []
-    for name, what, value in asked:
+    remarks: list[Remark | None] = []
+    for name, what, value in limits:
         if value is not None and value > SHARE * swing:
-            told = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
-            found.append(Remark(name, value * scale, SHARE * swing * scale, unit, told))
-    return found
+            sentence = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
+            remarks.append(Remark(name, value * scale, SHARE * swing * scale, unit, sentence))
+    return remarks
 
 
-def dwells_lost(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ...]:
-    """Of each file whose dwell is a good part shorter than the intended one: the band's edge lies on a ripple."""
-    found = []
+def shortened_dwells(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ...]:
+    """A remark on each file whose dwell is clearly shorter than the intended one: a ripple crosses the band's edge."""
+    remarks = []
     for file in files:
-        for made in () if file.linkage is None else file.linkage.dwells[:1]:
-            meant = math.degrees(driven.dwells[made.over][0].length)
-            if made.length_deg >= LASTS * meant:
+        for dwell in () if file.linkage is None else file.linkage.dwells[:1]:
+            intended = math.degrees(driven.dwells[dwell.over][0].length)
+            if dwell.length_deg >= LASTS * intended:
                 continue
-            told = (
-                f"{file.path.name}: the output dwells for {made.length_deg:.5g} deg of the {meant:.5g} intended, as a "
-                "ripple fills the band: give a wider dwell.band or a smaller export.tolerance"
+            sentence = (
+                f"{file.path.name}: the output dwells for {dwell.length_deg:.5g} deg of the {intended:.5g} intended, "
+                "as a ripple fills the band: give a wider dwell.band or a smaller export.tolerance"
             )
-            at = made.start_deg if made.over == "shaft" else None
-            found.append(Remark("dwell-shorter", made.length_deg, LASTS * meant, "deg", told, at))
-    return tuple(found)
+            at_deg = dwell.start_deg if dwell.over == "shaft" else None
+            remarks.append(Remark("dwell-shorter", dwell.length_deg, LASTS * intended, "deg", sentence, at_deg))
+    return tuple(remarks)
 
 
 def _shaft(recipe: Recipe, design: Design) -> Remark | None:
-    """With a bore the wall is a check."""
+    """A shaft outside the contour of a part without a bore; with one the wall is a check."""
     if recipe.part.bore is not None or not design.contours:
         return None
     from camgeo.synthesis.part.walls import Looks, distance_inside, winds
@@ -442,17 +445,17 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     distances = []
     for surface, contour in design.contours:
         runs = [np.linspace(run.low, run.high, LOOKS) for run in contour.runs]
-        ring = contour.sample(np.concatenate(runs)).point
-        if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * surface.curve.size:
+        points = contour.sample(np.concatenate(runs)).point
+        if winds(points) and np.hypot(points[:, 0], points[:, 1]).min() > CLEAR * surface.curve.size:
             continue  # by far; what is nearer is looked at closely
         distances.append(distance_inside(Looks.of(contour), (0.0, 0.0)))
-    distance, at = min(distances, default=(math.inf, 0.0))
+    distance, parameter = min(distances, default=(math.inf, 0.0))
     if distance > 0.0:
         return None
-    told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
+    sentence = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
     if -distance <= NOISE * size_of(design):
-        told = "the shaft lies on the contour"
-    return Remark("shaft-outside", distance, 0.0, "mm", told, design.motion.shaft_deg(at))
+        sentence = "the shaft lies on the contour"
+    return Remark("shaft-outside", distance, 0.0, "mm", sentence, design.motion.shaft_deg(parameter))
 
 
 def _keyway(recipe: Recipe) -> Remark | None:
@@ -463,11 +466,11 @@ def _keyway(recipe: Recipe) -> Remark | None:
     by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF_MM)
     if not (by_inch or not metric if recipe.units == "inch" else by_inch and not metric):
         return None
-    told = (
+    sentence = (
         f"a bore of {_length(recipe, bore)} takes a metric keyway of DIN 6885, {keyway.width:.4g} mm wide; "
         "give part.keyway its width and depth for an inch key"
     )
-    return Remark("metric-keyway", bore, None, "mm", told)
+    return Remark("metric-keyway", bore, None, "mm", sentence)
 
 
 def _is_whole(value: float) -> bool:
@@ -481,18 +484,16 @@ def _thickness(recipe: Recipe, design: Design) -> Remark | None:
         return None
     thick = thickness > size
     rule = (THICKEST if thick else THINNEST) * size
-    told = f"part.thickness, {_length(recipe, thickness)}, is {thickness / size:.3g} times the cam's greatest radius"
-    return Remark("thick" if thick else "thin", thickness, rule, "mm", told)
+    sentence = (
+        f"part.thickness, {_length(recipe, thickness)}, is {thickness / size:.3g} times the cam's greatest radius"
+    )
+    return Remark("thick" if thick else "thin", thickness, rule, "mm", sentence)
 
 
 def size_of(design: Design) -> float:
-    """Size of the largest of its surfaces, mm."""
+    """Size of the largest surface, mm."""
     return max(surface.curve.size for surface in design.exact.surfaces)
 
 
 def _length(recipe: Recipe, value: float) -> str:
-    return f"{value / recipe.mm:.4g} {_unit(recipe)}"
-
-
-def _unit(recipe: Recipe) -> str:
-    return "in" if recipe.units == "inch" else "mm"
+    return f"{value / recipe.mm:.4g} {UNIT_NAMES[recipe.units]}"

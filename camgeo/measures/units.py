@@ -12,17 +12,13 @@ if TYPE_CHECKING:
 
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
 LBF = FORCES["N"] / FORCES["lbf"]
-_POUNDS = {
-    "N": ("lbf", LBF),
-    "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"]),
-    "N/mm^2": ("psi", LBF * 25.4**2),
-}
+_POUNDS = {"N": ("lbf", LBF), "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"]), "N/mm^2": ("psi", LBF * 25.4**2)}
 
 
 def pounds(units: str, unit: str) -> tuple[str, float] | None:
-    """Unit beside SI for a force, a moment or a pressure where a recipe's `units` are inches, and how many are one.
+    """Imperial unit of a force, moment or pressure where a recipe's `units` are inches, and how many are one `unit`.
 
-    None of other units, and in mm.
+    None for other units, and for recipes in mm.
     """
     return _POUNDS.get(unit) if units == "inch" else None
 
@@ -32,16 +28,16 @@ def in_pounds(units: str, value: float, unit: str) -> tuple[float, str]: ...
 @overload
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]: ...
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]:
-    """A force, a moment or a pressure as a recipe in inches shows it: the value in pounds, and their unit.
+    """Value and unit of a force, a moment or a pressure in pounds where a recipe's `units` are inches.
 
-    Other figures, and those of recipes in mm, stay.
+    Other figures, and those of recipes in mm, are returned as they are.
     """
-    other = pounds(units, unit)
-    return (value, unit) if other is None else (None if value is None else value * other[1], other[0])
+    imperial = pounds(units, unit)
+    return (value, unit) if imperial is None else (None if value is None else value * imperial[1], imperial[0])
 
 
 def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | None, str]:
-    """A figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit, with that unit's name; other units stay."""
+    """Value and unit of a figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit; other units are kept."""
     name = UNIT_NAMES[recipe.units]
     power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.replace("/", " ").partition(" ")[0])
     if power is None:
@@ -49,7 +45,7 @@ def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | Non
     return (None if value is None else value / recipe.mm**power), name + unit[2:]
 
 
-def of_displacements(recipe: Recipe) -> tuple[float, str]:
-    """Factor and unit in which the follower's displacements are reported: the recipe's, or degrees."""
+def displacement_unit(recipe: Recipe) -> tuple[float, str]:
+    """Factor from mm or rad to the unit in which the follower's displacements are reported, and that unit."""
     swings = recipe.cam.arrangement.unit == "deg" or recipe.cam.by_linkage
     return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])

@@ -122,14 +122,14 @@ class Open:
         return next(i for i, segment in enumerate(self.motion.segments) if segment.free == word)
 
     @property
-    def left(self) -> float:
+    def remaining(self) -> float:
         """Angle that the other segments leave for both, degrees."""
         others = math.fsum(segment.over for segment in self.motion.segments)
         return round(360.0 / self.motion.repeat - math.degrees(others), _PLACES)
 
-    def filled(self, least: float) -> tuple[SegmentsAsked, float]:
-        """Give the motion with the least angle, degrees, and the angle of the dwell, degrees."""
-        rest = round(self.left - least, _PLACES)
+    def with_least(self, least: float) -> tuple[SegmentsAsked, float]:
+        """The motion with its least angle set, degrees, and the angle of the dwell, degrees."""
+        rest = round(self.remaining - least, _PLACES)
         angles = {"": 0.0, LEAST: math.radians(least), REST: math.radians(rest)}
         filled = (replace(s, over=s.over + angles[s.free], free="") for s in self.motion.segments)
         return replace(self.motion, segments=tuple(filled)), rest
@@ -567,7 +567,7 @@ def check_filled(motion: MotionAsked, path: str, angle: float, remedy: str, read
 def check_whole_turn(motion: MotionAsked, path: str, reader: Reader) -> None:
     """Note segments that do not fill a turn, or their part of one, or leave nothing for angles that are to be found."""
     repeat = motion.repeats
-    if motion.open is not None and motion.open.left <= 0.0:
+    if motion.open is not None and motion.open.remaining <= 0.0:
         remedy = f"let all the others cover less than {360 / repeat:.10g} degrees"
         reader.fault_at(path, f"nothing is left for over: {LEAST} and dwell: {REST}", None, remedy)
     part = "the whole turn, 360 degrees" if repeat == 1 else f"360/{repeat} degrees"

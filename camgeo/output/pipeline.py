@@ -182,7 +182,7 @@ def _judged(
 
 def judged_by(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
     """Report on files that a capability claims, see `FileJudge`; raises as it does, and RecipeErrors as `export`."""
-    from camgeo.measures.units import of_displacements
+    from camgeo.measures.units import displacement_unit
 
     judge = registry.judges()[name].judge
     clock = Clock()
@@ -195,7 +195,7 @@ def judged_by(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
         tuple(clock.stages),
         tuple(results.skipped),
         design.follower.name,
-        displacements=of_displacements(recipe),
+        displacements=displacement_unit(recipe),
         sections=results.sections,
     )
     return document(recipe, findings)
@@ -311,12 +311,12 @@ def _findings(
 
         balances = balances_of(recipe, design)
     from camgeo.curve.measures import measures
-    from camgeo.measures.remarks import dwells_lost, remarks_of
-    from camgeo.measures.units import of_displacements
+    from camgeo.measures.remarks import remarks_of, shortened_dwells
+    from camgeo.measures.units import displacement_unit
 
     with clock.stage("remarks"):
         remarks = remarks_of(recipe, design, checks, files)
-        remarks += () if design.driven is None else dwells_lost(design.driven, files)
+        remarks += () if design.driven is None else shortened_dwells(design.driven, files)
     return Findings(
         tuple(checks),
         tuple(files),
@@ -329,7 +329,7 @@ def _findings(
         remarks=remarks,
         joints=design.exact.joints,
         table=design.exact.kept,
-        displacements=of_displacements(recipe),
+        displacements=displacement_unit(recipe),
         contours={surface.name: measures(contour) for surface, contour in design.contours},
         balances=balances,
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import read
@@ -207,7 +207,7 @@ def test_flat_faces_are_sized_by_both_discs() -> None:
 def test_figures_are_of_the_worst_disc() -> None:
     cam = recipe(STEM, "distance: 85, radius: 8")
     design = designed(cam)
-    found = of_design(
+    found = design_figures(
         cam, design, design.checks, ["pressure-angle-rise", "pressure-angle-return", "size", "pitch-radius"]
     )
     assert {name: one.surface for name, one in found.items()} == {

@@ -19,7 +19,7 @@ from support.sweepers import evaluate  # needs: sweep
 from camgeo.capabilities.sweep.figures import REASONS, figure_names  # needs: sweep
 from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
 from camgeo.recipe import figures as needs
@@ -719,7 +719,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     p = recipe.cam.exact().law.derivatives(t, 3)
     peaks = np.abs(p[1:]).max(axis=1)
     wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
-    figures = of_design(recipe, design, design.checks, names)
+    figures = design_figures(recipe, design, design.checks, names)
     for name, value in zip(names, wanted, strict=True):
         assert figures[name].value == pytest.approx(value, rel=1e-5, abs=1e-9), name
     bounds = {name: float(value) * (1 + share) + 1e-3 * share for name, value in zip(names, wanted, strict=True)}

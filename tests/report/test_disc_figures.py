@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
@@ -45,7 +45,7 @@ def disc(follower: str, motion: str = MOTION, base: float = 36.0, more: str = ""
 def figures(text: str, *names: str) -> dict[str, Measured]:
     recipe = load_text(text, "cam.yaml")
     design = designed(recipe)
-    return of_design(recipe, design, design.checks, names)
+    return design_figures(recipe, design, design.checks, names)
 
 
 def checks(text: str) -> dict[str, Check]:

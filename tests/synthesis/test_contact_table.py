@@ -84,11 +84,11 @@ def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
 
 
 def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
-    from camgeo.measures.figures import of_design
+    from camgeo.measures.figures import design_figures
 
     recipe = load_text(KINDS["roller"], "cam.yaml")
     design = designed(recipe)
-    most = of_design(recipe, design, design.checks, ["pressure-angle-rise", "pressure-angle-return"])
+    most = design_figures(recipe, design, design.checks, ["pressure-angle-rise", "pressure-angle-return"])
     angle = exported(KINDS["roller"], tmp_path)["contacts"]["pressure_angle_deg"]
     assert angle.max() == pytest.approx(most["pressure-angle-rise"].value, abs=1e-4)
     assert -angle.min() == pytest.approx(most["pressure-angle-return"].value, abs=1e-4)

@@ -14,7 +14,7 @@ import pytest
 
 from camgeo.capabilities.dynamics.force_figures import extremes_of, forces_section, forces_table
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -216,7 +216,9 @@ def test_report_table_and_figures(tmp_path):
     names, rows = forces_table(running_of(recipe, design), 720)
     assert names == ("shaft_deg", "contact_N", "torque_Nm", "pressure_N_mm2", "roller_rpm")
     assert rows[:, 1].max() == pytest.approx(section["contacts"][0]["max"], rel=1e-4)
-    found = of_design(recipe, design, design.checks, ["contact-force-greatest", "contact-pressure", "shaft-torque"])
+    found = design_figures(
+        recipe, design, design.checks, ["contact-force-greatest", "contact-pressure", "shaft-torque"]
+    )
     assert found["contact-force-greatest"].value == section["contacts"][0]["max"]
     assert found["contact-pressure"].value == section["pressure"][0]["max"]
     with next(tmp_path.rglob("*.csv")).open(newline="") as file:

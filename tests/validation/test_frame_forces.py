@@ -22,7 +22,7 @@ from support.square_frame import Bars, axes, solve
 from camgeo.capabilities.dynamics.force_figures import extremes_of, forces_section
 from camgeo.capabilities.dynamics.frame_forces import REACTIONS
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -508,7 +508,9 @@ def test_report_page_table_and_figures(tmp_path):
     assert written[4] - written[2] == pytest.approx(written[7], abs=1e-9)
     section = report["forces"]
     assert section["torque"]["max"] == pytest.approx(written[5].max(), rel=1e-4)
-    figures = of_design(recipe, designed(recipe), (), ["contact-force-greatest", "shaft-torque", "contact-pressure"])
+    figures = design_figures(
+        recipe, designed(recipe), (), ["contact-force-greatest", "shaft-torque", "contact-pressure"]
+    )
     assert figures["contact-force-greatest"].value == section["contacts"][3]["max"]
     assert figures["contact-force-greatest"].surface == "face 4"
     assert figures["contact-pressure"].value == max(one["max"] for one in section["pressure"])

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camgeo.measures.figures import of_design
-from camgeo.measures.forces import FollowerTurn, elastic, preload_force, preload_section
+from camgeo.measures.figures import design_figures
+from camgeo.measures.forces import FollowerTurn, elastic_contacts, preload_force, preload_section
 from camgeo.output.pipeline import export
 from camgeo.recipe.loading import load, read
 from camgeo.schema.errors import RecipeErrors
@@ -54,7 +54,7 @@ def held(kind, degrees):
     turn = FollowerTurn(designed(recipe))
     rows = turn.design.motion.travel(np.radians(degrees), 2)
     levers = np.array([line.lever for line in turn.lines(rows)])
-    force = elastic(turn, turn.design.exact.preload, rows)
+    force = elastic_contacts(turn, turn.design.exact.preload, rows)
     return levers, force, force.preload / levers
 
 
@@ -137,7 +137,7 @@ def test_two_discs():
 def test_figures(kind, least, most):
     recipe = recipe_of(kind)
     design = designed(recipe)
-    found = of_design(recipe, design, design.checks, ["preload-force-least", "preload-force-greatest"])
+    found = design_figures(recipe, design, design.checks, ["preload-force-least", "preload-force-greatest"])
     values = [found[f"preload-force-{word}"] for word in ("least", "greatest")]
     assert [one.value for one in values] == pytest.approx([least, most], rel=1e-9)
     assert {one.unit for one in values} == {"N" if kind in {"yoke", "roller-yoke"} else "N m"}

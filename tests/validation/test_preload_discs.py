@@ -12,7 +12,7 @@ import pytest
 import camgeo
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.cli.main import main
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.measures.forces import preload_section
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -60,7 +60,7 @@ def test_forces_of_the_case():
     assert section["force"]["min"] == pytest.approx(426.508379977, abs=1e-8)
     assert section["force"]["min_at_deg"] == pytest.approx(218.85345, abs=1e-4)
     assert section["force"]["max"] == pytest.approx(480.0, abs=1e-9)
-    figures = of_design(recipe, design, design.checks, ["preload-force-least", "preload-force-greatest"])
+    figures = design_figures(recipe, design, design.checks, ["preload-force-least", "preload-force-greatest"])
     assert [one.value for one in figures.values()] == [section["force"]["min"], section["force"]["max"]]
     running = running_of(recipe, design)
     state = running.state(np.radians([20.0, 50.0, 85.0, 180.0, 250.0]))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from camgeo.measures.lobe import EventError, event_of, monotone
+from camgeo.measures.lobe import EventError, event_of, lift_pieces
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
     stretch, and waves below a thousandth of the stroke are a dwell. None of a motion that is too rough to be followed.
     """
     try:
-        followed = monotone(exact)
+        followed = lift_pieces(exact)
     except EventError:
         return ()
     x, level = followed.x, followed.values[:-1]

@@ -100,7 +100,7 @@ def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedL
         zone, z = lobe.lobe.recipe.profile, 0.5 * (lobe.lobe.low + lobe.lobe.high)
         half = math.nan if zone is None else 0.5 * zone / recipe.mm
         for points in contact_points(lobe.design, shaft, lobe.design.contours):
-            drawn = points.drawn(lobe.at, recipe.rotation)
+            drawn = points.as_drawn(lobe.at, recipe.rotation)
             columns = [np.full(len(drawn.angles), number), np.full(len(drawn.angles), z / recipe.mm)]
             columns += [np.mod(np.degrees(drawn.angles + lobe.zero), 360.0), *(drawn.places / recipe.mm).T]
             columns += list(drawn.normals.T)

@@ -8,7 +8,7 @@ from camgeo.capabilities.dynamics.checks import LEAST_BACKLASH
 from camgeo.capabilities.dynamics.figures import AT_SPEED, COIL_BIND, FIGURES, JAM_MARGIN, OPEN_LOAD, SEAT_LOAD
 from camgeo.capabilities.dynamics.guide import jam_angle
 from camgeo.capabilities.dynamics.keys import Dynamics
-from camgeo.measures.figures import of_check, of_motion
+from camgeo.measures.figures import figure_of_check, motion_figures
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import PEAKS
 from kin.numeric.angles import TURN
@@ -29,7 +29,7 @@ def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mappin
     train, found = recipe.of(Dynamics), dict[str, Measured]()
     timed = [name for name in names if name in ORDERS]
     if timed and design.driven is None:
-        peaks = of_motion(design, max(ORDERS[name] for name in timed))
+        peaks = motion_figures(design, max(ORDERS[name] for name in timed))
         for name in timed:
             rpm = speeds.get(name) or (0.0 if train is None else train.rpm)
             found[name] = _in_time(peaks[PEAKS[ORDERS[name] - 1]], name, rpm)
@@ -38,7 +38,7 @@ def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mappin
         found[JAM_MARGIN] = Measured(limit - value, "deg", at)
     coils = [name for name in names if name in _OF_COIL]
     if coils and train is not None and train.spring is not None:
-        lift = of_motion(design, 0)["swing"].value or 0.0
+        lift = motion_figures(design, 0)["swing"].value or 0.0
         for name in coils:
             found[name] = _OF_COIL[name](train.spring, lift)
     if not {*names} <= {*ORDERS, JAM_MARGIN, *_OF_COIL}:
@@ -66,7 +66,7 @@ def of_runs(section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str, di
     """Measure each figure of the runs of an elastic train, by the file that drives it, None for the intended motion."""
     names = [name for name, figure in FIGURES.items() if figure.of == "run" and name != LEAST_BACKLASH.name]
     found = {name: {_file(run): _of_run(name, run, section) for run in section["runs"]} for name in names}
-    left = {check.file: of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
+    left = {check.file: figure_of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
     return {**found, LEAST_BACKLASH.name: left}
 
 

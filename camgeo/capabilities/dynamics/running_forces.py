@@ -16,7 +16,7 @@ import numpy as np
 from camgeo.capabilities.dynamics.frame_forces import frame_running
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.capabilities.dynamics.running import Lost, Pull, Running, State, lost
-from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
+from camgeo.measures.forces import PER_MM, FollowerTurn, elastic_contacts
 from kin.dynamics.contact_forces import Guided
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -104,7 +104,7 @@ class FollowerRunning(Running):
 
     def _pressed(self, preload: Preload, rows: Array, lines: Sequence[ContactLine]) -> Elastic | Guided:
         """Both contacts under preload, N and mm or N mm and rad."""
-        pair = elastic(self.turn, preload, rows)
+        pair = elastic_contacts(self.turn, preload, rows)
         if self.train.guide is None:
             return pair
         y = self.position(rows)

@@ -118,7 +118,7 @@ def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[flo
     """Places, mm, and outward normals of what is touched on a disc over a turn, as the part is drawn; each once."""
     seen: set[tuple[float, ...]] = set()
     for points in contact_points(disc.design, shaft, disc.contours):
-        drawn = points.drawn(disc.turned, recipe.rotation)
+        drawn = points.as_drawn(disc.turned, recipe.rotation)
         for place, normal in zip(drawn.places, drawn.normals, strict=True):
             key = tuple(np.round(place / SAME).tolist())
             if key not in seen:

@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.capabilities.made.judge import expanded
 from camgeo.capabilities.made.section import scale_of
-from camgeo.measures.lobe import CRANK, EventError, event_of, monotone
+from camgeo.measures.lobe import CRANK, EventError, event_of, lift_pieces
 from camgeo.recipe.figures import FIGURES
 from camgeo.registry import registry
 from kin.made.events import MadeMotion
@@ -70,7 +70,7 @@ def events_section(
     if not lifts:
         return {}
     made = MadeMotion(result.surfaces[0].on.surface.gauge.motion, result.motion)
-    highest = made.highest(monotone(design.exact).greatest()[1])
+    highest = made.highest(lift_pieces(design.exact).greatest()[1])
     scale, unit = scale_of(recipe, result)
     entry: dict[str, Any] = {}
     for moved in dict.fromkeys([None, *(row.moved for row in lifts)]):

@@ -72,7 +72,7 @@ def evaluate(
 
     The part is left out but for the contour, as a bore has no bearing on these, unless a figure needs the part.
     """
-    from camgeo.measures.figures import of_design
+    from camgeo.measures.figures import design_figures
     from camgeo.synthesis.design import designed
 
     m, whole = len(values), any(FIGURES[name].needs.part for name in names)
@@ -92,7 +92,7 @@ def evaluate(
             undercut = any(not check.ok and check.name in UNDERCUTS for check in design.checks)
             fault[i] = UNDERCUT if undercut else IMPOSSIBLE  # its openings do not fit
             continue
-        for name, measured in of_design(single, design, design.checks, names).items():
+        for name, measured in design_figures(single, design, design.checks, names).items():
             figures[name][i] = np.nan if measured.value is None else measured.value
         fault[i] = FINE
     return figures, fault

@@ -78,9 +78,9 @@ def valve_of(recipe: Recipe, design: Design) -> Valve | None:
 
 def tappet_lift(design: Design) -> float:
     """Greatest lift of the tappet, mm, from its lowest place."""
-    from camgeo.measures.lobe import monotone
+    from camgeo.measures.lobe import lift_pieces
 
-    lift = monotone(design.exact)
+    lift = lift_pieces(design.exact)
     return lift.greatest()[0] - lift.least()[0]
 
 

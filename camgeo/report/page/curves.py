@@ -251,10 +251,10 @@ def preload(recipe: Recipe, design: Design) -> list[Plot]:
     given = design.exact.preload
     if given is None or given.stiffness is None:
         return []
-    from camgeo.measures.forces import PER_MM, FollowerTurn, elastic
+    from camgeo.measures.forces import PER_MM, FollowerTurn, elastic_contacts
 
     turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
-    force = elastic(turn, given, rows).preload
+    force = elastic_contacts(turn, given, rows).preload
     factor, unit = shown_in(recipe, turn.unit)
     travel = (Series("along the travel", factor * (PER_MM if turn.swings else 1.0) * force),)
     lines = limits(recipe, {PRELOAD_LEAST: (1.0,), PRELOAD_GREATEST: (1.0,)}, travel, factor)

@@ -18,7 +18,7 @@ from camgeo.capabilities.sweep.keys import sweep_figures as known
 from camgeo.capabilities.sweep.linkages import LOOPS, Lengths, Support, angles, loop_class
 from camgeo.capabilities.sweep.single_designs import recipe_with
 from camgeo.capabilities.sweep.task import Task
-from camgeo.measures.figures import of_design
+from camgeo.measures.figures import design_figures
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_LINKAGE
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
@@ -441,7 +441,7 @@ def test_forces_of_a_rigid_train_are_ranked_by(figure):
     for value, base in zip(found.figures[figure].tolist(), (34, 40), strict=True):
         own = recipe.replace("cam.base_radius", base)
         exact = designed(own)
-        assert value == of_design(own, exact, exact.checks, [figure])[figure].value
+        assert value == design_figures(own, exact, exact.checks, [figure])[figure].value
 
 
 def test_every_first_loop_has_an_engine():
