@@ -30,6 +30,8 @@ PAIRS_AT_ONCE = 1_000_000
 ARC_TOLERANCE = 1e-9
 MOST_SHARE = 2e-11
 ARC_SHARE = 1e-12
+# Arcs within this share of the extent tell what is near from what is far.
+ROUGH_SHARE = 1e-4
 # How many times finer than asked for the arcs at hand may be to serve instead.
 ALIKE = 4.0
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
@@ -282,9 +284,14 @@ class Contour(Pieces):
         from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
         # the arcs of the default are kept: where they are not many more, they serve for what is asked
-        fine = self._fine
-        alike = tolerance is None or fine <= tolerance <= ALIKE * fine
+        alike = tolerance is None or not self.beziers.count or self._fine <= tolerance <= ALIKE * self._fine
         return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
+
+    @cached_property
+    def rough(self) -> tuple[Arcs, float]:
+        """Few lines and arcs in order, and how far they may be from the contour, mm: 0 without Bezier pieces."""
+        off = ROUGH_SHARE * float(np.abs(self.vertices).max()) if self.beziers.count else 0.0
+        return self.as_arcs(off)[0], off
 
     def within(self, tolerance: float | None) -> Contour:
         """Return the contour for whose splines arcs within `tolerance` mm stand by default; None: the usual ones."""
@@ -304,9 +311,11 @@ class Contour(Pieces):
 
     @cached_property
     def _fine_arcs(self) -> tuple[Arcs, Indices]:
-        return self._arcs_within(self._fine)
+        return self._arcs_within(self._fine) if self.beziers.count else self.plain
 
-    def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
+    @cached_property
+    def plain(self) -> tuple[Arcs, Indices]:
+        """Its lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,)."""
         first, _ = self.directions
         size = np.where(self.kind == ARC, self.radius, 1.0)
         curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)
@@ -315,18 +324,19 @@ class Contour(Pieces):
         lengths = np.where(self.kind == ARC, self.radius * np.abs(self.sweep), lengths)
         arcs = Arcs(self.start[plain], unit(first[plain]), curvature[plain], lengths[plain])
         arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
-        owner = plain[part]
-        if self.beziers.count:
-            from kin.contour.biarc import arcs_along
+        return arcs, plain[part]
 
-            bows, row = arcs_along(self.beziers, tolerance)
-            piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
-            bow = np.flatnonzero(self.kind == BEZIER)
-            piece_of_row[self.curve[bow]] = bow
-            owner = np.concatenate([owner, piece_of_row[row]])
-            order = np.argsort(owner, kind="stable")
-            arcs, owner = arcs.joined(bows).take(order), owner[order]
-        return arcs, owner
+    def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
+        from kin.contour.biarc import arcs_along
+
+        arcs, owner = self.plain
+        bows, row = arcs_along(self.beziers, tolerance)
+        piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
+        bow = np.flatnonzero(self.kind == BEZIER)
+        piece_of_row[self.curve[bow]] = bow
+        owner = np.concatenate([owner, piece_of_row[row]])
+        order = np.argsort(owner, kind="stable")
+        return arcs.joined(bows).take(order), owner[order]
 
     def distance(self, points: Array, tolerance: float | None = None) -> Array:
         """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else as near as `as_arcs`."""

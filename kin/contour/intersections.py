@@ -8,6 +8,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, nearest_on, right
 from kin.contour.nearest import nearest
+from kin.numeric.bernstein import bernstein_product
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,11 +47,9 @@ def crossings(contour: Contour) -> Crossings:
     search ends early at a contour that has hundreds.
     """
     nothing = Crossings(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.intp))
-    if contour.is_convex:
+    if contour.is_convex or seen_whole(contour, contour.start.mean(axis=0)) or seen_whole(contour, np.zeros(2)):
         return nothing
     chain, owner = contour.as_arcs()
-    if seen_whole(chain, chain.start.mean(axis=0)) or seen_whole(chain, np.zeros(2)):
-        return nothing
     before = np.concatenate([[0.0], np.cumsum(chain.length)])
     found = []
     levels = boxes(chain)
@@ -89,10 +88,11 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
         others = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
         if not others:
             continue
-        _, away = nearest(one.as_arcs()[0], np.array([other.start[0] for other in others]))
+        rough, off = one.rough
+        _, away = nearest(rough, np.array([other.start[0] for other in others]))
         for other, distance in zip(others, away, strict=True):
             x_min, y_min, x_max, y_max = other.box
-            if distance > np.hypot(x_max - x_min, y_max - y_min):
+            if distance - off > np.hypot(x_max - x_min, y_max - y_min):
                 continue  # no point of the other is so far from its first
             common = meetings(one, other).point
             if len(common):
@@ -112,19 +112,24 @@ def distinct(crossings: list[tuple[Array, Indices]]) -> Crossings:
     return Crossings(point[new], piece[new])
 
 
-def seen_whole(chain: Arcs, eye: Array) -> bool:
-    """Whether every ray from the eye (2,) meets the closed chain once: then it cannot cross itself (sufficient).
+def seen_whole(contour: Contour, eye: Array) -> bool:
+    """Whether every ray from the eye (2,) meets the closed contour once: then it cannot cross itself (sufficient).
 
-    The moment x cross T about the eye stays positive along each piece, bounded from its ends by its greatest slope
-    |k x.T|, and the pieces' angles at the eye add up to one turn.
+    The moment x cross x' about the eye stays positive along each piece, and the pieces' angles at the eye add up to one
+    turn. Along an arc the moment is bounded from its ends by its greatest slope |k x.T|; along a Bezier piece it is a
+    polynomial, which its Bernstein coefficients bound.
     """
+    chain, beziers = contour.plain[0], contour.beziers
     x, ends = chain.start - eye, chain.ends - eye
     at_start, at_end = cross(x, chain.tangent), cross(ends, chain.end_tangents)
     reach = np.maximum(np.hypot(x[:, 0], x[:, 1]), np.hypot(ends[:, 0], ends[:, 1])) + chain.length
     least = (at_start + at_end - np.abs(chain.curvature) * reach * chain.length) / 2.0
+    y, v = (beziers.control - eye) * beziers.weight[:, :, None], beziers.velocity
+    moment = bernstein_product(y[:, :, 0], v[:, :, 1]) - bernstein_product(y[:, :, 1], v[:, :, 0])
+    x, ends = np.concatenate([x, y[:, 0]]), np.concatenate([ends, y[:, -1]])
     angle = np.arctan2(cross(x, ends), dot(x, ends))
     once = abs(float(angle.sum()) - 2.0 * np.pi) < 1.0
-    return bool((least > 0.0).all() and (angle > 0.0).all()) and once
+    return bool((least > 0.0).all() and (moment > 0.0).all() and (angle > 0.0).all()) and once
 
 
 def boxes(chain: Arcs) -> Levels:

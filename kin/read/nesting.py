@@ -111,8 +111,12 @@ def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[Place]
         inside = np.zeros(len(others), dtype=np.bool_)
         near = np.flatnonzero(((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1))  # in its box
         if near.size:
-            chain, _ = counter_clockwise(contours[k]).as_arcs()
-            inside[near] = signed_distance(chain, others[near]) < 0.0
+            contour = counter_clockwise(contours[k])
+            chain, off = contour.rough
+            away = signed_distance(chain, others[near])
+            if (np.abs(away) <= off).any():
+                away = signed_distance(contour.as_arcs()[0], others[near])
+            inside[near] = away < 0.0
         depth[rank + 1 :][inside], inside_of[rank + 1 :][inside] = depth[rank] + 1, rank
         wrong = ~inside if rank == 0 else inside & (depth[rank] >= deepest)
         if not wrong.any():

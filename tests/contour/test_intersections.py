@@ -8,9 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
+import kin.contour.biarc
 from kin.contour.arcs import unit
+from kin.contour.bezier import Beziers
+from kin.contour.closed_spline import closed_spline
 from kin.contour.contour import Contour
-from kin.contour.intersections import crossings, meetings
+from kin.contour.intersections import crossings, first_meeting, meetings
 from kin.contour.pieces import Pieces
 
 
@@ -48,6 +51,31 @@ def test_figures_of_eight_cross_once() -> None:
     arcs = Contour.from_bulges(points, np.array([8.0, 0.0, -8.0, 0.0]))
     found = crossings(arcs)
     np.testing.assert_allclose(found.point, [[0.0, 0.0]], atol=1e-14)
+
+
+def of_spline(points: np.ndarray, weight: float = 1.0) -> Contour:
+    control = closed_spline(points)
+    weights = np.ones(control.shape[:2])
+    weights[:, 1:3] = weight
+    return Contour.from_pieces(Pieces.from_unrolled(Beziers(control, weights).unrolled().pieces))
+
+
+@pytest.mark.parametrize("weight", [1.0, 1.3])
+def test_splines_are_seen_whole_by_their_own_polynomials(weight: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No arcs are made for a wavy spline beside a bore that is far from it; those of one that crosses itself are."""
+    t = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    wavy = of_spline((30.0 + 3.0 * np.cos(5.0 * t))[:, None] * unit(t), weight)
+    assert not wavy.is_convex
+    bore = Contour.from_bulges(np.array([[5.0, 0.0], [-5.0, 0.0]]), np.ones(2))
+    rough = wavy.rough
+    assert rough[1] == pytest.approx(1e-4 * 33.0, rel=0.1)
+    monkeypatch.setattr(kin.contour.biarc, "arcs_along", None)
+    assert len(crossings(wavy).point) == 0
+    assert first_meeting([wavy, bore]) is None
+    monkeypatch.undo()
+    eight = of_spline(np.column_stack([30.0 * np.sin(t), 10.0 * np.sin(2.0 * t)]), weight)
+    assert np.allclose(crossings(eight).point, 0.0, atol=1e-6)
+    assert len(crossings(eight).point)
 
 
 def test_arcs_that_cross_and_lines_that_cross_arcs() -> None:
