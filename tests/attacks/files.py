@@ -19,6 +19,8 @@ from support.heavy import ezdxf
 
 from attacks.cams import Cam, drawn, wrong_verdict
 from attacks.outcome import Attack, nothing_more
+from camgeo.registry import registry
+from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,7 +53,7 @@ def exported(share: int, number: int) -> tuple[Cam, dict[str, bytes]]:
         rng = Random(f"cam {share} {number} {attempt}")
         cam = drawn(rng)
         files = [f"{{dxf: {{as: {rng.choice(['arcs', 'polyline'])}}}}}", "svg", "stl", "ply", "3mf"]
-        files += ["step"] if number == 0 else ["gcode"] if number % 2 else []
+        files += ["step"] if number == 0 else ["gcode"] if number % 2 and "gcode" in FORMATS else []
         text = cam.text(", ".join(files), MILLING)
         with TemporaryDirectory() as folder:
             path = Path(folder) / "cam.yaml"
@@ -79,7 +81,7 @@ def altered(rng: Random, number: int) -> Attack:
         return wrong_verdict(cam, done, folder / name, spoilt.mm)
 
     words = ["verify", "cam.yaml", name, "--json"]
-    if rng.random() < 0.1 and kind != "ngc":
+    if rng.random() < 0.1 and kind != "ngc" and "second_opinion" in registry.labels():
         words.append("--second-opinion")
     given = {"cam.yaml": files["yaml"], name: spoilt.raw}
     title = f"{kind} {spoilt.name} {number}"

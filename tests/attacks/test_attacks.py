@@ -129,4 +129,5 @@ def test_an_exception_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_sound_cams_are_exported_with_every_kind_of_file() -> None:
     _, files = exported(0, 1)
-    assert {"yaml", "dxf", "svg", "stl", "3mf", "ngc"} <= set(files)
+    assert {"yaml", "dxf", "svg", "stl", "3mf"} <= set(files)
+    assert "ngc" in files  # needs: milling

@@ -134,6 +134,7 @@ def test_what_is_marked_goes() -> None:
     assert without_marked(page, "dynamics") == page
 
 
+# needs: sweep
 def test_a_recipe_uses_what_it_names() -> None:
-    assert uses(ROOT / "recipes" / "sweep-four-bar.yaml", "sweep")  # needs: sweep
+    assert uses(ROOT / "recipes" / "sweep-four-bar.yaml", "sweep")
     assert not uses(ROOT / "recipes" / "reuleaux.yaml", "sweep")

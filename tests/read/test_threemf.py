@@ -499,7 +499,7 @@ def test_export_and_verify(tmp_path, capsys):
     ("files", "message"),
     [
         ("[{3mf: {tolerence: 0.1}}]", "tolerence: unknown key"),
-        ("[{3mf: {parts: some}}]", "give cam or all"),
+        ("[{3mf: {parts: some}}]", "give cam or all"),  # needs: mechanism
         ("[{3mf: {as: arcs}}]", "as: unknown key"),
         ("[3MF]", "unknown file format, given '3MF'"),
         ("[{3mf: {tolerance: 1.0e-10}}]", "rounding to nine decimals alone moves points by 7.07e-10 mm"),

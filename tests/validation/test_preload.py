@@ -311,6 +311,7 @@ TRAIN = "dynamics: {mass: 2, stiffness: 1.0e6, rpm: 100, "
             "export.files[0].stl.clearance",
             "leave it out",
         ),
+        # needs: mechanism
         (
             YOKE,
             "interference: 0.02",

@@ -26,6 +26,7 @@ def written(folder, text, runs, files, tolerance=0.001):
     return recipe
 
 
+# needs: milling
 @pytest.mark.parametrize("play", [0.0, pytest.param(0.004, marks=pytest.mark.slow)])
 def test_a_machine_is_corrected_to_its_noise_in_three_runs(play, tmp_path):
     """A cutter that is too small, axes that are not square, screws with play: a fifth is left of it each time.
@@ -276,6 +277,7 @@ def test_bad_input_is_told_in_one_line(name, tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+# needs: milling
 @pytest.mark.slow
 def test_head_and_name_of_a_program_say_that_it_is_corrected(tmp_path):
     runs = runs_of(tmp_path, ROLLER, bump(0.02))
