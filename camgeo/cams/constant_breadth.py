@@ -10,13 +10,13 @@ from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Preload, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.motions.half_turn import BY_MOTION, MOTION, SWING, HalfTurnCam, check_half_turn
-from camgeo.motions.motion import FormulaAsked
+from camgeo.motions.motion import FormulaMotion
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.motions.motion import MotionAsked
+    from camgeo.motions.motion import MotionSource
     from camgeo.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
@@ -45,7 +45,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     kind: ClassVar[str] = "constant-breadth"
     always_in_a_yoke: ClassVar[bool] = True
     base_radius: float
-    motion: MotionAsked
+    motion: MotionSource
     undercut: Undercut
     swings: bool = False
     frame: SlidingFrame | None = None
@@ -95,7 +95,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         from kin.law.frame_swing import span_of
 
         asked, last = self.motion, self.motion.last
-        if isinstance(asked, FormulaAsked):
+        if isinstance(asked, FormulaMotion):
             last = span_of(asked.text, asked.scale)
         motion = asked.motion(math.pi if last is None else last, "swing", None)
         if asked.covered is not None and abs(rise := float(motion.at_end(0)[0])) < math.pi:

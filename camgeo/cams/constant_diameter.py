@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.cams.guided import Holding
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import MotionAsked
+    from camgeo.motions.motion import MotionSource
     from camgeo.schema.reader import Reader, Values
 
 
@@ -34,7 +34,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     kind: ClassVar[str] = "constant-diameter"
     base_radius: float
     roller_radius: float
-    motion: MotionAsked
+    motion: MotionSource
     undercut: Undercut
     preload: Preload | None = None
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import MotionAsked, Open
+    from camgeo.motions.motion import MotionSource, Open
     from kin.law.contacts import Guide, Side, Touch
     from kin.law.joints import Joint
     from kin.law.sources.motion import Kept, Motion
@@ -39,7 +39,7 @@ class DiscCam(GuidedCam):
     base_radius: float
     guide: Guide
     touch: Touch
-    motion: MotionAsked
+    motion: MotionSource
     undercut: Undercut
     side: Side = 1
     beyond: float = 0.0
@@ -57,7 +57,7 @@ class DiscCam(GuidedCam):
         """Angles of its motion that are yet to be found; None where all are given."""
         return self.motion.open
 
-    def with_motion(self, motion: MotionAsked) -> DiscCam:
+    def with_motion(self, motion: MotionSource) -> DiscCam:
         """Give the cam of the same size and follower for another motion."""
         return replace(self, motion=motion)
 
@@ -76,7 +76,7 @@ class DiscCam(GuidedCam):
     def _turn(self) -> Motion:
         flanks = [flank for flank in self.holding.flanks(self.touch, self.side) if flank.disc == 0]
         within = len(flanks) - 1 if self.side > 0 else -1
-        motion = self.motion.of_follower(self._contact, within)
+        motion = self.motion.for_follower(self._contact, within)
         return motion.motion(2.0 * math.pi, "motion", 1)
 
     def _contact(self) -> Contact[Guide, Touch]:

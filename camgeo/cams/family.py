@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.curve.extremes import Extreme
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import ByMotion, MotionAsked, Open
+    from camgeo.motions.motion import ByMotion, MotionSource, Open
     from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
@@ -390,7 +390,7 @@ class Cam(ABC):
         """Angles of its motion that are yet to be found, before there is an exact cam; None where all are given."""
         return None
 
-    def with_motion(self, motion: MotionAsked) -> Cam:
+    def with_motion(self, motion: MotionSource) -> Cam:
         """Give the same cam with another motion; raises TypeError for one that has no angle to be found."""
         raise TypeError(f"{self.kind}: no {motion}")
 

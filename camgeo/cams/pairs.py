@@ -13,7 +13,7 @@ from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margi
 from camgeo.cams.flat_faced import spread
 from camgeo.cams.preload import PRELOAD, preloaded
 from camgeo.common.rounding import downward
-from camgeo.motions.motion import MotionAsked, check_filled, motion_field
+from camgeo.motions.motion import MotionSource, check_filled, motion_field
 from camgeo.motions.position import Position, SwingPosition
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 from kin.law.contacts import Flat
@@ -57,14 +57,14 @@ class DeltaFormulaRoute:
 class LawRoute:
     """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
 
-    motion: MotionAsked
+    motion: MotionSource
 
 
 @dataclass(frozen=True)
 class WantedRoute:
     """The series D of odd harmonics up to one whose law is nearest to a wanted swing (Wunderlich 6.5)."""
 
-    motion: MotionAsked
+    motion: MotionSource
     harmonics: int
 
 

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CutterPath:
-    """The path of a cutter's centre, counter-clockwise.
+    """The path of a cutter's centre, counter-clockwise; `radius` of the cutter, mm.
 
-    `curve` is the contour's parallel, in runs that meet where something is not reached; `corners` says that they are
-    those of a trimmed contour instead, about whose corners the cutter swings. `lost` says what is not reached, by the
+    `curve` is the contour's parallel, in runs that meet where metal is not reached. With `corners` the runs are those
+    of a trimmed contour instead, about whose corners the cutter swings. `lost` are the stretches not reached, by the
     contour's own parameters.
     """
 
@@ -44,11 +44,11 @@ class CutterPath:
     corners: bool = False
     lost: tuple[Undercut, ...] = ()
 
-    def within(self, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
-        """Arcs within `tolerance` mm of the path, as `fitted` makes them of a curve; raises as that does."""
+    def arcs(self, tolerance: float, fit_curve: Fit = fit_arcs) -> ArcSpline:
+        """Arcs within `tolerance` mm of the path, made of each curve by `fit_curve`; raises as that does."""
         if not self.corners:
-            return fitted(self.curve, tolerance)
-        fits = [fitted(Curve(self.curve.shape, (self._in_two(run),)), tolerance) for run in self.curve.runs]
+            return fit_curve(self.curve, tolerance)
+        fits = [fit_curve(Curve(self.curve.shape, (self._in_two(run),)), tolerance) for run in self.curve.runs]
         run_ends = np.array([run.high for run in self.curve.runs])
         leave = self.curve.sample(run_ends, -1)
         enter = self.curve.sample(np.array([run.low for run in self.curve.runs]))
@@ -62,14 +62,14 @@ class CutterPath:
         return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
 
     def _in_two(self, run: Run) -> Run:
-        """A run that is one circular arc in two halves: a chain of arcs has two at least."""
+        """The run; one that is a circular arc is broken in the middle, as a chain has two arcs at least."""
         if run.breaks or self.curve.radius((run.low, run.high)) is None:
             return run
         return replace(run, breaks=(0.5 * (run.low + run.high),))
 
 
 def cutter_path(contour: Curve, radius: float) -> CutterPath:
-    """Path of the centre of a cutter of `radius`, mm, about a contour, and what it does not reach.
+    """Path of the centre of a cutter of `radius`, mm, about a contour, with the stretches that it does not reach.
 
     Raises UndercutError where no single path is left of it, CurveError where what is reached cannot be proved.
     """
@@ -81,26 +81,27 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
     if is_sharp(contour):  # about a corner the parallel is an arc
         return CutterPath(Curve.whole(beside), radius)
     whole = CutterPath(Curve(beside, contour.runs), radius, corners=not contour.closed)
-    if no_hollow(contour) or radius <= rolled_by(contour):
+    if no_hollow(contour) or radius <= roller_radius(contour):
         return whole
     if not contour.closed:
-        across = 2.0 * rolled_by(contour)
+        across = 2.0 * roller_radius(contour)
         raise UndercutError(f"a trimmed contour with hollows takes a cutter no wider than its roller, {across:.6g} mm")
-    turned = Curve.whole(Parallel(contour.shape if ring else Backwards(contour.shape), radius))
-    why = causes(turned)
-    if why.none:
+    pitch = Curve.whole(Parallel(contour.shape if ring else Backwards(contour.shape), radius))
+    undercut = causes(pitch)
+    if undercut.none:
         return whole
     from camgeo.curve.undercut.trim import kept_runs, remains
     from camgeo.curve.undercut.undercut import stretches
 
-    what = remains(turned, why)
-    lost = stretches(turned, why, what)
-    lost = lost if ring else tuple(_forward(cut) for cut in lost)
-    if not what.corners:
+    remainder = remains(pitch, undercut)
+    lost = stretches(pitch, undercut, remainder)
+    if not ring:  # back to the contour's own parameters
+        lost = tuple(replace(cut, start=-cut.end, end=-cut.start, at=-cut.at) for cut in lost)
+    if not remainder.corners:
         raise UndercutError("the cutter comes to no place of the contour")
-    if what.pieces > 1:
+    if remainder.pieces > 1:
         raise UndercutError("the cutter does not come through to all of the contour", lost[0].at)
-    kept = kept_runs(turned, what)
+    kept = kept_runs(pitch, remainder)
     return CutterPath(Curve(beside, tuple(kept) if ring else runs_backwards(kept)), radius, lost=lost)
 
 
@@ -109,11 +110,6 @@ def no_hollow(contour: Curve) -> bool:
     return not in_ring(contour) and bool((contour.cells.rows[2] >= 0.0).all())
 
 
-def rolled_by(contour: Curve) -> float:
-    """Radius of the roller that has touched all of a contour, mm; 0 for that of a flat face."""
+def roller_radius(contour: Curve) -> float:
+    """Radius of the roller whose contour this is, mm; 0 for the contour of a flat face."""
     return abs(contour.shape.distance) if isinstance(contour.shape, Parallel) else 0.0
-
-
-def _forward(cut: Undercut) -> Undercut:
-    """What was found running backwards, in the contour's own parameters."""
-    return replace(cut, start=-cut.end, end=-cut.start, at=-cut.at)

@@ -22,6 +22,7 @@ from camgeo.curve.measures import StarError, nearest, polar_parameters
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.files.table import DIGITS as PLACES
 from camgeo.machining.cutter import cutter_path
+from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.synthesis.checks import hollow_radius
 from kin.judge.grinding import Grinding
@@ -45,7 +46,7 @@ DIGITS = 5e-12  # of a length as a table has it
 
 
 class Table(NamedTuple):
-    """A table: names of its columns, rows (n + 1, k), the lines of its head, and what straight joins leave, mm."""
+    """Names of the columns, rows (n + 1, k), the lines of the head, and the greatest error of straight joins, mm."""
 
     columns: tuple[str, ...]
     rows: Array
@@ -53,8 +54,8 @@ class Table(NamedTuple):
     error: float
 
 
-def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> Table:
-    """Make the table of a request within a tolerance, mm; `field` is the path of the request, for errors.
+def grinding_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> Table:
+    """Table of a request within a tolerance, mm; `field` is the path of the request, for errors.
 
     Raises RecipeErrors for a wheel or roller that the contour does not let in, a step that is too wide for the
     tolerance, and a tolerance that takes too fine a one.
@@ -65,29 +66,29 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
         bend, far = greatest_bend(path), path.size
     except CurveError as failure:
         ((_, contour),) = design.contours
-        raise _refused(recipe, wheel, str(failure), 2.0 * hollow_radius(1, contour)[0]) from failure
+        raise _refusal(recipe, wheel, str(failure), 2.0 * hollow_radius(1, contour)[0]) from failure
     count = _count(recipe, request, bend, (tolerance - DIGITS * far, tolerance), field)
-    error = _left(360.0 / count, bend) + DIGITS * far
+    error = _join_error(360.0 / count, bend) + DIGITS * far
     angle = 2.0 * math.pi * np.arange(count) / count
-    turned = -1.0 if recipe.rotation == "ccw" else 1.0
+    mirror = -1.0 if recipe.rotation == "ccw" else 1.0
     try:
-        at = path.sample(polar_parameters(path, turned * angle))
+        frames = path.sample(polar_parameters(path, mirror * angle))
     except StarError as failure:
         raise recipe.error(field, str(failure), None, "leave the table out") from failure
-    distance = np.hypot(at.point[:, 0], at.point[:, 1])
-    degrees, unit = 360.0 * np.arange(count + 1) / count, "in" if recipe.units == "inch" else "mm"
+    distance = np.hypot(frames.point[:, 0], frames.point[:, 1])
+    degrees, unit = 360.0 * np.arange(count + 1) / count, UNIT_NAMES[recipe.units]
     length = _exact_length(2.0 * wheel.radius, recipe)
     head = [f"{recipe.name}: {{}}; c_deg: direction of its centre from the shaft, as the part is drawn"]
     if ROLLER in request.own:
-        zero = _zero(path)
+        zero = nearest(path).value
         lift = np.where(np.abs(distance - zero) < NOTHING * far, 0.0, distance - zero)
         rows = [degrees, _closed(lift / recipe.mm)]
         columns: tuple[str, ...] = ("c_deg", f"lift_{unit}")
         head[0] = head[0].format(f"lift of a roller {length} across on a stem through the shaft")
         head.append(f"at lift 0 its centre is {_exact_length(zero, recipe)} from the shaft")
     else:
-        outward = np.where(np.abs(at.normal) < NOTHING, 0.0, at.normal)
-        normal = np.mod(np.degrees(np.arctan2(turned * outward[:, 1], outward[:, 0])), 360.0)
+        outward = np.where(np.abs(frames.normal) < NOTHING, 0.0, frames.normal)
+        normal = np.mod(np.degrees(np.arctan2(mirror * outward[:, 1], outward[:, 0])), 360.0)
         rows = [degrees, _closed(distance / recipe.mm), _closed(np.where(normal < 360.0, normal, 0.0))]
         columns = ("c_deg", f"x_{unit}", "normal_deg")
         head[0] = head[0].format(f"places of a grinding wheel {length} across")
@@ -97,24 +98,24 @@ def ground_table(recipe: Recipe, design: Design, request: FileRequest, tolerance
 
 
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
-    """How kin is to take tables of a recipe."""
+    """Wheel, and roller with its least distance, mm, by which kin judges grinding tables of a recipe."""
     request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:
         return Grinding(recipe.wheel)
     wheel = _Wheel.of(recipe, request, recipe.field_of(request))
-    return Grinding(recipe.wheel, wheel.radius, _zero(_path(recipe, design, wheel)))
+    return Grinding(recipe.wheel, wheel.radius, nearest(_path(recipe, design, wheel)).value)
 
 
 def greatest_bend(path: Curve) -> float:
-    """A bound of |d2X/dC2|, mm/rad^2, over the whole path: proved; raises CurveError where none is found."""
+    """A proved bound of |d2X/dC2|, mm/rad^2, over the whole path; raises CurveError where there is none."""
     stretches = np.concatenate([run.stretches for run in path.runs])
     low, high = divided(stretches[:, 0], stretches[:, 1], max(CELLS // len(stretches), 1))
     proved, ends, width = path.shape.bounds(low, high), path.span(low, high), high - low
     speed, turn = proved.speed_high, np.maximum(np.abs(proved.turn_low), np.abs(proved.turn_high))
     g, h, x = (
-        np.stack([np.sum(one.point * one.tangent, axis=1) for one in ends]),
-        np.stack([np.sum(one.point * one.normal, axis=1) for one in ends]),
-        np.stack([np.hypot(one.point[:, 0], one.point[:, 1]) for one in ends]),
+        np.stack([np.sum(frame.point * frame.tangent, axis=1) for frame in ends]),
+        np.stack([np.sum(frame.point * frame.normal, axis=1) for frame in ends]),
+        np.stack([np.hypot(frame.point[:, 0], frame.point[:, 1]) for frame in ends]),
     )
     # x' <= sigma, |g'| <= sigma + |omega h|, h' = omega g: none strays from its nearer end by more than half the width
     far = x.max(axis=0) + 0.5 * width * speed
@@ -143,10 +144,10 @@ def _path(recipe: Recipe, design: Design, wheel: _Wheel) -> Curve:
     try:
         path = cutter_path(contour, wheel.radius)
     except UndercutError as error:
-        raise _refused(recipe, wheel, "does not reach the contour", 2.0 * hollow_radius(1, contour)[0]) from error
+        raise _refusal(recipe, wheel, "does not reach the contour", 2.0 * hollow_radius(1, contour)[0]) from error
     if path.lost:
         largest = 2.0 * min(cut.free_at for cut in path.lost)
-        raise _refused(recipe, wheel, "does not reach all of the contour's hollows", largest)
+        raise _refusal(recipe, wheel, "does not reach all of the contour's hollows", largest)
     if path.corners:
         raise recipe.error(wheel.field, "a trimmed contour has corners, which are not ground", None, "leave it out")
     return path.curve
@@ -160,7 +161,7 @@ class _Wheel(NamedTuple):
 
     @staticmethod
     def of(recipe: Recipe, request: FileRequest, field: str) -> _Wheel:
-        """That of a request, `field` its path."""
+        """Wheel or roller of a request, `field` its path; raises RecipeErrors without a wheel."""
         if ROLLER in request.own:
             return _Wheel(0.5 * request.own[ROLLER], f"{field}.csv.{ROLLER}")
         if recipe.wheel is None:
@@ -168,49 +169,44 @@ class _Wheel(NamedTuple):
         return _Wheel(recipe.wheel, "manufacture.wheel")
 
 
-def _refused(recipe: Recipe, wheel: _Wheel, why: str, largest: float) -> RecipeErrors:
-    """The error of a wheel; the remedy stays below the `largest`, mm across, whose centre stops in a hollow."""
+def _refusal(recipe: Recipe, wheel: _Wheel, problem: str, largest: float) -> RecipeErrors:
+    """Error of a wheel; the remedy stays below the `largest`, mm across, whose centre stops in a hollow."""
     remedy = "leave the table out"
     if math.isfinite(largest):
-        why += f"; the largest that reaches is {downward(largest / recipe.mm)} {recipe.units} across"
+        problem += f"; the largest that reaches is {downward(largest / recipe.mm)} {recipe.units} across"
         remedy = f"give {downward(BELOW * largest / recipe.mm)} {recipe.units} or less"
-    return recipe.error(wheel.field, why, _length(2.0 * wheel.radius, recipe), remedy)
+    return recipe.error(wheel.field, problem, _length(2.0 * wheel.radius, recipe), remedy)
 
 
 def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequence[float], field: str) -> int:
-    """Rows of a turn, which a request gives by its step or a tolerance, less what digits take of it, calls for."""
-    room, tolerance = tolerances
-    widest = COARSEST if bend == 0.0 else math.degrees(math.sqrt(8.0 * max(SHARE * room, 0.0) / bend))
+    """Number of rows of a turn, by the step of the request or by the tolerance less the share of the digits."""
+    available, tolerance = tolerances
+    widest = COARSEST if bend == 0.0 else math.degrees(math.sqrt(8.0 * max(SHARE * available, 0.0) / bend))
     ticks = int(min(widest, COARSEST) * TICKS)
     if ticks < FINEST * TICKS:
-        least = upward(_left(FINEST, bend) / SHARE / recipe.mm)
-        what = f"joined by straight lines a table of {360.0 / FINEST:.0f} rows does not keep it"
-        where = f"{field}.csv.tolerance" if request.tolerance is not None else "export.tolerance"
-        raise recipe.error(where, what, _length(tolerance, recipe), f"give at least {least} {recipe.units}")
+        least = upward(_join_error(FINEST, bend) / SHARE / recipe.mm)
+        problem = f"joined by straight lines a table of {360.0 / FINEST:.0f} rows does not keep it"
+        path = f"{field}.csv.tolerance" if request.tolerance is not None else "export.tolerance"
+        raise recipe.error(path, problem, _length(tolerance, recipe), f"give at least {least} {recipe.units}")
     step = next(tick for tick in range(ticks, 0, -1) if 360 * TICKS % tick == 0) / TICKS
     if "step" not in request.own:
         return round(360.0 / step)
     count = round(2.0 * math.pi / float(request.own["step"]))
-    left = _left(360.0 / count, bend)
-    if left > tolerance:
-        what = f"joined by straight lines rows so far apart leave {_length(left, recipe)}, beyond the tolerance"
-        remedy = f"give {step:g} or less, or a tolerance of {upward(left / recipe.mm)} {recipe.units}"
-        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+    error = _join_error(360.0 / count, bend)
+    if error > tolerance:
+        problem = f"joined by straight lines rows so far apart leave {_length(error, recipe)}, beyond the tolerance"
+        remedy = f"give {step:g} or less, or a tolerance of {upward(error / recipe.mm)} {recipe.units}"
+        raise recipe.error(f"{field}.csv.step", problem, f"{360.0 / count:.9g} degrees", remedy)
     return count
 
 
-def _left(step: float, bend: float) -> float:
-    """What straight joins over a step, degrees, leave at most, mm."""
+def _join_error(step: float, bend: float) -> float:
+    """Greatest error of straight joins over a step, degrees, mm."""
     return math.radians(step) ** 2 * bend / 8.0
 
 
-def _zero(path: Curve) -> float:
-    """Least distance of a path from the shaft, mm."""
-    return nearest(path).value
-
-
 def _closed(column: Array) -> Array:
-    """A column with its first value behind the last."""
+    """The column with its first value again at the end."""
     return np.append(column, column[:1])
 
 
@@ -219,5 +215,5 @@ def _length(value: float, recipe: Recipe) -> str:
 
 
 def _exact_length(value: float, recipe: Recipe) -> str:
-    """A length with as many digits as rows have: whoever reads the table takes it as it stands."""
+    """A length with as many digits as the rows have, as readers of the table compute with it."""
     return f"{value / recipe.mm:.{PLACES}g} {recipe.units}"

@@ -286,7 +286,7 @@ def motion_figures(design: Design, order: int) -> dict[str, Measured]:
     from kin.numeric.monotone import RoughError, between, cells, pieces
 
     position = design.motion
-    unit, scale = position.unit, position.shown(1.0)
+    unit, scale = position.unit, position.factor(1.0)
     names = [name for name, k in ORDERS.items() if k <= order]
     try:
         motion_cells = cells(

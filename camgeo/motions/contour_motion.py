@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.sources.motion import Motion
 
-ANGLES = 720  # shaft angles at which the follower is felt
+ANGLES = 720  # shaft angles at which the follower's position on the contour is taken
 _DIGITS = 3  # beyond that of the reading, to which positions are rounded
 
 DRAWING = Form(
@@ -28,7 +28,7 @@ DRAWING = Form(
 )
 
 
-class Drawn(NamedTuple):
+class CamDrawing(NamedTuple):
     """Closed contours about the shaft at the origin, as those of a cam that turns clockwise; or one pitch curve."""
 
     file: str
@@ -38,10 +38,10 @@ class Drawn(NamedTuple):
 
 def read_contours(
     reader: Reader, file: str, path: str, *, mirrored: bool, unit: float, pitch: bool = False
-) -> Drawn | None:
-    """Read the contours of a drawing or of points, whose unit, mm, is that of a file that states none.
+) -> CamDrawing | None:
+    """Read the contours of a drawing or of points; `unit`, mm, is that of a file that states none.
 
-    Notes what is wrong.
+    None where the file cannot be read, and the fault is noted.
     """
     from kin.read.errors import ReadError
     from kin.read.files import read_drawing
@@ -52,8 +52,8 @@ def read_contours(
         if where.suffix.lower() in SUFFIXES:
             contours = read_contour_points(where, unit)
         else:
-            drawing = read_drawing(where, deepest=3, unstated=unit)  # blank, two flanks, bore
-            contours = [chain.contour for chain in drawing.chains]
+            chains = read_drawing(where, deepest=3, unstated=unit).chains  # blank, two flanks, bore
+            contours = [chain.contour for chain in chains]
     except FileNotFoundError:
         reader.fault_at(path, "the file does not exist", repr(file), "give its path as seen from the recipe's folder")
         return None
@@ -64,17 +64,19 @@ def read_contours(
     except ValueError as error:
         problem = str(error)
     else:
-        return Drawn(file, tuple(contour.mirrored() if mirrored else contour for contour in contours), pitch)
+        return CamDrawing(file, tuple(contour.mirrored() if mirrored else contour for contour in contours), pitch)
     remedy = "give a DXF or an SVG with the cam's closed contour, or a CSV of its points x, y"
     reader.fault_at(path, f"{file}: {problem}", None, remedy)
     return None
 
 
 @lru_cache(maxsize=8)
-def felt(drawn: Drawn, contact: Contact[Guide, Touch], within: int, reading: float, field: str) -> Motion:
-    """The motion of least mean square jerk within `reading` of what a follower does on the drawing, mm or rad.
+def motion_on_drawing(
+    drawing: CamDrawing, contact: Contact[Guide, Touch], within: int, reading: float, field: str
+) -> Motion:
+    """Motion of least mean square jerk within `reading`, mm or rad, of a follower's positions on the drawing.
 
-    It runs on the contour that lies `within` so many others round the shaft; -1 is a ring's opening, the innermost one.
+    The follower runs on the contour that lies `within` so many others round the shaft; -1 is the innermost, of a ring.
     Raises kin's IntentError where there is no such contour, or the follower finds no contact.
     """
     import numpy as np
@@ -87,22 +89,22 @@ def felt(drawn: Drawn, contact: Contact[Guide, Touch], within: int, reading: flo
     from kin.law.sources.table import from_table
     from kin.numeric.records import replace
 
-    contours = tracks(drawn.contours)
+    contours = tracks(drawing.contours)
     side: Side = -1 if within < 0 else 1
-    if drawn.pitch:
+    if drawing.pitch:
         if not contact.touch.centred:
-            problem = f"{drawn.file}: a {contact.touch.word} has no centre and so no pitch curve"
+            problem = f"{drawing.file}: a {contact.touch.word} has no centre and so no pitch curve"
             raise IntentError(f"{problem}; give the cam's contour, without curve: pitch", field)
         contact, within = contact.place, min(within, 0)  # its centre runs on the one curve that there is
     if len(contours) <= max(within, 0):
         lacking = "no second" if contours else "no"
-        raise IntentError(f"{drawn.file}: {lacking} closed contour goes round the origin, where the shaft is", field)
+        raise IntentError(f"{drawing.file}: {lacking} closed contour goes round the origin, where the shaft is", field)
     phi = np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) + math.pi / ANGLES
     try:
         position = positions(contours[within], contact, side, phi)
         position -= position.min()
     except (ContactError, ValueError) as error:
-        raise IntentError(f"{drawn.file}: the follower does not run on the contour: {error}", field) from error
+        raise IntentError(f"{drawing.file}: the follower does not run on the contour: {error}", field) from error
     digit = 10.0 ** (math.floor(math.log10(reading)) - _DIGITS)  # so that a round part of the contour is a dwell
     rows = Samples(phi, np.round(position / digit) * digit, np.arange(ANGLES) + 1)
     motion = from_table(rows, reading, suspects="keep", field=field)

@@ -1,4 +1,4 @@
-"""What cams between two opposite contacts of one frame have in common: the motion over one half turn gives the other.
+"""Cams between two opposite contacts of one frame: the motion over one half turn gives the other.
 
 Shu and Wu 2012: S(t + 180) = S(180) - S(t), since the contacts are a fixed distance apart.
 """
@@ -9,7 +9,7 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from camgeo.motions.motion import ByMotion, MotionAsked, check_filled, motion_field
+from camgeo.motions.motion import ByMotion, MotionSource, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:
@@ -33,13 +33,12 @@ BY_MOTION = ByMotion(
     still=("motion", [{"rise": 0.01, "over": 180.0, "law": "cycloidal"}]),
     opposed=True,
 )
-"""A motion over the half turn."""
 
 
 class HalfTurnCam:
     """A cam whose motion is given over one half turn."""
 
-    motion: MotionAsked
+    motion: MotionSource
 
     @property
     def motion_span(self) -> float:
@@ -48,20 +47,20 @@ class HalfTurnCam:
 
     @cached_property
     def half_turn(self) -> Motion:
-        """The motion over the half turn, which the other half meets turned round."""
+        """The motion over the half turn; the other half follows in the opposite sense."""
         return self.motion.motion(math.pi, "motion", -1)
 
     def joints(self) -> tuple[Joint, ...]:
-        """Those of the half turn; the other half has them too, turned round."""
+        """Joints of the half turn's motion; the other half has the same in the opposite sense."""
         return self.half_turn.joints
 
     def kept(self) -> Kept | None:
-        """Distances of the half turn's motion from the rows of its table."""
+        """How the half turn's motion keeps the rows of its table; None without one."""
         return self.half_turn.kept
 
 
 def check_half_turn(cam: Values, reader: Reader, holding: str) -> None:
-    """Note segments that do not fill the half turn; `holding` the cam are its two contacts."""
+    """Note segments that do not fill the half turn; `holding` names the two contacts."""
     why = f"{holding} hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
     if "motion" in cam:
         check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=why)

@@ -1,4 +1,4 @@
-"""Tables of displacements: their file is read with the recipe, which then needs it no more."""
+"""Tables of displacements: their file is read with the recipe, so that it is not needed later."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _FIELD = "table"
 
 
 class Origin(NamedTuple):
-    """Where the rows of a table come from: the path of a file, or their text, where they stand in the recipe."""
+    """Source of a table's rows: the path of a file, or their text where they stand in the recipe."""
 
     name: str
     text: str | None = None
@@ -49,7 +49,7 @@ class Rows:
     turned: float = 1.0
 
     def samples(self) -> Samples:
-        """Give the rows as kin takes them."""
+        """The rows for kin."""
         import numpy as np
 
         from kin.law.sources.ring import Samples
@@ -102,17 +102,17 @@ TABLE = Form(
 
 def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[Column, Column] | None:
     """Read two columns, each by its heading or its number."""
-    found: list[Column] = []
+    columns: list[Column] = []
     for i, item in enumerate(reader.items(field, node, path, 2)):
         if not isinstance(item, Scalar) or not 0 < len(item.text) <= MOST_TEXT or not item.text.isprintable():
             reader.fault(item.mark, join(path, i), "not a column", described(item), reader.wanted(field))
             return None
-        found.append(int(item.text) if item.plain and item.text.isdecimal() else item.text)
-    if len(found) == 2:
-        return found[0], found[1]
-    if found:
-        given = described(node) if isinstance(node, Sequence) else None
-        reader.fault(node.mark, path, "not two columns", given, reader.wanted(field))
+        columns.append(int(item.text) if item.plain and item.text.isdecimal() else item.text)
+    if len(columns) == 2:
+        return columns[0], columns[1]
+    if columns:
+        value = described(node) if isinstance(node, Sequence) else None
+        reader.fault(node.mark, path, "not two columns", value, reader.wanted(field))
     return None
 
 
@@ -183,12 +183,12 @@ def read_rows(
 
 
 def _text(data: bytes) -> str:
-    """The text of a table; raises Complaint for none, and for more than is read."""
-    rest = "leave rows out; a row for each hundredth of a degree will do"
+    """Decode the text of a table; raises Complaint for a file that is no text or too large."""
+    remedy = "leave rows out; a row for each hundredth of a degree will do"
     if len(data) > MAX_BYTES:
-        raise Complaint(f"larger than {MAX_BYTES} bytes", rest)
+        raise Complaint(f"larger than {MAX_BYTES} bytes", remedy)
     if max(data.count(b"\n"), data.count(b"\r")) > MAX_ROWS:
-        raise Complaint(f"more than {MAX_ROWS} rows", rest)
+        raise Complaint(f"more than {MAX_ROWS} rows", remedy)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16", "replace")
     if b"\0" in data:

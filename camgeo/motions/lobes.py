@@ -44,7 +44,7 @@ class SideShape:
 def lobe_motion(
     lift: float, sides: tuple[SideShape, SideShape], total: float, *, nose: float, around: int | None, field: str
 ) -> Motion:
-    """Make the motion of a lobe over `total` rad; raises IntentError for what is none."""
+    """Motion of a lobe over `total` rad; raises IntentError where there is none."""
     from kin.law.programme import IntentError
     from kin.law.sources.cam_card import sides_of_card
     from kin.law.sources.lobe import demand_lift, lobe_of
@@ -69,7 +69,7 @@ def lobe_motion(
 
 
 def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCard:
-    """A side as kin takes it: known by its powers, or what its card says."""
+    """A side for kin: by its powers, or by its cam card."""
     from kin.law.sources.cam_card import Crossing, SideCard
     from kin.law.sources.lobe import Ramp, demand_ramp, side_of
 
@@ -79,7 +79,7 @@ def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCa
         return SideCard(known=side_of(lift, side.half, side.powers, ramp, total=total, field=field))
     if ramp is not None:
         demand_ramp(lift, ramp, field)
-    crossings = tuple(Crossing(at, crank / side.crank) for at, crank in side.durations)
+    crossings = tuple(Crossing(height, crank / side.crank) for height, crank in side.durations)
     return SideCard(crossings, side.half, ramp, crank=side.crank, field=field)
 
 
@@ -93,7 +93,7 @@ def _mixture_words(members: tuple[tuple[tuple[int, ...], float], ...], side: Lob
 
 
 def lobe_field(stroke: Kind, most: float) -> Field:
-    """Make the field of a lobe whose lifts are lengths or angles, of up to `most`."""
+    """Field of a lobe whose lifts are lengths or angles up to `most`."""
     nose = Field(
         "nose",
         Kind.ANGLE,
@@ -168,8 +168,8 @@ def _read_durations(
     return tuple(whole) if rows and len(whole) == len(rows) else None
 
 
-def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideShape, SideShape] | None:
-    """The two sides of a lobe that has been read; None where one is faulty, and the fault is noted."""
+def read_sides(values: Values, path: str, reader: Reader) -> tuple[SideShape, SideShape] | None:
+    """Read the two sides of a lobe; None where one is faulty, and the fault is noted."""
     sides = []
     for name in _SIDES:
         own, place = values.get(name, {}), join(path, name) if name in values else path
@@ -181,8 +181,8 @@ def sides_of(values: Values, path: str, reader: Reader) -> tuple[SideShape, Side
             }
         side = {**shared, **own}
         if "powers" in side and "duration" in side:
-            where = join(place, "duration") if "duration" in own else join(path, "duration")
-            reader.fault_at(where, "cannot be combined with powers", None, "give exactly one of them")
+            fault_path = join(place, "duration") if "duration" in own else join(path, "duration")
+            reader.fault_at(fault_path, "cannot be combined with powers", None, "give exactly one of them")
             return None
         if "powers" not in side and "duration" not in side:
             remedy = "give half and powers, or duration: [{at_lift: 1.27 mm, degrees: 228}]"

@@ -1,7 +1,7 @@
 """The motion of a recipe: segments, a formula, a table, points or a lobe; one grammar for every kind of cam.
 
-A kind says over which angle its motion runs and how the end is followed by the beginning (`around` of kin's `Motion`):
-over a whole turn (1) the least displacement is 0, over a part of one S begins at 0.
+A kind of cam sets the angle over which its motion runs, and `around` of kin's `Motion`: how the end joins the start.
+Over a whole turn (1) the least displacement is 0, over a part of one S begins at 0.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
-from camgeo.motions.lobes import lobe_field, sides_of
+from camgeo.motions.lobes import lobe_field, read_sides
 from camgeo.motions.segments import LEAST, REST, read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import number_schema, table_schema
@@ -23,7 +23,7 @@ from kin.numeric.records import dataclass, field, replace
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.motions.contour_motion import Drawn
+    from camgeo.motions.contour_motion import CamDrawing
     from camgeo.motions.lobes import SideShape
     from camgeo.motions.segments import MotionSegment
     from camgeo.schema.change import Value
@@ -45,10 +45,10 @@ MOST_REPEATS = 100
 LEAST_READING = 1e-9  # of the stroke, where a recipe gives none: a table may show every digit of its computer
 
 
-class MotionAsked(ABC):
-    """A motion as a recipe gives it; compares, hashes and travels between processes. Lengths in mm, angles in rad.
+class MotionSource(ABC):
+    """A motion as a recipe gives it, lengths in mm, angles in rad; can be compared, hashed and pickled.
 
-    `scale` mm or rad are one of the recipe's units; `source` is the key of what it comes from, behind its field's path.
+    `scale` mm or rad are one of the recipe's units; `source` is the key of its source, behind its field's path.
     """
 
     scale: float
@@ -57,11 +57,11 @@ class MotionAsked(ABC):
     def motion(self, total: float, field: str, around: int | None) -> Motion:
         """Make the motion over `total` rad, or with `around` 1 over an equal part of it that repeats.
 
-        Raises kin's IntentError with the field of what does not fit. How its parts join is said by its `joints`.
+        Raises kin's IntentError with the field of what does not fit. Its `joints` say how the parts join.
         """
-        found = self._made(total, field, around)
-        self._demand_within(found, f"{field}{self.source}")
-        return found.from_lowest() if around == 1 else found
+        motion = self._made(total, field, around)
+        self._demand_within(motion, f"{field}{self.source}")
+        return motion.from_lowest() if around == 1 else motion
 
     def _demand_within(self, motion: Motion, field: str) -> None:
         """Raise IntentError for a motion over more than any stroke may be."""
@@ -71,40 +71,40 @@ class MotionAsked(ABC):
         least, greatest = motion.range
         stroke = (greatest - least) / self.scale
         if stroke > MOST * (1.0 + _ROUNDING):
-            *_, at = extremes(motion.motion, 0)
+            at_deg = math.degrees(extremes(motion.motion, 0)[-1])
             raise IntentError(
-                f"a motion over {stroke:.10g} in all, to its greatest displacement at {math.degrees(at):.6g} degrees; "
+                f"a motion over {stroke:.10g} in all, to its greatest displacement at {at_deg:.6g} degrees; "
                 f"give displacements that differ by {MOST:.0f} at most",
                 field,
-                math.degrees(at),
+                at_deg,
             )
 
-    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> MotionAsked:  # noqa: ARG002
-        """The motion where it depends on the follower, whose contour lies `within` so many others round the shaft.
+    def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> MotionSource:  # noqa: ARG002
+        """The motion with its follower, whose contour lies `within` so many others round the shaft, -1 for a ring's.
 
-        A ring's opening lies within all others: -1. `contact` is called only where the motion depends on it: a cam that
-        is being sized has no place of its follower yet.
+        `contact` is called only where the motion depends on it: a cam that is being sized has no place of its follower
+        yet.
         """
         return self
 
     @property
     def covered(self) -> float | None:
-        """Angle in rad that segments fill, None of a source that fills any."""
+        """Angle that the segments fill, rad; None for a source that fills any angle."""
         return None
 
     @property
     def last(self) -> float | None:
-        """Last angle in rad of a source that tells one; None of one that goes on."""
+        """Last angle that the source gives, rad; None for one without an end."""
         return self.covered
 
     @property
     def repeats(self) -> int:
-        """How often it stands in its angle."""
+        """How often the motion repeats over its angle."""
         return 1
 
     @property
     def open(self) -> Open | None:
-        """The angles that are yet to be found; None of a motion of which all are given."""
+        """The angles left open; None where all are given."""
         return None
 
     @abstractmethod
@@ -113,12 +113,12 @@ class MotionAsked(ABC):
 
 @dataclass(frozen=True)
 class Open:
-    """Segments of which one is to take the least angle that limits allow, and a dwell what is left of the turn."""
+    """Segments of which one takes the least angle that the limits allow, and a dwell the rest of the turn."""
 
-    motion: SegmentsAsked
+    motion: Segments
 
     def index(self, word: str) -> int:
-        """Place of the segment that has a word in place of its angle."""
+        """Index of the segment that has `word` in place of its angle."""
         return next(i for i, segment in enumerate(self.motion.segments) if segment.free == word)
 
     @property
@@ -127,16 +127,16 @@ class Open:
         others = math.fsum(segment.over for segment in self.motion.segments)
         return round(360.0 / self.motion.repeat - math.degrees(others), _PLACES)
 
-    def with_least(self, least: float) -> tuple[SegmentsAsked, float]:
+    def with_least(self, least: float) -> tuple[Segments, float]:
         """The motion with its least angle set, degrees, and the angle of the dwell, degrees."""
         rest = round(self.remaining - least, _PLACES)
         angles = {"": 0.0, LEAST: math.radians(least), REST: math.radians(rest)}
-        filled = (replace(s, over=s.over + angles[s.free], free="") for s in self.motion.segments)
-        return replace(self.motion, segments=tuple(filled)), rest
+        segments = (replace(s, over=s.over + angles[s.free], free="") for s in self.motion.segments)
+        return replace(self.motion, segments=tuple(segments)), rest
 
 
 @dataclass(frozen=True)
-class SegmentsAsked(MotionAsked):
+class Segments(MotionSource):
     """Segments one after another, `repeat` times over."""
 
     segments: tuple[MotionSegment, ...]
@@ -145,7 +145,7 @@ class SegmentsAsked(MotionAsked):
 
     @property
     def repeats(self) -> int:
-        """As often as the recipe says."""
+        """`repeat` of the recipe."""
         return self.repeat
 
     @property
@@ -155,7 +155,7 @@ class SegmentsAsked(MotionAsked):
 
     @property
     def open(self) -> Open | None:
-        """Itself, where words stand in place of angles."""
+        """These segments, where words stand in place of angles."""
         return Open(self) if any(segment.free for segment in self.segments) else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
@@ -167,7 +167,7 @@ class SegmentsAsked(MotionAsked):
 
 
 @dataclass(frozen=True)
-class FormulaAsked(MotionAsked):
+class FormulaMotion(MotionSource):
     """A formula in t, the angle in rad; its values times `scale`."""
 
     text: str
@@ -179,14 +179,14 @@ class FormulaAsked(MotionAsked):
         from kin.law.sources.whole_turn import from_formula
 
         field = f"{field}.formula"
-        found = from_formula(Formula(self.text), total, scale=self.scale, around=around, field=field)
+        motion = from_formula(Formula(self.text), total, scale=self.scale, around=around, field=field)
         if around != 1:
-            _demand_zero(float(found.at_start(0)[0]), max(map(abs, found.range)) * _ZERO, self.scale, field)
-        return found
+            _demand_zero(float(motion.at_start(0)[0]), max(map(abs, motion.range)) * _ZERO, self.scale, field)
+        return motion
 
 
 @dataclass(frozen=True)
-class TableAsked(MotionAsked):
+class TableMotion(MotionSource):
     """Rows of a table, each kept within a reading error; `scale` mm or rad are one of the recipe's units."""
 
     file: str
@@ -199,7 +199,7 @@ class TableAsked(MotionAsked):
 
     @property
     def last(self) -> float | None:
-        """That of the last row."""
+        """Angle of the last row, rad."""
         return self.rows.theta[-1] if self.rows.theta else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
@@ -207,7 +207,7 @@ class TableAsked(MotionAsked):
 
 
 @lru_cache(maxsize=8)
-def _kept(table: TableAsked, total: float, field: str, around: int | None) -> Motion:
+def _kept(table: TableMotion, total: float, field: str, around: int | None) -> Motion:
     from kin.law.programme import IntentError
     from kin.law.sources.table import from_table
     from kin.law.sources.tabled import TableError
@@ -224,32 +224,32 @@ def _kept(table: TableAsked, total: float, field: str, around: int | None) -> Mo
 
 
 @dataclass(frozen=True)
-class ContourAsked(MotionAsked):
-    """What the follower does on a drawing's contour, by contact, within a reading error, mm or rad."""
+class ContourMotion(MotionSource):
+    """Motion of the follower in contact with a drawing's contour, within a reading error, mm or rad."""
 
-    drawn: Drawn
+    drawing: CamDrawing
     reading: float
     scale: float
     contact: Contact[Guide, Touch] | None = None
     within: int = 0
     source: ClassVar[str] = ".contour"
 
-    def of_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourAsked:
-        """The same with its follower."""
+    def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourMotion:
+        """The motion with its follower."""
         return replace(self, contact=contact(), within=within)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
-        from camgeo.motions.contour_motion import felt
+        from camgeo.motions.contour_motion import motion_on_drawing
         from kin.law.programme import IntentError
 
         field = f"{field}.contour"
         if self.contact is None or around != 1 or abs(total - 2.0 * math.pi) > _ANGLE:
             raise IntentError("a contour gives the motion of one follower on a disc over a whole turn", field)
-        return felt(self.drawn, self.contact, self.within, self.reading, field)
+        return motion_on_drawing(self.drawing, self.contact, self.within, self.reading, field)
 
 
 @dataclass(frozen=True)
-class PointsAsked(MotionAsked):
+class PointsMotion(MotionSource):
     """Points (angle, displacement), rising; neighbours of one displacement have a dwell between them."""
 
     points: tuple[tuple[float, float], ...]
@@ -258,7 +258,7 @@ class PointsAsked(MotionAsked):
 
     @property
     def last(self) -> float | None:
-        """That of the last point."""
+        """Angle of the last point, rad."""
         return self.points[-1][0]
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
@@ -277,7 +277,7 @@ class PointsAsked(MotionAsked):
     def _ends_of_dwells(
         self, total: float, around: int | None
     ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-        """Points but those inside a dwell, and the dwells from point to point."""
+        """Points without those inside a dwell, and the dwells (start, end), rad."""
         points = list(self.points)
         closed = around == 1 and points[-1][0] - points[0][0] > total - _ANGLE
         if closed and points[-1][1] == points[0][1]:
@@ -291,7 +291,7 @@ class PointsAsked(MotionAsked):
 
 
 @dataclass(frozen=True)
-class LobeAsked(MotionAsked):
+class LobeMotion(MotionSource):
     """The lobe of a valve train: its lift, mm or rad, its two sides, and the shaft angle of its nose, rad."""
 
     lift: float
@@ -318,7 +318,7 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
 
 @dataclass(frozen=True, kw_only=True)
 class ByMotion:
-    """How recipes of a family give a cam by its motion: keys below `cam`.
+    """Keys below `cam` by which recipes of a family give a cam by its motion.
 
     motion    key of the motion
     base      key of the base circle's radius, where displacements are 0; empty where other lengths fix the size
@@ -352,13 +352,8 @@ def motion_field(
         lambda field: {"anyOf": [segments_schema(field), table_schema(sources)]},
         instead=sources,
     )
-    table = _segment(stroke, 360 if whole_turn else longest, free=whole_turn)
+    table = segment_table(stroke, 360 if whole_turn else longest, free=whole_turn)
     return Field(name, Kind.OWN, about, required, table=table, form=form)
-
-
-@cache
-def _segment(stroke: Kind, longest: int, *, free: bool) -> Table:
-    return segment_table(stroke, longest, free=free)
 
 
 def _read_reading(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
@@ -379,7 +374,7 @@ _READING = Form(
 
 @cache
 def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
-    """The keys of a motion that is no list of segments."""
+    """Table of the keys of a motion that is no list of segments."""
     most = 180 if stroke is Kind.ANGLE else MOST
     units = Field(
         "units",
@@ -436,21 +431,21 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         choices=("cam", "pitch"),
     )
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
-    form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
-    inner = _segment(stroke, 360, free=True)
+    form = Form("a list of motion segments", "a list of segments", partial(_read_segments, stroke), segments_schema)
+    inner = segment_table(stroke, 360, free=True)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
     return Table(
         (repeat, segments, *fields, contour, curve), (("segments", ("repeat",)), *alternatives, ("contour", ()))
     )
 
 
-def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> MotionAsked | None:
+def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> MotionSource | None:
     """Read a motion: a list of segments, or a mapping with another source."""
     if not isinstance(node, Mapping):
-        return _read_list(stroke, reader, field, node, path)
+        return _read_segments(stroke, reader, field, node, path)
     if field.form is None or field.form.instead is None:
         raise AssertionError(field.name)
-    found = len(reader.errors)
+    faults = len(reader.errors)
     values = reader.table(field.form.instead, node, path)
     of_contours = {"units", "reading"} if "contour" in values else set()
     for key in (*(field.name for field in SHEET), "units", "reading", "rest", "suspect"):
@@ -460,73 +455,73 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
         reader.fault_at(f"{path}.curve", "cannot stand without a contour", None, "leave it out")
     if "units" in values and stroke in reader.angular and "contour" not in values:
         reader.fault_at(f"{path}.units", "the follower swings: its table is in degrees", None, "leave it out")
-    if len(reader.errors) > found:
+    if len(reader.errors) > faults:
         return None
     scale = reader.scale(stroke)
     if "segments" in values:
-        once: SegmentsAsked = values["segments"]
-        return replace(once, repeat=values["repeat"])
+        segments: Segments = values["segments"]
+        return replace(segments, repeat=values["repeat"])
     if "formula" in values:
-        return FormulaAsked(values["formula"], scale)
+        return FormulaMotion(values["formula"], scale)
     if "points" in values:
-        return PointsAsked(values["points"], scale)
+        return PointsMotion(values["points"], scale)
     if "lobe" in values:
         lobe = values["lobe"]
-        sides = sides_of(lobe, join(path, "lobe"), reader)
-        return None if sides is None else LobeAsked(lobe["lift"], sides, lobe.get("nose", 0.0), scale=scale)
+        sides = read_sides(lobe, join(path, "lobe"), reader)
+        return None if sides is None else LobeMotion(lobe["lift"], sides, lobe.get("nose", 0.0), scale=scale)
     if "contour" in values:
         return _contour(reader, values, join(path, "contour"), scale)
     return _table(stroke, reader, values, join(path, "table"))
 
 
-def _contour(reader: Reader, values: Values, path: str, scale: float) -> ContourAsked | None:
+def _contour(reader: Reader, values: Values, path: str, scale: float) -> ContourMotion | None:
     """Read the contours of a drawing now, so that the recipe needs no file any more."""
     reading = values.get("reading")
     if reading is None or reading == "auto":
         reader.fault_at(path, "a contour shows no digits", None, "give reading beside it, such as reading: 0.02")
         return None
     root = reader.source.root
-    turned = entries(root).get("rotation") if isinstance(root, Mapping) else None
-    mirrored = isinstance(turned, Scalar) and turned.text == "ccw"
+    rotation = entries(root).get("rotation") if isinstance(root, Mapping) else None
+    mirrored = isinstance(rotation, Scalar) and rotation.text == "ccw"
     unit = {"mm": 1.0, "inch": MM_PER_INCH, "thou": 1e-3 * MM_PER_INCH}[values.get("units", reader.units)]
     pitch = values.get("curve") == "pitch"
-    drawn = read_contours(reader, values["contour"], path, mirrored=mirrored, unit=unit, pitch=pitch)
-    return None if drawn is None else ContourAsked(drawn, reading, scale)
+    drawing = read_contours(reader, values["contour"], path, mirrored=mirrored, unit=unit, pitch=pitch)
+    return None if drawing is None else ContourMotion(drawing, reading, scale)
 
 
-def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> SegmentsAsked | None:
+def _read_segments(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> Segments | None:
     segments = read_segments(reader, field, node, path, stroke)
-    return SegmentsAsked(segments, scale=reader.scale(stroke)) if segments else None
+    return Segments(segments, scale=reader.scale(stroke)) if segments else None
 
 
-def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAsked | None:
+def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableMotion | None:
     """Read the rows of a table now, so that the recipe needs no file any more."""
     angular = stroke in reader.angular
-    found = read_rows(
+    table = read_rows(
         reader,
         values,
         path,
         quantity="angle" if angular else "length",
         instead="degrees" if angular else reader.units,
     )
-    if found is None:
+    if table is None:
         return None
-    rows, place = found
+    rows, digit = table
     largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True), default=(0.0, 0))
     if MOST * reader.scale(stroke) < largest < math.inf:  # what is not finite is refused with the other faults of rows
         problem = f"{values['table'].name}, line {line}: a displacement above {MOST:.0f}"
         reader.fault_at(path, problem, None, "give a table of smaller ones")
         return None
-    stroke_of_rows = max(rows.s, default=0.0) - min(rows.s, default=0.0)
-    least = LEAST_READING * stroke_of_rows if math.isfinite(stroke_of_rows) else 0.0
+    height = max(rows.s, default=0.0) - min(rows.s, default=0.0)
+    least = LEAST_READING * height if math.isfinite(height) else 0.0
     if values["table"].text is not None and "reading" not in values:
         remedy = "give reading beside them, or reading: auto for half of it"
         reader.fault_at(path, "rows in a recipe show no last digit", None, remedy)
         return None
     reading = values.get("reading", "auto")
-    reading = max(0.5 * place, least) if reading == "auto" else reading
+    reading = max(0.5 * digit, least) if reading == "auto" else reading
     scale, suspects = reader.scale(stroke), values.get("suspect", "refuse")
-    return TableAsked(values["table"].name, rows, reading, scale, values.get("rest"), suspects)
+    return TableMotion(values["table"].name, rows, reading, scale, values.get("rest"), suspects)
 
 
 def _read_points(
@@ -535,19 +530,19 @@ def _read_points(
     """Read a list of angles and displacements."""
     angle = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
     value = Field("", stroke, "", at_least=-MOST, at_most=MOST)
-    found = []
+    points = []
     for i, item in enumerate(reader.items(field, node, path, MOST_POINTS)):
         below = join(path, i)
         if not isinstance(item, Sequence) or len(item.items) != 2:
             reader.fault(item.mark, below, "not a point", described(item), "give a list [angle, displacement]")
             continue
-        found.append(
+        points.append(
             tuple(
                 reader.field(part, n, join(below, k))
                 for k, (part, n) in enumerate(zip((angle, value), item.items, strict=True))
             )
         )
-    return tuple(found) if found and not any(None in point for point in found) else None
+    return tuple(points) if points and not any(None in point for point in points) else None
 
 
 def _points(_: Field) -> Schema:
@@ -555,8 +550,8 @@ def _points(_: Field) -> Schema:
     return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
 
 
-def check_filled(motion: MotionAsked, path: str, angle: float, remedy: str, reader: Reader, *, why: str) -> None:
-    """Note segments that do not fill their angle (rad); `why` they must."""
+def check_filled(motion: MotionSource, path: str, angle: float, remedy: str, reader: Reader, *, why: str) -> None:
+    """Note segments that do not fill their angle, rad, for the reason `why`."""
     if motion.covered is None or abs(motion.covered - angle) <= _ANGLE:
         return
     value = f"{math.degrees(motion.covered):.10g} degrees"
@@ -564,8 +559,8 @@ def check_filled(motion: MotionAsked, path: str, angle: float, remedy: str, read
     reader.fault_at(path, "the segments do not fill their angle", value, f"let them cover {remedy}; {more}")
 
 
-def check_whole_turn(motion: MotionAsked, path: str, reader: Reader) -> None:
-    """Note segments that do not fill a turn, or their part of one, or leave nothing for angles that are to be found."""
+def check_whole_turn(motion: MotionSource, path: str, reader: Reader) -> None:
+    """Note segments that do not fill the turn or their part of it, or leave nothing for open angles."""
     repeat = motion.repeats
     if motion.open is not None and motion.open.remaining <= 0.0:
         remedy = f"let all the others cover less than {360 / repeat:.10g} degrees"

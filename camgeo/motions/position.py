@@ -25,39 +25,39 @@ class Law(Protocol):
 
 
 class _Turn(ABC):
-    """What follows from `rows`."""
+    """A position over one turn, from `rows`."""
 
     @abstractmethod
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Position and its derivatives by the shaft angle."""
 
     def turn(self, shaft: Array, order: int) -> Array:
-        """The same over one turn whose last angle is its end: there the derivatives are those that precede."""
+        """`rows` over one turn, (order + 1, n); at the last angle, the turn's end, with the derivatives before it."""
         return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
 
 
 class _Swing:
-    """How an angle about a pivot is shown."""
+    """How an angle about a pivot is reported: in degrees."""
 
     title: ClassVar[str] = "swing"
     unit: ClassVar[str] = "deg"
 
     def column(self, units: str) -> str:  # noqa: ARG002
-        """Name of its column."""
+        """Heading of the column of positions in a table."""
         return "follower_deg"
 
-    def shown(self, mm: float) -> float:  # noqa: ARG002
-        """Degrees."""
+    def factor(self, mm: float) -> float:  # noqa: ARG002
+        """Factor from rad to degrees."""
         return math.degrees(1.0)
 
-    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
-        """Degrees."""
+    def convert(self, value: Array, mm: float) -> Array:  # noqa: ARG002
+        """Positions (n,) in degrees."""
         return np.degrees(value)
 
 
 @dataclass(frozen=True)
 class LiftPosition(_Turn):
-    """Along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
+    """Lift along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
 
     law: Law
     datum: float = 0.0
@@ -65,41 +65,40 @@ class LiftPosition(_Turn):
     unit: ClassVar[str] = "mm"
 
     def column(self, units: str) -> str:
-        """Name of its column in a table, in a recipe's unit of length."""
+        """Heading of the column of positions in a table, in a recipe's unit of length."""
         return "lift_in" if units == "inch" else "lift_mm"
 
-    def shown(self, mm: float) -> float:
-        """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm."""
+    def factor(self, mm: float) -> float:
+        """Factor from `rows` to the lengths of tables and plots, in units of `mm` mm."""
         return 1.0 / mm
 
-    def converted(self, value: Array, mm: float) -> Array:
-        """Positions (n,) in units of `mm` mm; `shown` may differ from it by a last digit."""
+    def convert(self, value: Array, mm: float) -> Array:
+        """Positions (n,) in units of `mm` mm; `factor` may give another last digit."""
         return value / mm
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n); at a break of a side."""
-        found = np.array(self.law.derivatives(shaft, order, side))
-        found[0] -= self.datum
-        return found
+        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n), on a side of breaks."""
+        rows = np.array(self.law.derivatives(shaft, order, side))
+        rows[0] -= self.datum
+        return rows
 
     def travel(self, shaft: Array, order: int) -> Array:
         """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Parameters of the contour (n,) at which the first contact touches, by the label of its columns: none.
+        """Parameters of the contour (n,) at which the first contact touches, by the prefix of its columns.
 
-        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one. A second
-        contact, opposite, is not tabled.
+        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one.
         """
         return {"": relative}
 
     def shaft_deg(self, parameter: float) -> float:
-        """Shaft angle in degrees, from 0 to less than 360, at which the contour is touched at a parameter: the same."""
+        """Shaft angle, degrees from 0 to less than 360, at which the contour is touched at a parameter, rad."""
         return degrees(parameter)
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Stroke in mm, looked at at parameters, and what works it: 1."""
+        """Stroke over parameters (n,), mm, and 1, as it has no arm."""
         return float(np.ptp(self.law.derivatives(parameter, 0)[0])), 1.0
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
@@ -109,7 +108,7 @@ class LiftPosition(_Turn):
 
 @dataclass(frozen=True)
 class ArmPosition(_Swing, LiftPosition):
-    """About a pivot, by a law whose parameter is the shaft angle, rad; `arm` is what it works at, mm."""
+    """Swing about a pivot, by a law whose parameter is the shaft angle, rad; `arm` is its length, mm."""
 
     arm: float = 1.0
 
@@ -120,29 +119,30 @@ class ArmPosition(_Swing, LiftPosition):
 
 @dataclass(frozen=True)
 class SwingPosition(_Swing, _Turn):
-    """About a pivot, by a law of transmission; `share` of its angle psi is the follower's own swing."""
+    """Swing about a pivot, by Wunderlich's law of transmission; the follower swings by `share` times its psi."""
 
     law: Transmission
     share: float = 1.0
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Swing, rad, and its derivatives."""
+        """Swing, rad, and its derivatives by the shaft angle, (order + 1, n)."""
         return self.share * self.law.psi_of_shaft(shaft, order, side)
 
     def travel(self, shaft: Array, order: int) -> Array:
-        """The same as `rows`."""
+        """Swing, rad, and its derivatives, (order + 1, n): its zero is that of the contacts."""
         return self.rows(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).
+        """Parameters of contacts A and B (n,), by the prefix of their columns.
 
-        Done mu times, mu odd, that puts A where B is, at phi - psi + alpha.
+        The law repeats itself with phi - psi + delta for phi and -psi for psi (W 1984, 4.9). Repeated mu times, mu odd,
+        that puts A where B is, at phi - psi + alpha.
         """
         psi = self.law.psi_of_shaft(shaft, 0)[0]
         return {"a_": self.law.parameter(shaft), "b_": self.law.parameter(shaft - psi + self.law.alpha)}
 
     def shaft_deg(self, parameter: float) -> float:
-        """Shaft angle of a parameter of the law."""
+        """Shaft angle, degrees from 0 to less than 360, at a parameter of the law."""
         return degrees(float(self.law.at(parameter, 0)[0][0, 0]))
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
@@ -150,16 +150,19 @@ class SwingPosition(_Swing, _Turn):
         return float(np.ptp(self.law.at(parameter, 0)[1][0])) * self.share, self.law.arm
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Swing, rad: derivatives by the shaft angle as quotients of series, where phi' and psi' nearly meet too."""
+        """Swing, rad, and derivatives by the shaft angle, (order + 1, n), as quotients of series.
+
+        They hold where phi' and psi' nearly meet too.
+        """
         from kin.numeric.elementary import Jet
 
         shaft, psi = self.law.jets(Jet.variable(parameter, order))
-        found = [psi.c[0]]
+        derivatives = [psi.c[0]]
         for k in range(1, order + 1):
             psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
-            found.append(psi.c[0])
-        return self.share * np.array(found)
+            derivatives.append(psi.c[0])
+        return self.share * np.array(derivatives)
 
 
 Position: TypeAlias = LiftPosition | SwingPosition
-"""Where the follower stands, from its datum: mm, or radians of its own swing."""
+"""Position of the follower from its datum: mm, or radians of its own swing."""

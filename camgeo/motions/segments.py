@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache, partial
+from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
@@ -30,8 +30,8 @@ class SccaLaw:
     constant: float = 0.0
     velocity: float = 0.0
 
-    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - its shares are of any angle
-        """Make the law; raises IntentError for shares out of bounds."""
+    def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - its shares are of any angle
+        """The law; raises IntentError for shares out of bounds."""
         from kin.law.sources.laws import scca
 
         return scca(self.sine, self.constant, self.velocity, f"{field}.scca")
@@ -43,8 +43,8 @@ class UniformLaw:
 
     blend: tuple[float, float]
 
-    def made(self, over: float, field: str) -> Law:
-        """Make the law over an angle, rad; raises IntentError for blends that are longer."""
+    def law(self, over: float, field: str) -> Law:
+        """The law over an angle, rad; raises IntentError for blends that are longer."""
         from kin.law.programme import IntentError
         from kin.law.sources.laws import blended
 
@@ -64,8 +64,8 @@ class PointsLaw:
 
     points: tuple[tuple[float, float], ...]
 
-    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
-        """Make the law; raises IntentError for points that are none."""
+    def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
+        """The law; raises IntentError for points that are none."""
         from kin.law.sources.laws import through_points
 
         return through_points(self.points, f"{field}.points")
@@ -79,8 +79,8 @@ class TableLaw:
     rows: Rows
     reading: float
 
-    def made(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
-        """Make the law; raises IntentError for rows that are none."""
+    def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
+        """The law; raises IntentError for rows that are none."""
         return _law_of_rows(self, f"{field}.table")
 
 
@@ -122,7 +122,7 @@ class MotionSegment:
     free: Literal["", "least", "rest"] = ""
 
     def step(self, field: str = "motion") -> Step:
-        """Give the segment with its law looked up, as `kin.law.sources.programme` takes it.
+        """The segment with its law, as `kin.law.sources.programme` takes it.
 
         Raises kin's IntentError where a split or an end does not go with the law, with its field.
         """
@@ -158,7 +158,7 @@ class MotionSegment:
             return named(self.law)
         if self.law is None or isinstance(self.law, tuple):
             return polynomial_law(self.law or (), f"{field}.law")
-        return self.law.made(self.over, f"{field}.law")
+        return self.law.law(self.over, f"{field}.law")
 
 
 LEAST: Literal["least"] = "least"  # in place of the angle of a segment: the least that the recipe's limits allow
@@ -167,7 +167,7 @@ _ANGLE = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
 
 
 def _angle_or(word: str, about: str, field: Field) -> Field:
-    """Make of an angle's field one that takes a word, too."""
+    """The field of an angle, made to take a word too."""
 
     def read(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
         if isinstance(node, Scalar) and node.text == word:
@@ -213,14 +213,14 @@ LEAST_READING = 1e-9  # of a law whose table shows every digit of its computer
 def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
     """Read a list of pairs from 0 to 1."""
     number = Field("", Kind.NUMBER, "", at_least=-10, at_most=10)
-    found = []
+    points = []
     for i, item in enumerate(reader.items(field, node, path, MOST_LAW_POINTS)):
         below = join(path, i)
         if not isinstance(item, Sequence) or len(item.items) != 2:
             reader.fault(item.mark, below, "not a point", described(item), "give a list [u, s]")
             continue
-        found.append(tuple(reader.field(number, one, join(below, k)) for k, one in enumerate(item.items)))
-    return tuple(found) if found and not any(None in point for point in found) else None
+        points.append(tuple(reader.field(number, part, join(below, k)) for k, part in enumerate(item.items)))
+    return tuple(points) if points and not any(None in point for point in points) else None
 
 
 _POINTS = Form(
@@ -291,7 +291,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
     if "uniform" in values:
         return UniformLaw(values["uniform"]["blend"])
     if "points" in values:
-        return _tried(reader, node, join(path, "points"), PointsLaw(values["points"]))
+        return _check_law(reader, node, join(path, "points"), PointsLaw(values["points"]))
     if "table" in values:
         return _table_law(reader, node, join(path, "table"), values)
     if "scca" in values:
@@ -314,12 +314,12 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
     return coefficients
 
 
-def _tried(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
-    """A law that can be made over any angle; of another one the fault is noted."""
+def _check_law(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
+    """The law if it can be made over any angle; None of another one, whose fault is noted."""
     from kin.law.programme import IntentError
 
     try:
-        law.made(1.0, "law")
+        law.law(1.0, "law")
     except IntentError as error:
         reader.fault(node.mark, path, error.message, None, "let it lead from 0 to 1, u rising")
         return None
@@ -329,37 +329,37 @@ def _tried(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
 def _table_law(reader: Reader, node: Node, path: str, values: Values) -> OwnLaw | None:
     """Read the rows of a law now, so that the recipe needs no file any more."""
     raw = {**values, "angle": "radians"}
-    found = read_rows(reader, raw, path, quantity="share", instead="")
-    if found is None:
+    table = read_rows(reader, raw, path, quantity="share", instead="")
+    if table is None:
         return None
-    rows, place = found
+    rows, digit = table
     if values["table"].text is not None and "reading" not in values:
         reader.fault_at(path, "rows in a recipe show no last digit", None, "give reading beside them")
         return None
-    reading = values.get("reading", max(0.5 * place, LEAST_READING))
-    return _tried(reader, node, path, TableLaw(values["table"].name, rows, reading))
+    reading = values.get("reading", max(0.5 * digit, LEAST_READING))
+    return _check_law(reader, node, path, TableLaw(values["table"].name, rows, reading))
 
 
 def read_segments(
     reader: Reader, field: Field, node: Node, path: str, stroke: Kind = Kind.LENGTH
 ) -> tuple[MotionSegment, ...] | None:
     """Read the segments of a motion, or None where one is faulty; `field` has the table of a segment."""
-    found = len(reader.errors)
+    faults = len(reader.errors)
     items = reader.items(field, node, path, MOST_SEGMENTS)
     segment = Field("", Kind.TABLE, "", table=field.table)
     values = [reader.field(segment, item, join(path, i)) for i, item in enumerate(items)]
-    if len(reader.errors) > found:
+    if len(reader.errors) > faults:
         return None
     for i, value in enumerate(values):
         for key in ("split", "at_end"):
             if key in value and "law" not in value:
                 reader.fault_at(f"{path}[{i}].{key}", "needs a law", None, "leave it out")
     _check_free(reader, values, path)
-    return None if len(reader.errors) > found else tuple(_segment(value, reader.scale(stroke)) for value in values)
+    return None if len(reader.errors) > faults else tuple(_segment(value, reader.scale(stroke)) for value in values)
 
 
 def _check_free(reader: Reader, values: list[Values], path: str) -> None:
-    """Note words in place of angles that do not stand once each."""
+    """Note `least` and `rest` that do not stand once each."""
     least = [f"{path}[{i}].over" for i, value in enumerate(values) if value.get("over") == LEAST]
     rest = [f"{path}[{i}].dwell" for i, value in enumerate(values) if value.get("dwell") == REST]
     for first, *others in filter(None, (least, rest)):
@@ -386,10 +386,11 @@ def segments_schema(field: Field) -> Schema:
 LAW = Form("a motion law", "a motion law", read_law, _law_schema)
 
 
+@cache
 def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Table:
-    """Make the table of a segment whose stroke is a length or an angle; `over` degrees are the longest.
+    """Table of a segment whose stroke is a length or an angle; it is `over` degrees long at most.
 
-    Of a `free` one a word may leave the angle open.
+    With `free` a word may leave its angle open.
     """
     most = 180 if stroke is Kind.ANGLE else MOST
     strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]

@@ -21,15 +21,15 @@ def shaft_of_file(
 ) -> ShaftIntent:
     """What kin is given of files of some kind, whose discs may be made different `by` something.
 
-    Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.
+    Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensate` does.
     """
     from kin.judge.intent import ShaftIntent
 
     if by is not None:
-        from camgeo.machining.compensation import compensated
+        from camgeo.machining.compensation import compensate
 
         try:
-            made = compensated(recipe, design, by, field)
+            made = compensate(recipe, design, by, field)
         except CurveError as error:
             raise recipe.error(field, str(error)) from error
         recipe, design = made.recipe, made.design

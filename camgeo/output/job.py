@@ -69,12 +69,12 @@ class Job:
         by = request.compensation
         if by is None:
             return self, ()
-        from camgeo.machining.compensation import compensated
+        from camgeo.machining.compensation import compensate
 
         if by not in self.variants:
             try:
                 with self.clock.stage("compensation"):
-                    made = compensated(self.recipe, self.design, by, self.field(request))
+                    made = compensate(self.recipe, self.design, by, self.field(request))
             except CurveError as error:
                 raise self.recipe.error(self.field(request), str(error)) from error
             if not made.design.contours:
@@ -84,7 +84,7 @@ class Job:
             self.variants[by] = Job(made.recipe, made.design, fits)
         job, told = self.variants[by], self.recipe.told_for(request)
         if request.units is not None:  # a file's title tells lengths as its numbers do
-            job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
+            job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.words(told.mm)}"))
         return job, ()
 
     @property

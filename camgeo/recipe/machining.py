@@ -74,26 +74,26 @@ class Compensation:
 
     @property
     def tags(self) -> str:
-        """Name of what is compensated, for a file's name: `kerf`, `clearance-shrinkage`."""
+        """The compensation in the name of a file: `kerf`, `clearance-shrinkage`."""
         own = [name for name in ("kerf", "clearance", "shrinkage") if getattr(self, name)]
-        return "-".join([*own, *(one.key for one in self.altered)])
+        return "-".join([*own, *(altered.key for altered in self.altered)])
 
-    def told(self, mm: float) -> str:
-        """Say what is compensated, lengths in units of `mm` mm."""
+    def words(self, mm: float) -> str:
+        """The compensation in words, lengths in units of `mm` mm: `kerf 0.2, shrinkage 0.5 percent`."""
         parts = [f"{name} {value / mm:.9g}" for name in ("kerf", "clearance") if (value := getattr(self, name))]
         if self.shrinkage:
             parts.append(f"shrinkage {100.0 * self.shrinkage:.9g} percent")
-        parts += [f"{one.key} {one.value:.9g}" for one in self.altered]
+        parts += [f"{altered.key} {altered.value:.9g}" for altered in self.altered]
         return ", ".join(parts)
 
     def entry(self, mm: float) -> dict[str, float]:
-        """Tell it for a report: lengths in units of `mm` mm, the shrinkage in percent."""
-        found = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
+        """The compensation for a report: lengths in units of `mm` mm, the shrinkage in percent."""
+        amounts = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
         if self.shrinkage:
-            found["shrinkage"] = 100.0 * self.shrinkage
-        found |= {one.key: one.value for one in self.altered}
+            amounts["shrinkage"] = 100.0 * self.shrinkage
+        amounts |= {altered.key: altered.value for altered in self.altered}
         moved = {"outward": self.out / mm, "scale": self.scale}
-        return {**found, **{key: value for key, value in moved.items() if math.isfinite(value)}}
+        return {**amounts, **{key: value for key, value in moved.items() if math.isfinite(value)}}
 
 
 MOST_RPM = 1_000_000

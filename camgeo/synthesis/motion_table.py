@@ -24,6 +24,6 @@ def motion_table(recipe: Recipe, position: Position) -> tuple[tuple[str, ...], A
     count = recipe.verify.angles
     phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
     rows = position.turn(phi, ORDER)
-    name, scale = position.column(recipe.units), position.shown(recipe.mm)
+    name, scale = position.column(recipe.units), position.factor(recipe.mm)
     table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
     return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

@@ -13,7 +13,7 @@ from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.formats.dxf import write_dxf
-from camgeo.machining.compensation import compensated
+from camgeo.machining.compensation import compensate
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.machining import Compensation
@@ -100,7 +100,7 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     """The pitch curve stays: the roller of the drawn part is smaller by what its opening is."""
     recipe = ring(files="{dxf: {kerf: 0.4}}")
     design, _ = found(recipe)
-    made = compensated(recipe, design, Compensation(kerf=0.4), "export.files[0]")
+    made = compensate(recipe, design, Compensation(kerf=0.4), "export.files[0]")
     assert made.design.only_surface.surface.base.size == pytest.approx(design.only_surface.surface.base.size)
     contours = design.only_surface.contour, made.design.only_surface.contour
     point, inner = (one.sample(np.linspace(0.0, 6.0, 9)).point for one in contours)

@@ -89,7 +89,7 @@ def test_the_path_keeps_its_distance_all_round(body, radius):
     _, design = design_of(body)
     path = cutter_path(design.only_surface.contour, radius)
     assert path.lost == ()
-    arcs = path.within(0.001)
+    arcs = path.arcs(0.001)
     feet = design.exact.gauge.envelope.feet(points_of(arcs))
     if body != TRIMMED:  # a trimmed cam's envelope is that of the motion, whose face would touch beside the corner
         assert np.abs(feet.excess - radius).max() <= arcs.bound.worst
@@ -116,7 +116,7 @@ def test_what_a_cutter_leaves_in_a_hollow(radius):
     hollow, at = least_hollow(design.only_surface.contour)
     assert all(cut.free_at == pytest.approx(hollow, rel=1e-9) for cut in path.lost)
     assert any(cut.start <= at + k * 2 * np.pi <= cut.end for cut in path.lost for k in (-1, 0, 1))
-    arcs = path.within(0.01)
+    arcs = path.arcs(0.01)
     apart = shapely.distance(exact.exterior, shapely.points(points_of(arcs)))
     assert apart.min() == pytest.approx(radius, abs=0.011), "the cutter never cuts into the contour"
 

@@ -13,7 +13,7 @@ from support.cases import examples
 
 import camgeo
 from camgeo.cli.main import main
-from camgeo.motions.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
+from camgeo.motions.motion import FormulaMotion, Segments, TableMotion, check_whole_turn, motion_field
 from camgeo.output import pipeline
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, load_text
@@ -159,7 +159,7 @@ def test_segments_that_repeat_are_made_once_and_stand_on_their_least():
     asked = read_motion(
         "{repeat: 3, segments: [{return: 4, over: 50, law: cycloidal}, {rise: 4, over: 70, law: cubic}]}"
     )
-    assert isinstance(asked, SegmentsAsked)
+    assert isinstance(asked, Segments)
     made = asked.motion(2 * math.pi, "motion", 1)
     assert (asked.repeats, made.total) == (3, 2 * math.pi / 3)
     assert made.range == pytest.approx((0, 4), abs=1e-12)
@@ -167,7 +167,7 @@ def test_segments_that_repeat_are_made_once_and_stand_on_their_least():
 
 
 def test_a_formula_of_a_whole_turn_stands_on_its_least():
-    made = FormulaAsked("7 - 12*cos(t)", 1.0).motion(2 * math.pi, "motion", 1)
+    made = FormulaMotion("7 - 12*cos(t)", 1.0).motion(2 * math.pi, "motion", 1)
     assert made.derivatives(np.array([0.0, math.pi]), 0)[0] == pytest.approx([0, 24], abs=1e-12)
 
 
@@ -241,7 +241,7 @@ def test_a_table_says_the_same_in_every_way_of_writing(form, head, comma, tmp_pa
         text = "\n".join([head, *(row.replace(".", ",") for row in rows)])
         (tmp_path / "lift.csv").write_text(text, encoding="utf-8")
     asked = recipe("{table: lift.csv}", tmp_path).cam.motion
-    assert isinstance(asked, TableAsked)
+    assert isinstance(asked, TableMotion)
     assert asked.rows.s == tuple(np.round(sampled(HALF), 3).tolist())
     assert asked.reading == pytest.approx(0.0005)
 

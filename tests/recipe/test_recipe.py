@@ -26,7 +26,7 @@ from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.curve.moving_frame import Displacement
-from camgeo.motions.motion import SegmentsAsked
+from camgeo.motions.motion import Segments
 from camgeo.motions.segments import MotionSegment, SccaLaw
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
@@ -148,9 +148,7 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
             "{kind: constant-breadth, base_radius: 2, motion: [{rise: 1, over: 120, law: cycloidal}, {dwell: 60}]}",
             ConstantBreadthCam(
                 2 * MM,
-                SegmentsAsked(
-                    (MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG))
-                ),
+                Segments((MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG))),
                 "refuse",
             ),
         ),
@@ -176,7 +174,7 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
                 1,
                 MM,
                 LawRoute(
-                    SegmentsAsked(
+                    Segments(
                         (
                             MotionSegment("rise", 45 * DEG, 4 * DEG, (0.0, 0.0, 3.0, -2.0)),
                             MotionSegment("return", 45 * DEG, 4 * DEG, "harmonic"),
@@ -728,10 +726,10 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
     kerf, both = files[1].compensation, files[2].compensation
     assert kerf is not None
     assert both is not None
-    assert (kerf.out, kerf.scale, kerf.told(25.4)) == (0.127, 1.0, "kerf 0.01")
+    assert (kerf.out, kerf.scale, kerf.words(25.4)) == (0.127, 1.0, "kerf 0.01")
     assert both.out == pytest.approx(-0.1016)
     assert both.scale == 1 / 0.996
-    assert (both.tags, both.told(25.4)) == ("clearance-shrinkage", "clearance 0.004, shrinkage 0.4 percent")
+    assert (both.tags, both.words(25.4)) == ("clearance-shrinkage", "clearance 0.004, shrinkage 0.4 percent")
 
 
 # needs: milling

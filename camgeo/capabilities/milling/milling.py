@@ -1,4 +1,4 @@
-"""What of a part is milled, which holes and how deep, and what kin is told of it."""
+"""What of a part is milled_contours, which holes and how deep, and what kin is told of it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.machining.reach import milled, reach_checks
+from camgeo.machining.reach import milled_contours, reach_checks
 from camgeo.synthesis.intent import intended
 from camgeo.synthesis.part.as_intent import holes_of
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent
 
 MOST_PASSES = 2000  # through the part
-LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled_contours
 
 
 class RoundHole(NamedTuple):
@@ -64,7 +64,7 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
-    _, asked = milled(recipe, design)
+    _, asked = milled_contours(recipe, design)
     hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
     found: list[RoundHole] = []
     others: list[tuple[str, str]] = []
@@ -86,7 +86,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
     from kin.judge.intent import Milling
 
-    _, asked = milled(recipe, design)
+    _, asked = milled_contours(recipe, design)
     reached = reach_checks(recipe, design)
     lost = [path is None or bool(path.lost) for _, path in reached]
     meant, pocket = intended(recipe, design), pocket_of(design)

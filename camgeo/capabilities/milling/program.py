@@ -24,7 +24,7 @@ from camgeo.fit.bound import Bound
 from camgeo.fit.cache import Fits
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.cutter import CutterPath
-from camgeo.machining.reach import path_arcs, paths_of, reach_checks
+from camgeo.machining.reach import cutter_paths, path_arcs, reach_checks
 from camgeo.output.job import Made
 from kin.judge.check import about
 from kin.numeric.records import replace
@@ -81,13 +81,13 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
     """The cutter's path as arcs, which share the part's precautions against a formula that rounds."""
     unsure = max(fit.unsure for fit in job.fits)
 
-    def fitted(curve: Curve, within: float) -> ArcSpline:
+    def fit_curve(curve: Curve, within: float) -> ArcSpline:
         outline = Fits(curve, job.clock, unsure).within("arcs", within)
         if not isinstance(outline, ArcSpline):
             raise TypeError("a path is made of arcs")
         return outline
 
-    return path_arcs(job.recipe, path, tolerance, fitted)
+    return path_arcs(job.recipe, path, tolerance, fit_curve)
 
 
 def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
@@ -95,10 +95,10 @@ def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list
     thickness, (surface, _) = job.recipe.part.thickness, job.design.contours[0]
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
-    (path,) = paths_of(job.recipe, job.design)
+    (path,) = cutter_paths(job.recipe, job.design)
     fine, rough = _outline(job, path, tolerance), list[ArcSpline]()
     if manufacture.allowance is not None:
-        (path,) = paths_of(job.recipe, job.design, manufacture.allowance)
+        (path,) = cutter_paths(job.recipe, job.design, manufacture.allowance)
         rough = [_outline(job, path, ROUGH * manufacture.allowance)]
     loops = [_round(job, manufacture, outline, surface.side) for outline in (*rough, fine)]
     return passes(loops[:-1], loops[-1:], manufacture, thickness), [fine]
@@ -130,7 +130,7 @@ def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[
     def along(place: float, within: float) -> ArcSpline:
         return _outline(job, CutterPath(Curve.whole(Parallel(pitch, -place)), radius), within)
 
-    reached = paths_of(job.recipe, job.design)
+    reached = cutter_paths(job.recipe, job.design)
     if room <= ONE * tolerance and not any(path.lost for path in reached):
         middle = along(0.5 * (near + far), tolerance - 0.5 * max(room, 0.0))
         fine = [replace(middle, bound=middle.bound.widened(0.5 * max(room, 0.0)))]

@@ -180,7 +180,7 @@ def _draw_motion(page: Page, design: Design, place: tuple[float, float, float, f
     left, low, right, high = place
     position = design.motion
     shaft = np.linspace(0.0, 2.0 * np.pi, 721)
-    values = position.turn(shaft, 0)[0] * position.shown(1.0)
+    values = position.turn(shaft, 0)[0] * position.factor(1.0)
     least, most = float(values.min()), float(values.max())
     step = _round_step(max(most - least, 1e-9))
     bottom, top = step * math.floor(least / step + 1e-9), step * math.ceil(most / step - 1e-9)

@@ -38,10 +38,10 @@ def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
     """Write a table, read it back and judge the metal that its wheel leaves."""
     from camgeo.files.table import write_table
     from camgeo.fit.bound import Bound
-    from camgeo.machining.grinding import ground_table
+    from camgeo.machining.grinding import grinding_table
 
     recipe = job.recipe.told_for(request)
     with job.clock.stage("grinding"), job.refusals(request):
-        made = ground_table(recipe, job.design, request, job.tolerance(request), job.field(request))
+        made = grinding_table(recipe, job.design, request, job.tolerance(request), job.field(request))
         write_table(path, made.columns, made.rows, head=made.head)
     return job.judged(request, path, Bound(made.error, made.error), len(made.rows) - 1)

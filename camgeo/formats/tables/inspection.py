@@ -48,7 +48,7 @@ def inspection_table(recipe: Recipe, design: Design, step: float | None = None) 
     if design.driven is not None:
         relative = design.driven.mechanism.relative(shaft)
         columns["relative_deg"] = np.degrees(relative)
-    columns[position.column(recipe.units)] = position.converted(position.rows(relative, 0)[0], recipe.mm)
+    columns[position.column(recipe.units)] = position.convert(position.rows(relative, 0)[0], recipe.mm)
     for name, parameter in position.parameters(shaft, relative).items():
         for surface, contour in design.contours:
             columns |= _contact(recipe, (surface, contour), parameter, f"{surface.prefix}{name}", unit)

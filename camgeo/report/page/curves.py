@@ -165,7 +165,7 @@ def motion(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
     position = design.motion
     unit = "°" if position.unit == "deg" else length_unit(recipe)
-    rows = position.turn(SHAFT, ORDER) * position.shown(recipe.mm)
+    rows = position.turn(SHAFT, ORDER) * position.factor(recipe.mm)
     return derivatives(recipe, position.title.capitalize(), unit, rows)
 
 
