@@ -62,27 +62,27 @@ def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
     if record.meshes is None:
         raise ValueError(f"{path.name} holds no mesh")
     scale = 1.0 if record.units or units is None else units
-    return [one._replace(corners=one.corners * scale) for one in record.meshes(path)]
+    return [placed._replace(corners=placed.corners * scale) for placed in record.meshes(path)]
 
 
-def _in_units(found: AnySolid, heights: Sequence[float], units: float) -> AnySolid:
+def _in_units(solid: AnySolid, heights: Sequence[float], units: float) -> AnySolid:
     """The solid of a file in a unit, mm; its sections by their heights as they were asked for."""
     from kin.read.mesh.stl import Section
     from kin.read.nesting import scaled
 
-    sections = zip(heights, found.sections, strict=False)
+    sections = zip(heights, solid.sections, strict=False)
     return replace(
-        found,
-        chains=scaled(found.chains, units),
-        z_min=units * found.z_min,
-        z_max=units * found.z_max,
-        height=units * found.height,
-        volume=units**3 * found.volume,
-        sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
-        faces=tuple(units * z for z in found.faces),
-        leaning=found.leaning * [units, units, units, 1.0],
-        slivers=units * found.slivers,
-        rounding=units * found.rounding,
+        solid,
+        chains=scaled(solid.chains, units),
+        z_min=units * solid.z_min,
+        z_max=units * solid.z_max,
+        height=units * solid.height,
+        volume=units**3 * solid.volume,
+        sections=tuple(Section(scaled(section.chains, units), z) for z, section in sections),
+        faces=tuple(units * z for z in solid.faces),
+        leaning=solid.leaning * [units, units, units, 1.0],
+        slivers=units * solid.slivers,
+        rounding=units * solid.rounding,
     )
 
 
@@ -99,9 +99,9 @@ def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[flo
         message = f"a {several} holds {len(sought)} discs, any other file one of them: judge these"
         raise ReadError("unsupported", message, path)
     above = list(zip(sought, levels, strict=True))
-    shifted = [one._replace(heights=[level + z for z in one.heights]) for one, level in above]
-    found = read(path, shifted)
-    return [_lowered(solid, one.heights, level) for solid, (one, level) in zip(found, above, strict=True)]
+    shifted = [wanted._replace(heights=[level + z for z in wanted.heights]) for wanted, level in above]
+    solids = read(path, shifted)
+    return [_lowered(solid, wanted.heights, level) for solid, (wanted, level) in zip(solids, above, strict=True)]
 
 
 def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySolid:
@@ -113,7 +113,7 @@ def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySoli
         z_min=solid.z_min - level,
         z_max=solid.z_max - level,
         height=solid.height - level,
-        sections=tuple(Section(one.chains, z) for z, one in zip(heights, solid.sections, strict=False)),
+        sections=tuple(Section(section.chains, z) for z, section in zip(heights, solid.sections, strict=False)),
         faces=tuple(z - level for z in solid.faces),
         leaning=solid.leaning - [level, level, 0.0, 0.0],
         slivers=solid.slivers - [level, level, 0.0, 0.0],

@@ -72,12 +72,12 @@ class Nest:
 
 def scaled(chains: Sequence[Chain], factor: float, *, mirrored: bool = False) -> tuple[Chain, ...]:
     """Return chains enlarged about the origin, and mirrored in the x axis."""
-    found = []
+    enlarged = []
     for chain in chains:
         contour = chain.contour.scaled(factor) if factor != 1.0 else chain.contour
         contour = contour.mirrored() if mirrored else contour
-        found.append(chain._replace(contour=contour, gap=factor * chain.gap))
-    return tuple(found)
+        enlarged.append(chain._replace(contour=contour, gap=factor * chain.gap))
+    return tuple(enlarged)
 
 
 def demand_few(count: int, path: Path) -> None:

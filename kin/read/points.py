@@ -153,9 +153,9 @@ def _dmis(text: str, path: Path) -> PointTable:
         if whole.endswith("$") and not whole.startswith("$$"):
             whole = whole[:-1]
             continue
-        if found := DMIS.match(whole):
+        if feature := DMIS.match(whole):
             try:
-                rows.append([float(cell) for cell in found["rest"].split(",")])
+                rows.append([float(cell) for cell in feature["rest"].split(",")])
             except ValueError:
                 raise ReadError("syntax", f"line {begin}: not numbers: {short(whole)}", path) from None
             if len(rows[-1]) not in {3, 6}:
@@ -172,8 +172,8 @@ def _dmis(text: str, path: Path) -> PointTable:
 
 
 def _stated_in_dmis(text: str) -> float | None:
-    found = re.search(r"^\s*UNITS\s*/\s*(MM|CM|M|INCH)\b", text, re.MULTILINE | re.IGNORECASE)
-    return UNITS[found[1].lower()] if found else None
+    statement = re.search(r"^\s*UNITS\s*/\s*(MM|CM|M|INCH)\b", text, re.MULTILINE | re.IGNORECASE)
+    return UNITS[statement[1].lower()] if statement else None
 
 
 def _table(text: str, path: Path) -> PointTable:
@@ -252,25 +252,25 @@ def _headed(rows: Rows, path: Path) -> PointTable:
 
 def _group(known: list[tuple[str, str, str]], prefix: str, wanted: Sequence[str]) -> dict[str, int]:
     """Columns of one surface by their names."""
-    found: dict[str, int] = {}
+    group: dict[str, int] = {}
     for i, (name, before, _) in enumerate(known):
         own = name in {*wanted, "z", "nx", "ny", "nz"} and (before == prefix or (name == "angle" and not before))
-        if own and name not in found and not (name == "angle" and "angle" not in wanted):
-            found[name] = i
-    if not {"nx", "ny"} <= set(found):
-        found = {name: i for name, i in found.items() if name not in {"nx", "ny", "nz"}}
-    return found
+        if own and name not in group and not (name == "angle" and "angle" not in wanted):
+            group[name] = i
+    if not {"nx", "ny"} <= set(group):
+        group = {name: i for name, i in group.items() if name not in {"nx", "ny", "nz"}}
+    return group
 
 
 def _column(cell: str) -> tuple[str, str, str]:
     """Name, surface and unit of a heading's cell: `inner_x_mm` is x of `inner` in mm; the name is empty if unknown."""
     text = cell.strip().strip('"').strip().lower()
-    found = HEADING.match(text)
+    heading = HEADING.match(text)
     name, unit = text, ""
-    if found is not None:
-        told = (found["inside"] or found["after"] or "").strip()
-        if told in UNITS or told in ANGLES or found["inside"] is not None:
-            name, unit = found["name"].strip(), told
+    if heading is not None:
+        stated = (heading["inside"] or heading["after"] or "").strip()
+        if stated in UNITS or stated in ANGLES or heading["inside"] is not None:
+            name, unit = heading["name"].strip(), stated
     words = [word for word in re.split(r"[ _]+", name) if word]
     if not words or "cutter" in words:  # where a cutter stands is no metal
         return "", "", unit
@@ -284,16 +284,16 @@ def _checked(table: PointTable, path: Path) -> PointTable:
     for name, column in table.columns.items():
         wrong = ~(np.abs(column) <= LARGEST)
         if wrong.any():
-            at = int(np.argmax(wrong))
-            raise ReadError("range", f"line {table.lines[at]}: {name} is {column[at]:.6g}, which no part has", path)
+            row = int(np.argmax(wrong))
+            raise ReadError("range", f"line {table.lines[row]}: {name} is {column[row]:.6g}, which no part has", path)
     if len(table) < LEAST_POINTS:
         message = f"points: {len(table)}, and at least {LEAST_POINTS} are needed, all round the cam"
         raise ReadError("range", message, path)
     if {"nx", "ny"} <= set(table.columns):
         size = np.hypot(table.columns["nx"], table.columns["ny"])
         if (size < 0.5).any():
-            at = int(np.argmin(size))
+            row = int(np.argmin(size))
             raise ReadError(
-                "range", f"line {table.lines[at]}: its normal is {size[at]:.3g} long across the shaft", path
+                "range", f"line {table.lines[row]}: its normal is {size[row]:.3g} long across the shaft", path
             )
     return table

@@ -174,8 +174,8 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
     first, second = (rows.heading[k] for k in places) if rows.heading else ("", "")
     for name in (first, second) if sheet.quantity == "share" else ():
         if (unit := unit_of(name)) is not None:
-            meant = f"{_QUANTITIES[sheet.quantity]} is meant here: name it without a unit, such as u or s"
-            raise IntentError(f"the column {name!r} is in {unit}; {meant}", field)
+            remedy = f"{_QUANTITIES[sheet.quantity]} is meant here: name it without a unit, such as u or s"
+            raise IntentError(f"the column {name!r} is in {unit}; {remedy}", field)
     heading = unit_of(first)
     kind = heading if heading in _ANGLE_UNITS else None
     crank = "crank" in _words(first)

@@ -97,7 +97,7 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
         while at >= 0:
             seen[at % count] = 1
             at = follow[at + count if at < count else at - count]
-    found = []
+    chains = []
     for first in range(count):
         if seen[first]:
             continue
@@ -113,8 +113,8 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
         index, flip = np.array(runs, dtype=np.intp), np.array(backwards)
         out = ends[np.where(flip, index, index + count)]
         into = np.roll(ends[np.where(flip, index + count, index)], -1, axis=0)
-        found.append(Loop(index, flip, float(np.hypot(*(out - into).T).max())))
-    return found
+        chains.append(Loop(index, flip, float(np.hypot(*(out - into).T).max())))
+    return chains
 
 
 def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:

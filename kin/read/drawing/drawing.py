@@ -142,7 +142,7 @@ def drawing_of(
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     same, usual = closeness(pieces)
-    asked, gap = gap, usual if gap is None else gap
+    demanded, gap = gap, usual if gap is None else gap
     scratched: tuple[Contour, ...] = ()
     if marks is not None and marks.shapes:
         lines, owner = gathered(marks.shapes)
@@ -152,7 +152,7 @@ def drawing_of(
     keep, faults = without_faults(pieces, run, curves, same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
-    short = np.flatnonzero(keep & (reach(pieces) <= gap)) if asked is not None else ()
+    short = np.flatnonzero(keep & (reach(pieces) <= gap)) if demanded is not None else ()
     shorter = tuple(fault("short", pieces, int(k), run, curves) for k in short)
     chained, openings = chain_most(pieces.take(keep), run[keep], (gap, usual, same), path, bridged)
     meeting = first_meeting([c.contour for c in chained])
@@ -163,14 +163,14 @@ def drawing_of(
     return Drawing(
         chains=tuple(
             Chain(
-                counter_clockwise(one.contour),
+                counter_clockwise(ring.contour),
                 depth,
                 inside,
-                curves.layers[one.entities[0]],
-                one.spans(curves.shapes),
-                one.gap if one.gap > usual else 0.0,
+                curves.layers[ring.entities[0]],
+                ring.spans(curves.shapes),
+                ring.gap if ring.gap > usual else 0.0,
             )
-            for one, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
+            for ring, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
         ),
         units_mm=unit,
         turned=outer.contour.area < 0.0,
@@ -248,9 +248,9 @@ def without_faults(
     size = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), same)
     # The same whichever way the piece is run through: middle of the chord, of the piece, and the direction doubled.
     doubled = np.stack([chord[:, 0] ** 2 - chord[:, 1] ** 2, 2.0 * chord[:, 0] * chord[:, 1]], axis=1) / size[:, None]
-    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same, path)
+    first, second = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same, path)
     again = np.zeros(len(pieces), dtype=bool)
-    again[kept[np.maximum(one, other)]] = True
+    again[kept[np.maximum(first, second)]] = True
     if not again.any():
         return keep, faults
     count = len(curves.names)
@@ -322,11 +322,11 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path, some=some)
-    demand_few(len(found), path)
-    if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, runs_of(found))):
+    rings = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path, some=some)
+    demand_few(len(rings), path)
+    if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, runs_of(rings))):
         raise ReadError("open", "the outermost contour is open", path)
-    for loop in found:
+    for loop in rings:
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)
@@ -337,9 +337,9 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     return made
 
 
-def runs_of(found: list[Loop]) -> Indices:
+def runs_of(rings: list[Loop]) -> Indices:
     """Runs that belong to loops."""
-    return np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in found)])
+    return np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
 
 
 def outermost_closed(pieces: Pieces, closed: Mask) -> bool:

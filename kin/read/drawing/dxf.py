@@ -91,14 +91,14 @@ def read_dxf(
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
         scale = 1.0 if unit is None else unit
         drawn = everything(document, path)
-        found = entities_to_cut(document, drawn, layer, path)
+        entities = entities_to_cut(document, drawn, layer, path)
         marks = entities_engraved(drawn, path) if engraved else None
         low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
         stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
         extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
         measurement = document.header.get("$MEASUREMENT")
     return drawing_of(
-        found,
+        entities,
         marks,
         unit,
         gap,
@@ -194,23 +194,23 @@ def everything(document: Document, path: Path) -> list[Drawn]:
 
     Raises ReadError for a block that is not there or lies in another file, and beyond the bounds.
     """
-    found: list[Drawn] = []
+    entities: list[Drawn] = []
     left = [Drawn(entity, entity.dxf.layer, _name(entity)) for entity in document.modelspace()]
     depths = [0] * len(left)
     left.reverse()
     most = MOST_ENTITIES + len(left)
     while left:
-        one, depth = left.pop(), depths.pop()
-        if one.kind != "INSERT":
-            found.append(one)
+        item, depth = left.pop(), depths.pop()
+        if item.kind != "INSERT":
+            entities.append(item)
             continue
-        inside = list(_inserted(document, one, path))
-        if depth == DEEPEST or len(found) + len(left) + len(inside) > most:
+        inside = list(_inserted(document, item, path))
+        if depth == DEEPEST or len(entities) + len(left) + len(inside) > most:
             bounds = f"blocks more than {DEEPEST} deep, or of more than {MOST_ENTITIES} entities in all"
-            raise ReadError("range", f"{one.name}: {bounds}", path)
+            raise ReadError("range", f"{item.name}: {bounds}", path)
         left += reversed(inside)
         depths += [depth + 1] * len(inside)
-    return found
+    return entities
 
 
 def _name(entity: Any) -> str:  # noqa: ANN401  ezdxf's entities declare their attributes while they run
@@ -254,7 +254,7 @@ def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
 
 def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, path: Path) -> CutEntities:
     """Find the entities on the layers to cut, and count the others. Raises ReadError for what cannot be read there."""
-    there = {one.layer.upper() for one in drawn if one.kind in CURVES}
+    there = {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
     if layer is not None and layer.upper() not in there:
         named = ", ".join(sorted(there)) or "none"
         raise ReadError("layer", f"nothing is drawn on a layer {layer}; layers with curves: {named}", path)
@@ -262,38 +262,40 @@ def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, p
     beside = BESIDE if layer is None else {BORE}
     wanted = there - REFERENCE if chosen is None else {chosen.upper(), *beside}
     # what is drawn with no thought for layers goes to the machine too
-    found = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
-    found.aside.update(on_paper(document))
-    if not found.shapes:
-        others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"
+    entities = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
+    entities.aside.update(on_paper(document))
+    if not entities.shapes:
+        others = (
+            ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(entities.aside.items())) or "nothing at all"
+        )
         raise ReadError("empty", f"nothing to cut in the model space; the file holds {others}", path)
-    return found
+    return entities
 
 
 def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
     """Find the entities on the layer that is engraved; none where no layer is cut by its name."""
-    by_name = any(one.layer.upper() == CUT for one in drawn)
+    by_name = any(entity.layer.upper() == CUT for entity in drawn)
     return gather(drawn, {ENGRAVED} if by_name else set(), path)
 
 
 def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
     """Read the entities on some layers, and count the others."""
-    found = CutEntities([], [], [], Counter())
-    for one in drawn:
-        if one.layer.upper() not in layers or one.kind in NOTES:
-            found.aside[one.layer, one.kind] += 1
+    entities = CutEntities([], [], [], Counter())
+    for item in drawn:
+        if item.layer.upper() not in layers or item.kind in NOTES:
+            entities.aside[item.layer, item.kind] += 1
             continue
-        if one.kind not in CURVES:
-            raise ReadError("unsupported", f"{one.name} is none of {', '.join(CURVES)}", path)
+        if item.kind not in CURVES:
+            raise ReadError("unsupported", f"{item.name} is none of {', '.join(CURVES)}", path)
         try:
-            shape = shape_of(one.entity)
-            found.shapes.append(shape if one.to is None else one.to.moved(shape, one.rise, one.scale))
+            shape = shape_of(item.entity)
+            entities.shapes.append(shape if item.to is None else item.to.moved(shape, item.rise, item.scale))
         except UnfitError as error:
             reason, what = error.args
-            raise ReadError(reason, f"{one.name}: {what}", path) from None
-        found.names.append(one.name)
-        found.layers.append(one.layer)
-    return found
+            raise ReadError(reason, f"{item.name}: {what}", path) from None
+        entities.names.append(item.name)
+        entities.layers.append(item.layer)
+    return entities
 
 
 def on_paper(document: Document) -> Counter[tuple[str, str]]:

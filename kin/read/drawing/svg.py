@@ -80,15 +80,17 @@ def read_svg(
     root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
     elements = list(_elements(root, "", TURNED_OVER, path))
-    by_name = any(one.layer == CUT for one in elements)
+    by_name = any(element.layer == CUT for element in elements)
     # what stands on no layer is seen, and cut, all the same
-    wanted = {CUT, *BESIDE, ""} if by_name else {one.layer for one in elements} - REFERENCE
-    found = _gathered(elements, wanted, path)
-    if not found.shapes:
-        others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(found.aside.items()))
+    wanted = {CUT, *BESIDE, ""} if by_name else {element.layer for element in elements} - REFERENCE
+    entities = _gathered(elements, wanted, path)
+    if not entities.shapes:
+        others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(entities.aside.items()))
         raise ReadError("empty", f"nothing to cut; the file holds {others or 'nothing at all'}", path)
     marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if engraved else None
-    return drawing_of(found, marks, unit, gap, path, version="SVG", deepest=deepest, bridged=bridged, unstated=unstated)
+    return drawing_of(
+        entities, marks, unit, gap, path, version="SVG", deepest=deepest, bridged=bridged, unstated=unstated
+    )
 
 
 def _parsed(raw: bytes, path: Path) -> Element:
@@ -131,10 +133,10 @@ def _length(text: str | None, path: Path) -> float | None:
     """Length in mm; None if it is left out or a share of what surrounds the page."""
     if text is None or text.strip() == "auto" or text.strip().endswith("%"):
         return None
-    found = LENGTH.fullmatch(text)
-    if found is None or found[2].lower() not in UNIT_MM or not 0.0 < float(found[1]) < math.inf:
+    match = LENGTH.fullmatch(text)
+    if match is None or match[2].lower() not in UNIT_MM or not 0.0 < float(match[1]) < math.inf:
         raise ReadError("syntax", f"the size of the page is {text!r}", path)
-    return float(found[1]) * UNIT_MM[found[2].lower()]
+    return float(match[1]) * UNIT_MM[match[2].lower()]
 
 
 def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 0) -> Iterator[_Drawn]:
@@ -164,11 +166,11 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
 
 def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntities:
     """Read the elements on some layers, and count the others."""
-    found = CutEntities([], [], [], Counter())
+    entities = CutEntities([], [], [], Counter())
     for number, (element, layer, to) in enumerate(elements, start=1):
         kind = element.tag.removeprefix(SVG)
         if layer not in layers:
-            found.aside[layer, kind] += 1
+            entities.aside[layer, kind] += 1
             continue
         name = f"{kind} #{element.get('id', number)}{f' on {layer}' if layer else ''}"
         if kind not in DRAWN:
@@ -178,11 +180,11 @@ def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntiti
         except UnfitError as error:
             reason, what = error.args
             raise ReadError(reason, f"{name}: {what}", path) from None
-        for one in shapes:
-            found.shapes.append(one)
-            found.names.append(name)
-            found.layers.append(layer)
-    return found
+        for piece in shapes:
+            entities.shapes.append(piece)
+            entities.names.append(name)
+            entities.layers.append(layer)
+    return entities
 
 
 def _circle(element: Element, to: Affine) -> Shape:
@@ -209,7 +211,7 @@ def _numbers(text: str) -> list[float] | None:
 
 def _transform(text: str, path: Path) -> Affine:
     """Read the attribute transform: its steps, the last of which is done first."""
-    found, at = Affine(), 0
+    total, at = Affine(), 0
     while at < len(text.rstrip()):
         step = STEP.match(text, at)
         numbers = None if step is None else _numbers(step[2])
@@ -217,22 +219,22 @@ def _transform(text: str, path: Path) -> Affine:
             raise ReadError("syntax", f"a transform is {text!r}", path)
         match step[1], numbers:
             case "matrix", [a, b, c, d, e, f]:
-                one = Affine(a, b, c, d, e, f)
+                move = Affine(a, b, c, d, e, f)
             case "translate", [x, *rest] if len(rest) < 2:
-                one = Affine(e=x, f=rest[0] if rest else 0.0)
+                move = Affine(e=x, f=rest[0] if rest else 0.0)
             case "scale", [x, *rest] if len(rest) < 2:
-                one = Affine(a=x, d=rest[0] if rest else x)
+                move = Affine(a=x, d=rest[0] if rest else x)
             case "rotate", [angle]:
-                one = Affine.rotation(angle)
+                move = Affine.rotation(angle)
             case "rotate", [angle, x, y]:
-                one = Affine(e=x, f=y).after(Affine.rotation(angle)).after(Affine(e=-x, f=-y))
+                move = Affine(e=x, f=y).after(Affine.rotation(angle)).after(Affine(e=-x, f=-y))
             case "skewX" | "skewY" as kind, [angle] if abs(math.cos(math.radians(angle))) > LEANING:
                 lean = math.tan(math.radians(angle))
-                one = Affine(c=lean) if kind == "skewX" else Affine(b=lean)
+                move = Affine(c=lean) if kind == "skewX" else Affine(b=lean)
             case _:
                 read = "matrix, translate, scale, rotate, skewX and skewY are"
                 message = f"the transform {step[0].strip()} is not read; {read}"
                 raise ReadError("unsupported", message, path)
-        found = found.after(one)
+        total = total.after(move)
         at = step.end()
-    return found
+    return total

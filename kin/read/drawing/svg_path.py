@@ -114,21 +114,21 @@ def commands(text: str) -> Iterator[tuple[str, list[float]]]:
     """
     letter, at, end = "", 0, len(text)
     while at < end:
-        found = TOKEN.match(text, at)
-        if found is None or found[3]:
+        token = TOKEN.match(text, at)
+        if token is None or token[3]:
             raise UnfitError("syntax", f"its path has {text[at]!r} where a letter or a number belongs")
-        if found[1]:
-            letter, at = found[1], found.end()
+        if token[1]:
+            letter, at = token[1], token.end()
             if letter.upper() not in COUNT:
                 raise UnfitError("unsupported", f"its path has {letter}; M, L, H, V, A, C and Z are read")
             if letter in "Zz":
                 yield letter, []
                 continue
-        elif found[2] is None:
-            at = found.end()
+        elif token[2] is None:
+            at = token.end()
             continue
         elif not letter or letter in "Zz":
-            raise UnfitError("syntax", f"its path has the number {found[2]} where a letter belongs")
+            raise UnfitError("syntax", f"its path has the number {token[2]} where a letter belongs")
         numbers, at = arguments(text, at, letter.upper())
         yield letter, numbers
         letter = {"M": "L", "m": "l"}.get(letter, letter)
@@ -145,13 +145,13 @@ def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
     for k in range(COUNT[kind]):
         gap = GAP.match(text, place)
         place = gap.end() if gap else place
-        found = (FLAG if kind == "A" and k in (3, 4) else VALUE).match(text, place)
-        if found is None:
+        number = (FLAG if kind == "A" and k in (3, 4) else VALUE).match(text, place)
+        if number is None:
             raise UnfitError("syntax", f"its path has {text[place : place + 20]!r} where a number of {kind} belongs")
-        numbers.append(float(found[0]))
+        numbers.append(float(number[0]))
         if math.isinf(numbers[-1]):
-            raise UnfitError("range", f"its path has {found[0]}, beyond all numbers of a drawing")
-        place = found.end()
+            raise UnfitError("range", f"its path has {number[0]}, beyond all numbers of a drawing")
+        place = number.end()
     return numbers, place
 
 

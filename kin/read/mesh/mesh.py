@@ -63,8 +63,8 @@ class Mesh:
         both = both[both // 2 % (len(self.points) + 1) != 0]  # a corner joined to itself is no edge
         _, place, count = np.unique(both // 2, return_index=True, return_counts=True)
         upward = np.add.reduceat(both % 2, place)
-        one, many, same_way = count == 1, count > 2, (count == 2) & (upward != 1)
-        return EdgeFaults(*(int(np.count_nonzero(fault)) for fault in (one, many, same_way)))
+        single, many, same_way = count == 1, count > 2, (count == 2) & (upward != 1)
+        return EdgeFaults(*(int(np.count_nonzero(fault)) for fault in (single, many, same_way)))
 
     @cached_property
     def bodies(self) -> Indices:

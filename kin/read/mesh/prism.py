@@ -169,10 +169,10 @@ def _places(points: Array, apart: float) -> Indices:
         order = np.lexsort((column, place))
         new = (np.diff(column[order], prepend=-np.inf) > apart) | (np.diff(place[order], prepend=-1) != 0)
         place[order] = np.cumsum(new) - 1
-        found = int(place[order[-1]]) + 1
-        if found == count[0] == count[1]:
+        places = int(place[order[-1]]) + 1
+        if places == count[0] == count[1]:
             break
-        count = [count[1], found]
+        count = [count[1], places]
     return place
 
 

@@ -101,7 +101,7 @@ class Solid(Nest, Slivered):
 
     def section(self, z: float) -> Section:
         """One of the sections, by its height as asked for."""
-        return next(one for one in self.sections if one.height == z)
+        return next(cut for cut in self.sections if cut.height == z)
 
     @property
     def thickness(self) -> float:
@@ -147,16 +147,16 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     z_min, z_max = float(z.min()), float(z.max())
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
-    found = upright(corners)
-    read, leaning, slivers = found.mesh, no_rows(4), no_rows(4)  # faults are those of the mesh as it is in the file
+    shell = upright(corners)
+    read, leaning, slivers = shell.mesh, no_rows(4), no_rows(4)  # faults are those of the mesh as it is in the file
     apart = 0.0
-    if not found.prism:
+    if not shell.prism:
         moved = evened(corners)
         again = None if moved is None else upright(moved.corners)
         if moved is not None and again is not None and again.prism:
-            corners, slivers, found = moved.corners, np.array([[z_min, z_max, np.inf, moved.by]]), again
-    mesh, outline = found.mesh, found.outline
-    if not found.prism:
+            corners, slivers, shell = moved.corners, np.array([[z_min, z_max, np.inf, moved.by]]), again
+    mesh, outline = shell.mesh, shell.outline
+    if not shell.prism:
         _refuse_apart(read, path, deepest)
         apart = 2.0 * rounding(corners)
         leaning, slivers = walls(mesh, apart)
@@ -172,17 +172,17 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     except ReadError as error:
         raise _named(read, error, path) from None
     sections = []
-    for asked in heights:
+    for wanted in heights:
         if whole is None:
-            sections.append(Section(sectioned(cut(mesh, asked, path)[1], path, deepest, across=True), asked))
-        elif z_min < asked < z_max:
-            sections.append(Section(chains, asked))
+            sections.append(Section(sectioned(cut(mesh, wanted, path)[1], path, deepest, across=True), wanted))
+        elif z_min < wanted < z_max:
+            sections.append(Section(chains, wanted))
     return Solid(
         chains=chains,
         z_min=z_min,
         z_max=z_max,
         height=height,
-        prism=found.prism,
+        prism=shell.prism,
         volume=read.volume,
         triangles=len(read.corners),
         edges=read.edge_faults,
@@ -250,18 +250,18 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
     if not z.min() < height < z.max():
         message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
         raise ReadError("several", message, path)
-    at, found = section(mesh, height)
-    if not len(found.points):
-        message = f"nothing is at z = {at:.9g} mm, and something above and below: walls are missing between faces"
+    level, outline = section(mesh, height)
+    if not len(outline.points):
+        message = f"nothing is at z = {level:.9g} mm, and something above and below: walls are missing between faces"
         raise ReadError("several", message, path)
-    return at, found
+    return level, outline
 
 
 def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
     """Cut midway between horizontal faces at rising `levels`, where the box of the section is largest."""
     thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
-    found = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
-    return max(found, key=lambda one: float(np.prod(np.ptp(one[1].points, axis=0))))
+    cuts = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
+    return max(cuts, key=lambda section: float(np.prod(np.ptp(section[1].points, axis=0))))
 
 
 def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[Chain, ...]:
@@ -323,16 +323,16 @@ def facets(raw: bytes, path: Path) -> Array:
             message = f'facet {wrong[0] + 1} has "{there}" where "{word.decode("ascii")}" belongs'
             raise ReadError("syntax", message, path)
     numbers = table[:, NUMBERS]
-    found = None
+    corners = None
     if b"_" not in body:  # Python reads 1_0 as 10
         with suppress(ValueError):
-            found = numbers.astype(np.float64).reshape(-1, 3, 3)
-    if found is None:
+            corners = numbers.astype(np.float64).reshape(-1, 3, 3)
+    if corners is None:
         which = next(i for i, word in enumerate(numbers.ravel()) if not _is_number(word))
         text = numbers.ravel()[which].decode("latin-1")
         message = f"facet {which // numbers.shape[1] + 1}: the coordinate {text} is not a number"
         raise ReadError("syntax", message, path)
-    return found
+    return corners
 
 
 def _is_number(word: bytes) -> bool:
@@ -396,15 +396,15 @@ def rings(outline: Outline, path: Path) -> list[Indices]:
     step = following.tolist()
     seen = bytearray(len(points))
     marks = np.frombuffer(seen, dtype=np.uint8)
-    found = []
+    closed = []
     for first in start.tolist():
         if seen[first]:
             continue
         ring = [first]
-        at = step[first]
-        while at != first:
-            ring.append(at)
-            at = step[at]
-        found.append(np.array(ring, dtype=np.intp))
-        marks[found[-1]] = 1
-    return found
+        point = step[first]
+        while point != first:
+            ring.append(point)
+            point = step[point]
+        closed.append(np.array(ring, dtype=np.intp))
+        marks[closed[-1]] = 1
+    return closed

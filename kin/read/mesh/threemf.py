@@ -59,15 +59,15 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
     """
     path = Path(path)
     built = read_placed(path)
-    named = [one for one in built if one.name == PART]
+    named = [placed for placed in built if placed.name == PART]
     chosen = built if len(built) == 1 else named
     if len(chosen) != 1:
-        names = ", ".join(repr(one.name) for one in built[:8])
+        names = ", ".join(repr(placed.name) for placed in built[:8])
         message = f"{len(built)} objects are built, {names}: one of them should be named {PART!r}"
         raise ReadError("several" if built else "empty", message if built else "no object is built", path)
-    one = chosen[0]
-    corners = one.corners if one.rigid else _moved(one.corners, one.place)
-    return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=one.mm)
+    placed = chosen[0]
+    corners = placed.corners if placed.rigid else _moved(placed.corners, placed.place)
+    return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=placed.mm)
 
 
 def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
@@ -81,20 +81,20 @@ def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
     if len(built) < len(sought):
         raise missing(len(built), len(sought), path)
     if len(built) > len(sought):
-        names = ", ".join(repr(one.name) for one in built[:8])
+        names = ", ".join(repr(body.name) for body in built[:8])
         raise ReadError("several", f"{len(built)} objects are built, {names}, where {len(sought)} are expected", path)
-    rising = sorted(built, key=lambda one: sum(_ends(_moved(one.corners, one.place))))
+    rising = sorted(built, key=lambda body: sum(_ends(_moved(body.corners, body.place))))
     base = rising[0].place if rising[0].rigid else np.vstack([np.eye(3), np.zeros(3)])
     back = np.linalg.inv(base[:3])
     solids = []
-    for one, (heights, deepest) in zip(rising, sought, strict=True):
-        turn, shift = one.place[:3] @ back, (one.place[3] - base[3]) @ back
+    for body, (heights, deepest) in zip(rising, sought, strict=True):
+        turn, shift = body.place[:3] @ back, (body.place[3] - base[3]) @ back
         if bool((np.abs(turn - np.eye(3)) <= RIGID).all()):
             turn = np.eye(3)  # what stands upright does so to the last bit
-        corners = _moved(one.corners, np.vstack([turn, shift]))
+        corners = _moved(body.corners, np.vstack([turn, shift]))
         low, high = _ends(corners)
         solid = solid_of(corners, "3mf", [z for z in heights if low < z < high], path, deepest)
-        solids.append(replace(solid, units_mm=one.mm))
+        solids.append(replace(solid, units_mm=body.mm))
     return solids
 
 
@@ -226,22 +226,22 @@ class _Model:
         """Every object that is built and printed."""
         if self.mm is None:
             raise self._fault("there is no model in it")
-        found = []
-        self.room = MOST_TRIANGLES + sum(len(one.corners) for one in self.objects.values())  # three corners each
+        objects = []
+        self.room = MOST_TRIANGLES + sum(len(item.corners) for item in self.objects.values())  # three corners each
         for name, place in self.items:
-            one = self._named(name)
-            if not one.printed:
+            item = self._named(name)
+            if not item.printed:
                 continue
-            corners = self._corners(one, 0)
+            corners = self._corners(item, 0)
             self._demand_room(len(corners))
             corners = corners * self.mm
             if not len(corners):
-                raise ReadError("empty", f"object {one.name or name!r} holds no triangles", self.path)
+                raise ReadError("empty", f"object {item.name or name!r} holds no triangles", self.path)
             there = np.concatenate((place[:3], self.mm * place[3:]))
             if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
-                raise ReadError("range", f"object {one.name or name!r} reaches out of range", self.path)
-            found.append(Placed(one.name, corners, there, self.mm))
-        return tuple(found)
+                raise ReadError("range", f"object {item.name or name!r} reaches out of range", self.path)
+            objects.append(Placed(item.name, corners, there, self.mm))
+        return tuple(objects)
 
     def _demand_room(self, triangles: int = 0) -> None:
         """Refuse components and triangles that are put together without end."""

@@ -47,12 +47,12 @@ class Space(NamedTuple):
 
     def point(self, value: Value, by: int) -> Array:
         """Place (3,) of a CARTESIAN_POINT, mm."""
-        found = self.triple(value, by, "CARTESIAN_POINT") * self.mm
+        place = self.triple(value, by, "CARTESIAN_POINT") * self.mm
         if self.place is not None:
-            found = self.place.origin + self.turned(found)
-        if not bool((np.abs(found) <= LARGEST).all()):
-            raise self.file.error(by, f"a coordinate of {np.abs(found).max():g} mm", "range")
-        return found
+            place = self.place.origin + self.turned(place)
+        if not bool((np.abs(place) <= LARGEST).all()):
+            raise self.file.error(by, f"a coordinate of {np.abs(place).max():g} mm", "range")
+        return place
 
     def direction(self, value: Value, by: int) -> Array:
         """Direction (3,) of a DIRECTION, of any length."""
@@ -62,8 +62,8 @@ class Space(NamedTuple):
         """Turn a direction (3,) as the file's place does."""
         if self.place is None:
             return drawn
-        found: Array = drawn[0] * self.place.x + drawn[1] * self.place.y + drawn[2] * self.place.z
-        return found
+        turned_direction: Array = drawn[0] * self.place.x + drawn[1] * self.place.y + drawn[2] * self.place.z
+        return turned_direction
 
     def triple(self, value: Value, by: int, kind: str) -> Array:
         """Three numbers (3,) of an entity of a kind, a point in the file's unit or a direction of any length."""
@@ -71,14 +71,14 @@ class Space(NamedTuple):
         numbers = self.file.several(self.file.values(number, kind, 2)[1], number)
         if len(numbers) != 3:
             raise self.file.error(number, f"{len(numbers)} coordinates", "syntax")
-        return np.array([self.file.number(one, number) for one in numbers])
+        return np.array([self.file.number(coordinate, number) for coordinate in numbers])
 
     def length(self, value: Value, by: int) -> float:
         """Length above 0, mm."""
-        found = self.file.number(value, by) * self.mm
-        if not 0.0 < found <= 1e6 * LARGEST:
-            raise self.file.error(by, f"a length of {found:g} mm", "range")
-        return found
+        size = self.file.number(value, by) * self.mm
+        if not 0.0 < size <= 1e6 * LARGEST:
+            raise self.file.error(by, f"a length of {size:g} mm", "range")
+        return size
 
     def frame(self, value: Value, by: int) -> Frame:
         """Axes of an AXIS2_PLACEMENT_3D, those left out as ISO 10303-42 has them."""
@@ -180,7 +180,7 @@ class Edge:
         """How far its ends lie off its curve, mm."""
         if isinstance(self.curve, Straight):
             beside = [np.cross(place - self.curve.point, self.curve.along) for place in (self.start, self.end)]
-            return float(max(np.linalg.norm(one) for one in beside))
+            return float(max(np.linalg.norm(offset) for offset in beside))
         if isinstance(self.curve, Conic):
             first, last = self.curve.at(np.array([0.0, 1.0]))
         else:
@@ -214,12 +214,12 @@ def _spline_crossings(curve: Spline, z: float) -> list[tuple[Array, bool]]:
         middles += (0.5 * (cuts[1:] + cuts[:-1])).tolist()
     above = values(polynomials[rows], np.array(middles)) > 0.0
     closed = bool(np.linalg.norm(curve.ends[1] - curve.ends[0]) <= CLOSED)
-    found = []
+    crossings = []
     for k in np.flatnonzero(above != np.roll(above, 1)):
         if k or closed:
             place = curve.at(np.array([rows[k]]), np.array([begins[k]]))[0]
-            found.append((place, bool(above[k]) != curve.back))
-    return found
+            crossings.append((place, bool(above[k]) != curve.back))
+    return crossings
 
 
 def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
@@ -228,20 +228,20 @@ def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
     if size <= abs(c):
         return []
     middle, half = np.arctan2(b, a), np.arccos(c / size)
-    found = []
+    crossings = []
     for t in (middle - half, middle + half):
         share = (t - curve.first) % TURN / curve.sweep if curve.sweep > 0.0 else (curve.first - t) % TURN / -curve.sweep
         if share <= 1.0:
             rises = (b * np.cos(t) - a * np.sin(t)) * curve.sweep > 0.0
-            found.append((curve.at(np.array([share]))[0], bool(rises)))
-    return found
+            crossings.append((curve.at(np.array([share]))[0], bool(rises)))
+    return crossings
 
 
 def edge_of(space: Space, number: int) -> Edge:
     """Read an EDGE_CURVE. Raises ReadError for a curve that is not read, or one that is trimmed inside."""
     file = space.file
     _, first, last, geometry, sense, *_ = file.values(number, "EDGE_CURVE", 5)
-    start, end = (_vertex(space, file.reference(one, number)) for one in (first, last))
+    start, end = (_vertex(space, file.reference(vertex, number)) for vertex in (first, last))
     forward = file.flag(sense, number)
     curve = file.reference(geometry, number)
     kind = file.kind(curve, (*WRAPPED, "LINE", "CIRCLE", "ELLIPSE", *SPLINES), number)
@@ -298,16 +298,16 @@ def spline_of(space: Space, number: int) -> Spline:
         shape = file.values(number, "B_SPLINE_CURVE", 5)
         knotted = file.values(number, "B_SPLINE_CURVE_WITH_KNOTS", 2) if "B_SPLINE_CURVE_WITH_KNOTS" in records else ()
     else:
-        kind = next(one for one in SPLINES if one in records)
+        kind = next(item for item in SPLINES if item in records)
         every = file.values(number, kind, 8 if kind == SPLINES[0] else 6)
         shape, knotted = every[1:6], every[6:]
     degree = int(file.number(shape[0], number))
     points = file.several(shape[1], number)
-    control = np.array([space.point(one, number) for one in points if isinstance(one, Reference)]).reshape(-1, 3)
+    control = np.array([space.point(item, number) for item in points if isinstance(item, Reference)]).reshape(-1, 3)
     weight = np.ones(len(control))
     if "RATIONAL_B_SPLINE_CURVE" in records:
         shares = file.several(file.values(number, "RATIONAL_B_SPLINE_CURVE", 1)[0], number)
-        weight = np.array([file.number(one, number) for one in shares])
+        weight = np.array([file.number(item, number) for item in shares])
     if not 1 <= degree <= HIGHEST_DEGREE:
         raise file.error(number, f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
     knots = _knots(space, number, knotted, degree, len(control))
@@ -321,9 +321,9 @@ def _knots(space: Space, number: int, knotted: tuple[Value, ...], degree: int, c
     """Knots, each as often as it counts; those of a BEZIER_CURVE are its ends of every span."""
     file = space.file
     if len(knotted) >= 2:
-        often, places = (file.several(one, number) for one in knotted[:2])
-        times = np.array([int(file.number(one, number)) for one in often])
-        where = np.array([file.number(one, number) for one in places])
+        often, places = (file.several(item, number) for item in knotted[:2])
+        times = np.array([int(file.number(item, number)) for item in often])
+        where = np.array([file.number(item, number) for item in places])
         if len(times) != len(where) or bool((times < 1).any()) or times.sum() > count + HIGHEST_DEGREE + 1:
             raise file.error(number, "its knots and their multiplicities do not fit together", "syntax")
         return np.repeat(where, times)

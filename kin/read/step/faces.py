@@ -213,11 +213,11 @@ class Face:
             case Tube():
                 along, point = self.surface.along, self.surface.point
                 across = np.array([-along[1], along[0], 0.0])
-                found = []
+                pieces = []
                 for side in (1.0, -1.0):
-                    here = [one for one in crossings if side * float((one[0] - point) @ across) > 0.0]
-                    found += self._chords(space, here, along[:2] * (-side if self.outward else side))
-                return found
+                    here = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
+                    pieces += self._chords(space, here, along[:2] * (-side if self.outward else side))
+                return pieces
         self._paired(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
 
@@ -244,12 +244,12 @@ class Face:
         ends = [float(np.arctan2(y, x)) for x, y, rises in angles if rises]
         if len(begins) != len(ends):
             raise self._contrary(space)
-        found = []
+        pieces = []
         for first in begins:
             sweeps = [(sense * (last - first)) % TURN for last in ends]
-            sweep = min(TURN if one < SAME or TURN - one < SAME else one for one in sweeps)
-            found.append(_arc(surface.centre, radius, first, sense * sweep))
-        return found
+            sweep = min(TURN if angle < SAME or TURN - angle < SAME else angle for angle in sweeps)
+            pieces.append(_arc(surface.centre, radius, first, sense * sweep))
+        return pieces
 
     def _paired(self, space: Space, crossings: list[Crossing]) -> None:
         """Refuse a swept face that is bounded by anything but the ends of its curve."""
@@ -278,8 +278,8 @@ def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
     kind = file.kind(number, ("ADVANCED_FACE", "FACE_SURFACE"), number)
     _, bounds, surface, sense, *_ = file.values(number, kind, 4)
     loops = []
-    for one in file.several(bounds, number):
-        bound = file.reference(one, number)
+    for listed in file.several(bounds, number):
+        bound = file.reference(listed, number)
         _, loop, orientation, *_ = file.values(bound, file.kind(bound, ("FACE_BOUND", "FACE_OUTER_BOUND"), number), 3)
         forward = file.flag(orientation, bound)
         ring = file.reference(loop, bound)
@@ -292,8 +292,8 @@ def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
         loops.append(tuple(uses) if forward else tuple(Use(use.edge, not use.forward) for use in reversed(uses)))
     if not loops:
         raise file.error(number, "it has no bounds")
-    made = _surface(space, file.reference(surface, number), number)
-    return Face(number, made, tuple(loops), file.flag(sense, number), edges)
+    geometry = _surface(space, file.reference(surface, number), number)
+    return Face(number, geometry, tuple(loops), file.flag(sense, number), edges)
 
 
 def _use(space: Space, number: int, edges: dict[int, Edge]) -> Use:
@@ -311,13 +311,13 @@ def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edg
     if not uses:
         raise space.file.error(number, "it has no edges", "syntax")
     for use, following in zip(uses, [*uses[1:], uses[0]], strict=True):
-        one, other = edges[use.edge], edges[following.edge]
-        end = one.end if use.forward else one.start
+        edge, other = edges[use.edge], edges[following.edge]
+        end = edge.end if use.forward else edge.start
         start = other.start if following.forward else other.end
         gap = float(np.linalg.norm(start - end))
         if gap > space.accuracy:
             x, y, z = end.tolist()
-            where = f"edge #{one.number} ends at {place_text(x, y, z, digits=9)} mm"
+            where = f"edge #{edge.number} ends at {place_text(x, y, z, digits=9)} mm"
             message = f"{where}, {gap:.3g} mm from where #{other.number} starts"
             raise space.file.error(number, message, "open")
 

@@ -138,7 +138,7 @@ def exchange(raw: bytes, path: Path) -> Exchange:
 
 def _instances(body: str, path: Path) -> dict[int, dict[str, tuple[Value, ...]]]:
     tokens = _tokens(body, path)
-    found: dict[int, dict[str, tuple[Value, ...]]] = {}
+    instances: dict[int, dict[str, tuple[Value, ...]]] = {}
     at = 0
     while at < len(tokens):
         ends = at
@@ -157,11 +157,11 @@ def _instances(body: str, path: Path) -> dict[int, dict[str, tuple[Value, ...]]]
             ends += 1
         if not records or ends >= len(tokens) or tokens[ends] != ("mark", ";"):
             raise ReadError("syntax", f"#{number} does not end as an instance does", path)
-        if int(number) in found:
+        if int(number) in instances:
             raise ReadError("syntax", f"#{number} is there twice", path)
-        found[int(number)] = records
+        instances[int(number)] = records
         at = ends + 1
-    return found
+    return instances
 
 
 def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
@@ -175,10 +175,10 @@ def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
         at = match.end()
         if match.lastgroup is None:
             continue
-        kind, found = match.lastgroup, match[match.lastgroup]
-        if kind in {"reference", "integer"} and len(found) > MOST_DIGITS:
-            raise ReadError("range", f"{found[:LONGEST]!r} is beyond all numbers of instances and counts", path)
-        tokens.append((kind, found))
+        kind, token = match.lastgroup, match[match.lastgroup]
+        if kind in {"reference", "integer"} and len(token) > MOST_DIGITS:
+            raise ReadError("range", f"{token[:LONGEST]!r} is beyond all numbers of instances and counts", path)
+        tokens.append((kind, token))
     return tokens
 
 
@@ -197,11 +197,11 @@ def _list(tokens: list[tuple[str, str]], index: int, number: int, path: Path) ->
         elif not stack or (kind, text) == ("mark", ";") or (name and kind != "mark"):
             break
         elif (kind, text) == ("mark", ")"):
-            of, values = stack.pop()
+            outer, values = stack.pop()
             whole = tuple(values)
             if not stack:
                 return whole, index
-            stack[-1][1].append(Typed(of, whole) if of else whole)
+            stack[-1][1].append(Typed(outer, whole) if outer else whole)
         elif kind == "word":
             name = text.upper()
         elif (kind, text) != ("mark", ","):

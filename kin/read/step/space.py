@@ -96,11 +96,11 @@ class _Places:
         """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids."""
         file = self.file
         same = self._alike(holder)
-        for one in same - {holder}:
-            if not _still(self._own(one)) and not _agree(self._own(one), self._own(holder)):
-                raise file.error(one, f"has another placement than #{holder}, to which it is related")
-        found = self._own(holder)
-        if self.moved and not _still(found):
+        for related in same - {holder}:
+            if not _still(self._own(related)) and not _agree(self._own(related), self._own(holder)):
+                raise file.error(related, f"has another placement than #{holder}, to which it is related")
+        placement = self._own(holder)
+        if self.moved and not _still(placement):
             raise file.error(holder, "is placed by itself and by an assembly; export the part alone")
         seats = file.of(IN_PLACE)
         if not len(seats) == len(self.moved) == len(file.of(OCCURRENCE)):
@@ -112,26 +112,26 @@ class _Places:
             if not seat and not alone:
                 break  # the others place other solids
             if len(seat) != 1 or len(used) == DEEPEST:
-                number = seat[0] if seat else next(one for one in self.moved if one not in used)
+                number = seat[0] if seat else next(related for related in self.moved if related not in used)
                 raise file.error(number, "puts more than the one part in place; export the part alone")
             number = seat[0]
             used.add(number)
             child, parent = self.moved[number]
             self._demand_same_unit(parent)
             self._demand_occurrence(number, child, parent)
-            found = _after(self._transformation(number, child, parent), found)
+            placement = _after(self._transformation(number, child, parent), placement)
             same = self._alike(parent)
-        return found
+        return placement
 
     def _alike(self, name: int) -> set[int]:
         """Return the representations that are related to one without a transformation, and it."""
-        found, fresh = {name}, [name]
+        alike, fresh = {name}, [name]
         while fresh:
-            at = fresh.pop()
-            near = {b if a == at else a for _, a, b in self.plain if at in (a, b)} - found
-            found |= near
+            representation = fresh.pop()
+            near = {b if a == representation else a for _, a, b in self.plain if representation in (a, b)} - alike
+            alike |= near
             fresh += near
-        return found
+        return alike
 
     def _items(self, number: int) -> tuple[Value, ...]:
         file = self.file
@@ -146,14 +146,14 @@ class _Places:
             if isinstance(item, Reference) and AXES in self.file.instances.get(item, {})
         ]
         frames = [self._frame(item, number) for item in axes]
-        if any(not _agree(one, frames[0]) for one in frames[1:]):
+        if any(not _agree(frame, frames[0]) for frame in frames[1:]):
             raise self.file.error(number, f"has {len(frames)} placements that differ; one belongs there")
         return frames[0] if frames else None
 
     def _frame(self, value: Value, by: int) -> Frame:
         number = self.file.reference(value, by)
-        given = self.file.values(number, AXES, 2)
-        if len(given) > 2 and given[2] is not None and (len(given) < 4 or given[3] is None):
+        axes = self.file.values(number, AXES, 2)
+        if len(axes) > 2 and axes[2] is not None and (len(axes) < 4 or axes[3] is None):
             raise self.file.error(number, "leaves out its x axis, which kernels take differently")
         return self.space.frame(value, by)
 
@@ -190,7 +190,7 @@ class _Places:
         """Return the product definitions that a representation shows."""
         file, kind = self.file, "SHAPE_DEFINITION_REPRESENTATION"
         alike = self._alike(number)
-        shown = [file.values(one, kind, 2) for one in file.of(kind)]
+        shown = [file.values(definition, kind, 2) for definition in file.of(kind)]
         shapes = [file.reference(shape, number) for shape, drawn in shown if drawn in alike]
         return {file.values(shape, "PRODUCT_DEFINITION_SHAPE", 3)[2] for shape in shapes}
 
@@ -217,17 +217,17 @@ def _after(outer: Frame, inner: Frame | None) -> Frame | None:
 def _units(file: Exchange, context: int) -> tuple[float, float | None]:
     """Length of a context's unit, mm, and its unit of plane angle, rad, if it states one."""
     units = file.several(file.values(context, "GLOBAL_UNIT_ASSIGNED_CONTEXT", 1)[0], context)
-    found: dict[str, float] = {}
+    sizes: dict[str, float] = {}
     for item in units:
         unit = file.reference(item, context)
         records = file.instances.get(unit, {})
         for kind in ("LENGTH_UNIT", "PLANE_ANGLE_UNIT"):
-            if kind in records and found.setdefault(kind, _unit(file, unit)) != _unit(file, unit):
+            if kind in records and sizes.setdefault(kind, _unit(file, unit)) != _unit(file, unit):
                 raise file.error(context, f"has more than one {kind}")
-    length = found.get("LENGTH_UNIT")
+    length = sizes.get("LENGTH_UNIT")
     if length is None or not 1e-9 < length < 1e9:
         raise file.error(context, "states no unit of length")
-    return length, found.get("PLANE_ANGLE_UNIT")
+    return length, sizes.get("PLANE_ANGLE_UNIT")
 
 
 def _unit(file: Exchange, number: int, depth: int = 0) -> float:

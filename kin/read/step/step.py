@@ -88,7 +88,7 @@ class StepSolid(Nest, Slivered):
 
     def section(self, z: float) -> Section:
         """One of the sections, by its height as asked for."""
-        return next(one for one in self.sections if one.height == z)
+        return next(cut for cut in self.sections if cut.height == z)
 
 
 def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> StepSolid:
@@ -115,23 +115,23 @@ def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSol
     if len(sought) > 1:
         ends = [(body.levels[0], body.levels[-1]) for body in rising]
         sought = [
-            one._replace(heights=[z for z in one.heights if low < z < high])
-            for one, (low, high) in zip(sought, ends, strict=True)
+            wanted._replace(heights=[z for z in wanted.heights if low < z < high])
+            for wanted, (low, high) in zip(sought, ends, strict=True)
         ]
-    return [_solid(replace(body, deepest=one.deepest), one) for body, one in zip(rising, sought, strict=True)]
+    return [_solid(replace(body, deepest=wanted.deepest), wanted) for body, wanted in zip(rising, sought, strict=True)]
 
 
 def _solid(body: _Body, sought: Sought) -> StepSolid:
     misfit, heights = body.misfit, sought.heights
-    asked = [body.checked(z) for z in heights] or [body.widest()]
-    drawings = [body.section(z) for z in asked]
-    sections = [Section(one.chains, z) for z, one in zip(asked, drawings, strict=True)]
+    cuts = [body.checked(z) for z in heights] or [body.widest()]
+    drawings = [body.section(z) for z in cuts]
+    sections = [Section(drawing.chains, z) for z, drawing in zip(cuts, drawings, strict=True)]
     first = drawings[0]
     return StepSolid(
         chains=first.chains,
         z_min=body.levels[0],
         z_max=body.levels[-1],
-        height=asked[0],
+        height=cuts[0],
         prism=body.prism,
         volume=body.volume,
         sections=tuple(sections) if len(heights) else (),
@@ -226,16 +226,16 @@ class _Body:
 
     def section(self, z: float) -> Drawing:
         """Contour and holes at a height."""
-        found = CutEntities([], [], [], Counter())
+        entities = CutEntities([], [], [], Counter())
         for face in self.faces:
-            for one in face.section(self.space, z):
-                found.shapes.append(one)
-                found.names.append(f"face #{face.number}")
-                found.layers.append("STEP")
+            for piece in face.section(self.space, z):
+                entities.shapes.append(piece)
+                entities.names.append(f"face #{face.number}")
+                entities.layers.append("STEP")
         path = self.space.file.path
-        if not found.shapes:
+        if not entities.shapes:
             raise ReadError("open", f"no face reaches through z = {z:.9g} mm", path)
-        return drawing_of(found, None, None, self.space.accuracy, path, version="STEP", deepest=self.deepest)
+        return drawing_of(entities, None, None, self.space.accuracy, path, version="STEP", deepest=self.deepest)
 
     def _area(self, z: float) -> float:
         cut = self.section(z)
@@ -248,7 +248,9 @@ class _Body:
         tubes = [face.surface for face in self.faces if isinstance(face.surface, Tube)]
         total = 0.0
         for low, high in zip(self.levels[:-1], self.levels[1:], strict=True):
-            tube = next((one for one in tubes if abs(0.5 * (low + high) - one.point[2]) < one.radius), None)
+            tube = next(
+                (surface for surface in tubes if abs(0.5 * (low + high) - surface.point[2]) < surface.radius), None
+            )
             if tube is not None:
                 total += self._bored(tube, low, high)
             elif self._same_between(low, high):
@@ -274,7 +276,7 @@ class _Body:
     @property
     def faults(self) -> list[str]:
         """What a closed solid whose faces look outward does not have."""
-        found = []
+        faults = []
         count = Counter(use for face in self.faces for loop in face.loops for use in loop)
         number = Counter(use.edge for use in count.elements())
         for what, wrong in (
@@ -287,16 +289,16 @@ class _Body:
         ):
             named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
             if wrong:
-                found.append(f"{len(wrong)} edges ({named}): each {what}")
+                faults.append(f"{len(wrong)} edges ({named}): each {what}")
         wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
-        found += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
+        faults += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
         for lid in self.lids:
             z = lid.heights[0]
             normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0
             up = (normal > 0.0) == lid.outward
             if (abs(z - self.levels[0]) <= SAME and up) or (abs(z - self.levels[-1]) <= SAME and not up):
-                found.append(f"face #{lid.number} at z = {z:.9g} mm looks into the solid")
-        return found
+                faults.append(f"face #{lid.number} at z = {z:.9g} mm looks into the solid")
+        return faults
 
     @cached_property
     def misfit(self) -> float:
