@@ -250,6 +250,7 @@ def test_contacts_wider_than_the_metal(text: str, words: str, most: str) -> None
         read(remedied.encode(), Path("case.yaml"))
 
 
+# needs: camshaft
 def test_a_lobe_is_as_wide_as_on_its_shaft(tmp_path: Path) -> None:
     """Two lobes of one recipe, 5 and 20 mm long: each is held against its limit over its own length."""
     (tmp_path / "lobe.yaml").write_text(disc("thickness: 10, chamfer: 2"), encoding="utf-8")

@@ -445,6 +445,7 @@ def test_a_bore_has_its_fit(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     assert "Ø16 H7" in [text.text for text in drawn[0].annotated[0].texts]
 
 
+# needs: camshaft
 def test_a_camshaft_has_no_sheet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "cam.yaml").write_text(CAM, encoding="utf-8")
     text = "camshaft: [{recipe: cam.yaml, angle: 0, at: 0}]\nexport: {files: [sheet]}\n"
