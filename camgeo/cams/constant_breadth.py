@@ -60,17 +60,15 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     @cached_property
     def half_turn(self) -> Motion:
         """The lift over the half turn, of a swing over that of the relative angle."""
-        swing = self.frame_swing()
-        return super().half_turn if swing is None else swing.half_turn
+        return super().half_turn if self.frame_swing is None else self.frame_swing.half_turn
 
     def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn, or of the swing over the shaft angle, rad."""
-        swing = self.frame_swing()
-        return super().joints() if swing is None else swing.joints
+        return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
     def kept(self) -> Kept | None:
         """Distances of the half turn's motion, or of the swing, from the rows of its table."""
-        return self._swing().kept if self.swings else super().kept()
+        return super().kept() if self.frame_swing is None else self.frame_swing.motion.kept
 
     @property
     def by_linkage(self) -> bool:
@@ -81,6 +79,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         """The cam with the links that its frame slides on, where they make its lift."""
         return replace(self, frame=SlidingFrame(ground, rocker, side)) if self.swings else self
 
+    @cached_property
     def frame_swing(self) -> FrameSwing | None:
         """The law of the swing, over as much of the shaft as its source tells."""
         if not self.swings:

@@ -376,6 +376,7 @@ class Cam(ABC):
         """The cam told of the links that its square frame slides on (`kin.law.frame_swing`), mm."""
         return self
 
+    @property
     def frame_swing(self) -> FrameSwing | None:
         """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
         return None

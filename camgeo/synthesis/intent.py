@@ -33,7 +33,7 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
         overlap = 0.0 if exact.preload is None else exact.preload.overlaps[0]
-        linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell, overlap)
+        linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing, dwell, overlap)
     surfaces = tuple(
         SurfaceIntent(
             exact.gauges[one.surface.name],

@@ -233,8 +233,8 @@ def _judged(
 def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float]:
     """Greatest absolute error of the output and the shaft angle there; `rows` are the intended ones at the nodes."""
     low, high = way.nodes[:-1], way.nodes[1:]
-    at_low = intended.error(low, way.low, rows[:, :, :-1])
-    at_high = intended.error(high, way.high, rows[:, :, 1:])
+    both = np.concatenate([way.low, way.high], axis=2), np.concatenate([rows[..., :-1], rows[..., 1:]], axis=2)
+    at_low, at_high = np.split(intended.error(np.concatenate([low, high]), *both), 2, axis=1)
 
     def error(theta: Array, interval: Indices) -> Array:
         return intended.error(theta, way.rows(theta, interval), intended.rows(theta))

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 
 _CELLS = 32  # a stretch is bounded in so many parts first
+_PARTS = 16  # and likewise for a cubic that is to stand for it
 _HALVINGS = 40
 _MOST_CELLS = 20000  # open at a time; more than a few mean that the answer is no
 
@@ -128,7 +129,8 @@ def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
     step of a search cannot be missed. Raises UnsettledError where too many cells are needed.
     """
     ends = distinct(np.concatenate([[0.0], np.mod(breaks, TURN), [TURN]]))
-    low, high, settled = ends[:-1], ends[1:], [ends[:1]]
+    parts = np.linspace(ends[:-1], ends[1:], _PARTS + 1)
+    low, high, settled = parts[:-1].ravel(), parts[1:].ravel(), [ends[:1]]
     for _ in range(_HALVINGS):
         mid, rad = law.enclosure(low, high, 4)
         with np.errstate(invalid="ignore", over="ignore"):

@@ -32,9 +32,10 @@ from kin.law.programme import IntentError
 from kin.law.segment import Constant, Series, Stretch
 from kin.law.sources.motion import Motion, joined
 from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Ball, BallJet, DomainError, Jet, asin, cos, sin
+from kin.numeric.inverse import Inverse
 from kin.numeric.jet import derivatives_by
-from kin.numeric.newton import zeros
 from kin.numeric.records import dataclass
 from kin.numeric.taylor import compose, compose_balls, factorials
 
@@ -47,6 +48,7 @@ _SAME = 1e-9  # rad, within which a law fills its angle, as segments do
 _JOIN = 1e-9  # of velocities that meet
 _ULPS = 4.0  # by which an enclosure of a shaft angle begins
 _DOUBLINGS = 60
+_TABLE = 256  # steps of tables that inverses begin from
 _LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 
 
@@ -101,20 +103,24 @@ class FrameSwing:
 
     def _later(self, phi: Array, order: int) -> Array:
         """Taylor coefficients (order + 1, n) of psi at shaft angles (n,) beyond the given law: of the law's image."""
-        span = self.motion.total
+        return _by(*self._image_over(Jet.variable(self._before_image(phi), order)))
 
-        def over(first: Array) -> tuple[Array, Array]:
-            at = Jet.variable(first, 1)
-            swing = self._swing(at)
-            shaft = at + math.pi + self.image(swing) - swing
-            return shaft.c[0] - phi, shaft.c[1]
+    def _image_over(self, phi: Jet) -> tuple[Jet, Jet]:
+        """psi* of psi at shaft angles of the given law, and the shaft angles that it belongs to."""
+        swing = self._swing(phi)
+        image = self.image(swing)
+        return image, phi + math.pi + image - swing
 
-        guess = (phi - span) * (span / (TURN - span))
-        first = zeros(over, np.zeros_like(phi), np.full_like(phi, span), np.clip(guess, 0.0, span), 1e-12)
-        at = Jet.variable(first, order)
-        swing = self._swing(at)
-        found = self.image(swing)
-        return _by(found, at + math.pi + found - swing)
+    @cached_property
+    def _before_image(self) -> Inverse:
+        """Shaft angle of the given law over that of its image."""
+
+        def over(phi: Array) -> tuple[Array, Array]:
+            _, shaft = self._image_over(Jet.variable(phi, 1))
+            return shaft.c[0], shaft.c[1]
+
+        steps = np.linspace(0.0, self.motion.total, _TABLE + 1)
+        return Inverse(over, distinct(np.concatenate([steps, self.motion.motion.breaks])))
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -171,24 +177,15 @@ class _Lifted:
         return Ball(np.stack([row.mid for row in rows]), np.stack([row.rad for row in rows]))
 
     @cached_property
-    def _ends(self) -> Array:
-        """Relative angles (2,) at both ends."""
-        both = Jet.variable(np.array([self.begin, self.end]), 0)
-        ends: Array = (both - self.function(both)).c[0]
-        return ends
-
-    def _shaft(self, theta: Array) -> Array:
-        """Shaft angles (n,) at relative angles (n,), within this stretch."""
-        low, high, ends = np.full_like(theta, self.begin), np.full_like(theta, self.end), self._ends
+    def _shaft(self) -> Inverse:
+        """Shaft angle over the relative one, within this stretch."""
 
         def over(phi: Array) -> tuple[Array, Array]:
             at = Jet.variable(phi, 1)
             relative = at - self.function(at)
-            return relative.c[0] - theta, relative.c[1]
+            return relative.c[0], relative.c[1]
 
-        share = np.clip((theta - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
-        found = zeros(over, low, high, low + share * (high - low), 2.0 * np.spacing(TURN))
-        return np.where(theta <= ends[0], low, np.where(theta >= ends[1], high, found))
+        return Inverse(over, np.linspace(self.begin, self.end, _TABLE + 1))
 
     def _shafts_beyond(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Shaft angles (n,) for certain not above those at relative angles `lower` (n,), nor below those at `upper`."""

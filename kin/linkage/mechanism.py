@@ -26,7 +26,6 @@ from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Dwell, dwells
 from kin.numeric.monotone import between, cells, pieces
-from kin.numeric.newton import cubic_inverse, zeros
 from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
 
@@ -47,8 +46,7 @@ QUARTER = 0.5 * math.pi
 # Rounding of a lift's own constants, as a part of the breadth.
 _ROUNDED = 1e-9
 _EDGE = 1e-12
-_TABLE = 256  # steps of the table that Newton's method for phi(theta) begins from
-_SETTLED = 1e-9  # rad: after a Newton step below this the next is lost in rounding
+_LOOKS = 256  # relative angles at which the direction of a dyad's point is looked at
 
 
 class PlaceError(BindingError):
@@ -194,18 +192,10 @@ class Mechanism:
     def relative(self, shaft: float | Array) -> Array:
         """Relative angles (n,) at shaft angles (n,), any real numbers. PlaceError unless the mechanism turns."""
         shaft = np.atleast_1d(np.asarray(shaft, dtype=float))
-        theta, phi, rate = self._table
-        turns = np.floor(shaft / TURN)
-        goal = shaft - turns * TURN
-        k = np.clip(np.searchsorted(phi, goal, side="right") - 1, 0, len(phi) - 2)
-        low, high = theta[k], theta[k + 1]
-        x = cubic_inverse(goal, (phi[k], phi[k + 1]), (low, high), (rate[k], rate[k + 1]))
-
-        def over(x: Array) -> tuple[Array, Array]:
-            at = self.at(x, 1).shaft
-            return at[0] - goal, at[1]
-
-        return zeros(over, low, high, x, _SETTLED) + turns * TURN
+        turns = np.floor(shaft / TURN) * TURN
+        cell, share = self._followed.reach(shaft - turns)
+        low, high = self._followed.low[cell], self._followed.high[cell]
+        return low + share * (high - low) + turns
 
     def output(self, shaft: Array) -> Array:
         """Output (n,) at shaft angles (n,), likewise, by polynomials that follow it to its rounding."""
@@ -308,7 +298,7 @@ class Mechanism:
     def about(self) -> tuple[float, ...]:
         """Direction that each dyad takes the direction of its point about, for an output without a jump."""
         found: tuple[float, ...] = ()
-        theta: Array = np.linspace(0.0, TURN, _TABLE, endpoint=False)
+        theta: Array = np.linspace(0.0, TURN, _LOOKS, endpoint=False)
         for loop, dyad in enumerate(self.dyads):
             s, s1 = (lift.c[0] for lift in self._lifts(theta, 0))
             theta = theta[(self.chain.margins(loop, s, s1, found) > 0).all(axis=0)]
@@ -316,7 +306,7 @@ class Mechanism:
                 return (*found, *(0.0,) * (len(self.dyads) - loop))
             s0, s01 = self._lifts(theta, 0)
             x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
-            if len(theta) == _TABLE and abs(dyad.turned(x.c[0], y.c[0])) > math.pi:
+            if len(theta) == _LOOKS and abs(dyad.turned(x.c[0], y.c[0])) > math.pi:
                 raise IntentError(
                     f"the point that dyad {loop + 1} is attached to circles the dyad's ground pivot: its "
                     "output would rotate, not oscillate",
@@ -324,15 +314,6 @@ class Mechanism:
                 )
             found = (*found, dyad.middle(x.c[0], y.c[0]))
         return found
-
-    @cached_property
-    def _table(self) -> tuple[Array, Array, Array]:
-        """Relative angles from 0 to 2 pi beyond, their shaft angles and the rate of these, (m,) each."""
-        self._demand_turning()
-        steps = np.linspace(-math.pi, 2 * TURN - math.pi, 2 * _TABLE + 1)
-        theta = distinct(np.concatenate([steps, self.breaks]))
-        at = self.at(theta, 1)
-        return theta, at.shaft[0], at.shaft[1]
 
     @cached_property
     def _followed(self) -> Cells:

@@ -97,7 +97,8 @@ def dwells(
         return (Dwell(0.0, period, least, greatest),)
     search = _Search.through(of, band, period)
     at_nodes = search.node_windows()
-    longest = at_nodes.take(search.is_longest(at_nodes)).joined(search.balanced_windows(at_nodes.a))
+    least = float((at_nodes.b - at_nodes.a).max(initial=0.0)) - _EQUAL * period if most == 1 else 0.0
+    longest = at_nodes.take(search.is_longest(at_nodes)).joined(search.balanced_windows(at_nodes.a, least))
     chosen = _disjoint(longest, period, most)
     return _polished(chosen, lambda x: f(np.mod(x, period), 0)[0], search)
 
@@ -248,8 +249,11 @@ class _Search:
         noise = self.of.noise
         return some & (lowest <= low + noise), some & (highest >= low + self.band - noise)
 
-    def balanced_windows(self, starts: Array) -> _Windows:
-        """Windows through whose ends f goes alike, with equal slopes, between neighbouring starts of node windows."""
+    def balanced_windows(self, starts: Array, least: float) -> _Windows:
+        """Windows through whose ends f goes alike, with equal slopes, between neighbouring starts of node windows.
+
+        Those shorter than `least` may be left out.
+        """
         of, count, period = self.of, len(self.of.coefficients), self.period
         starts = distinct(np.concatenate([of.x, np.mod(starts, period)]))
         wide = np.diff(starts) > _SAME * period
@@ -263,7 +267,7 @@ class _Search:
         beyond = self.value[last + 1]
         alike = np.where(rises, beyond > low + self.band, beyond < low) & (np.abs(change) > of.noise)
         family = _Family(self, first[alike], last[alike], rises[alike])
-        which, a = family.balanced(left[alike], right[alike])
+        which, a = family.balanced(left[alike], right[alike], least)
         b, _, _ = family.take(which).ends(a)
         first, last, rises = first[alike][which], last[alike][which], rises[alike][which]
         return _Windows(a, b, first, last, rises, rises, np.full(len(a), -1), ~rises)
@@ -289,32 +293,33 @@ class _Family:
         b = search.crossing(self.last, level)
         return b, np.abs(search.slope(self.first, a)), np.abs(search.slope(self.last, b))
 
-    def balanced(self, left: Array, right: Array) -> tuple[Indices, Array]:
+    def balanced(self, left: Array, right: Array, least: float) -> tuple[Indices, Array]:
         """Which of the families have a longest window with a between left and right (k,), and its a.
 
-        As db/da = f'(a)/f'(b), the length grows where f is steeper at a than at b.
+        As db/da = f'(a)/f'(b), the length grows where f is steeper at a than at b. As b rises with a, no window between
+        them is longer than from left to the end of the last; one of at least `least` is looked for.
         """
         period = self.search.period
         of = np.arange(len(left))
         _, at_a, at_b = self.ends(left)
-        _, to_a, to_b = self.ends(right)
+        end, to_a, to_b = self.ends(right)
         found = []
         while len(of):
             least_a, most_a = np.minimum(at_a, to_a), np.maximum(at_a, to_a)
             least_b, most_b = np.minimum(at_b, to_b), np.maximum(at_b, to_b)
-            apart = (least_a > most_b) | (most_a < least_b)
+            apart = (least_a > most_b) | (most_a < least_b) | (end - left < least)
             one_way = ((to_a <= at_a) & (to_b >= at_b)) | ((to_a >= at_a) & (to_b <= at_b))
             small = (right - left) * (most_a - least_b) <= _EQUAL * period * least_b
             settled = apart | one_way | small | (len(of) > _MOST_CELLS)
             peak = settled & ~apart & (at_a >= at_b) & (to_a <= to_b)
             found.append((of[peak], left[peak], right[peak], (at_a - at_b)[peak], (to_a - to_b)[peak]))
             rest = ~settled
-            of, left, right = of[rest], left[rest], right[rest]
+            of, left, right, end = of[rest], left[rest], right[rest], end[rest]
             at_a, at_b, to_a, to_b = at_a[rest], at_b[rest], to_a[rest], to_b[rest]
             middle = 0.5 * (left + right)
-            _, mid_a, mid_b = self.take(of).ends(middle)
+            mid, mid_a, mid_b = self.take(of).ends(middle)
             of = np.concatenate([of, of])
-            left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
+            left, right, end = (np.concatenate(p) for p in ((left, middle), (middle, right), (mid, end)))
             at_a, to_a = np.concatenate([at_a, mid_a]), np.concatenate([mid_a, to_a])
             at_b, to_b = np.concatenate([at_b, mid_b]), np.concatenate([mid_b, to_b])
         which, left, right, before, after = (np.concatenate(list(part)) for part in zip(*found, strict=True))

@@ -53,18 +53,3 @@ def zeros(
     count, first = int(np.count_nonzero(open_)), int(np.argmax(open_))
     reason = f"{count} zeros were not found in {FREE + HALVINGS} steps; the last was of {moved[first]:.3g}"
     raise UnsettledError(reason, float(x[first]))
-
-
-def cubic_inverse(
-    value: Array, values: tuple[Array, Array], places: tuple[Array, Array], slopes: tuple[Array, Array]
-) -> Array:
-    """About where rising functions have a value (n,), from their values and slopes at two places, (n,) each.
-
-    By the cubic through both ends of the inverse function; between the places.
-    """
-    (begin, end), (low, high), (first, last) = values, places, (1.0 / slope for slope in slopes)
-    wide, rise = end - begin, high - low
-    x = (value - begin) / wide
-    bend = 3.0 * rise - wide * (2.0 * first + last) + x * (wide * (first + last) - 2.0 * rise)
-    place: Array = np.clip(low + x * (wide * first + x * bend), low, high)
-    return place

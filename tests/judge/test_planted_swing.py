@@ -115,7 +115,7 @@ def test_a_lift_that_is_not_the_laws_is_caught_by_the_swing_alone(tmp_path, inte
     """As a generator would make it that mistook the law: the file is what its own lift says, exactly."""
     law = intent.linkage.swing
     if part == "motion":
-        wrong = frame_swing(read("polynomial-4567", "polynomial-345").cam.frame_swing().motion, 80.0, 9.0, 1.0)
+        wrong = frame_swing(read("polynomial-4567", "polynomial-345").cam.frame_swing.motion, 80.0, 9.0, 1.0)
     else:
         wrong = frame_swing(law.motion, 80.05, 9.0, 1.0)
     meant, lift = false_lift(intent, wrong)
@@ -133,7 +133,7 @@ def test_the_judge_holds_the_file_against_the_law_over_the_shaft_angle(tmp_path)
     reported = outcome.report["linkage"]["error"]
     path = next(Path(tmp_path).rglob("*.dxf"))
     vertices = read_drawing(path).contour.vertices
-    law = recipe.cam.frame_swing()
+    law = recipe.cam.frame_swing
     lift = recipe.cam.exact().law
     breadth = float(lift.derivatives(np.array([0.0, math.pi]), 0)[0].sum())
     bars = Bars("inverted", 80.0, rocker=15.0, aside=6.0)

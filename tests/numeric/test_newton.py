@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kin.numeric.errors import UnsettledError
-from kin.numeric.newton import FREE, HALVINGS, cubic_inverse, zeros
+from kin.numeric.newton import FREE, HALVINGS, zeros
 
 ENDS = np.array([-1.0]), np.array([2.0])
 
@@ -76,16 +76,3 @@ def test_what_is_not_a_number_is_refused() -> None:
     with pytest.raises(UnsettledError, match="1 zeros were not found") as caught:
         zeros(lambda x: (np.where(x > 0.0, np.nan, x - 0.1), np.ones_like(x)), *ENDS, np.array([1.5]), 1e-9)
     assert caught.value.at is not None
-
-
-@given(st.floats(0.0, 1.0), st.floats(0.1, 10.0), st.floats(0.1, 10.0))
-def test_the_inverse_of_a_cubic_is_taken_from_both_ends(share: float, first: float, last: float) -> None:
-    """x = y + a y (1 - y)^2 + b y^2 (1 - y): of a function whose inverse is a cubic the place is exact."""
-    a, b = 1.0 / first - 1.0, 1.0 - 1.0 / last
-
-    def inverse(y: float) -> float:
-        return y + a * y * (1.0 - y) ** 2 + b * y**2 * (1.0 - y)
-
-    rows = [np.array([value]) for value in (share, 0.0, 1.0, 0.0, 1.0, first, last)]
-    place = cubic_inverse(rows[0], (rows[1], rows[2]), (rows[3], rows[4]), (rows[5], rows[6]))
-    assert place[0] == pytest.approx(min(max(inverse(share), 0.0), 1.0), abs=1e-12)
