@@ -328,7 +328,7 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
     from camgeo.synthesis.design import designed
 
     recipe = recipe_of(recipe)
-    recipe = replace(recipe, cam=recipe.cam.refusing())
+    recipe = replace(recipe, cam=recipe.cam.refusing_undercut())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.exact.joints))
     names = {*BENT, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}

@@ -2,8 +2,8 @@
 
 The second roller stands `apart` from the first with the shaft between them, the second arm of a bell crank at that
 angle from the first, a second face opposite it (Wunderlich 1971, section 1, the "second cam integral with the first").
-Its own position is what the first one's leaves of that, so that on its own disc it is a follower as any: on a stem half
-a turn on, with the offset on the other side; on an arm that leads where the first one trails.
+Its position is `apart` less that of the first, so that on its own disc it is an ordinary follower: on a stem half a
+turn on, with the offset on the other side; on an arm that leads where the first one trails.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from camgeo.cams.guided import (
     Flank,
     Holding,
     RoundAdvice,
-    base_told,
+    base_size,
+    centre_guide_of,
     least_round_prime,
-    led_by,
-    smaller,
+    shrink_touch,
 )
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import MOST, Field, Kind, length, mapping
@@ -50,7 +50,7 @@ FEASIBLE = 1e-11  # of the distance: by so much a limit may be missed
 
 @dataclass(frozen=True)
 class Conjugate(Holding):
-    """The second contact: its touch, how far `apart` it stands, mm or rad, and of a bell crank its arm's length, mm."""
+    """A second contact: its touch, its distance `apart`, mm or rad, and for a bell crank its arm's length, mm."""
 
     closure: ClassVar[str] = "form-closure"
     discs: ClassVar[int] = 2
@@ -60,38 +60,38 @@ class Conjugate(Holding):
 
     @property
     def key(self) -> str:
-        """The key that says how far apart the contacts are."""
+        """The recipe's key for the distance of the contacts."""
         return "conjugate.distance" if self.length is None else "conjugate.angle"
 
     @property
     def larger(self) -> str:
-        """Of disc 1, which leaves less to disc 2."""
+        """Base radius of disc 1 and distance: a larger disc 1 alone leaves less to disc 2."""
         return f"{LARGER_BASE} and {self.key}"
 
     @property
     def beside(self) -> str:
-        """The distance, so that disc 2 stays."""
+        """The distance, by which disc 2 stays as it is."""
         return f" with a {self.key} larger by as much"
 
     @property
     def second_arm(self) -> tuple[float, float] | None:
-        """That of disc 2."""
+        """Length of the second arm of a bell crank, mm, and the angle between both, rad; None on a stem."""
         return None if self.length is None else (self.length, self.apart)
 
-    def named(self, name: str) -> str:
-        """As told from followers that a spring holds."""
+    def follower_name(self, name: str) -> str:
+        """Name in reports: that of guide and touch, on conjugate discs."""
         return f"{name} on conjugate discs"
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
-        """One on each disc."""
+        """One surface on each disc."""
         return Flank(FIRST, side, touch.radius), Flank(SECOND, side, self.touch.radius, disc=1)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
         """Both contacts of the follower."""
         guide, datum = first.guide, self.apart - first.datum
         if isinstance(guide, Translating):
-            turned = Contact(Translating(-guide.offset), self.touch, datum, -1, turned=math.pi, surface=SECOND)
-            return replace(first, surface=FIRST), turned
+            second = Contact(Translating(-guide.offset), self.touch, datum, -1, turned=math.pi, surface=SECOND)
+            return replace(first, surface=FIRST), second
         side = LEADING if guide.side == TRAILING else TRAILING
         arm = Oscillating(guide.pivot, side, self.length)
         return replace(first, surface=FIRST), Contact(arm, self.touch, datum, -1, surface=SECOND)
@@ -117,18 +117,18 @@ class Conjugate(Holding):
             self.key,
         )
 
-    def grown(self, out: float, scale: float, *, flat: bool) -> Conjugate:
-        """A smaller second roller, or faces farther apart; the drawing larger."""
+    def grow(self, out: float, scale: float, *, flat: bool) -> Conjugate:
+        """The holding with a smaller second roller, or faces farther apart, and scaled."""
         gap = scale * self.gap
         if flat:
             return replace(self, apart=scale * (self.apart + 2.0 * out), gap=gap)
-        touch = smaller(self.touch, out, scale)
+        touch = shrink_touch(self.touch, out, scale)
         if self.length is None:
             return replace(self, touch=touch, apart=scale * self.apart, gap=gap)
         return replace(self, touch=touch, length=scale * self.length, gap=gap)
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:
-        """Of disc 2 another distance or angle, or another second roller; all of disc 1 stays."""
+        """Advice with another distance, angle or second roller for disc 2, so that disc 1 stays as it is."""
         larger, steep = f"a larger {self.key}", own.less_steep
         if isinstance(self.touch, Flat):
             second: Advice = SizeAdvice(size=self.key, free="be free of it", larger=larger, less_steep=steep)
@@ -137,7 +137,7 @@ class Conjugate(Holding):
         return replace(own, others={SECOND: second})
 
     def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:
-        """Of disc 2 that of the least distance of its base curve."""
+        """Reference circles; of disc 2 the one at the least distance of its base curve."""
         if surface != SECOND:
             return own
         return (Circle("base circle" if isinstance(self.touch, Flat) else "prime circle"),)
@@ -145,11 +145,13 @@ class Conjugate(Holding):
     def least_stem(
         self, law: Displacement, angles: tuple[float, float], offset: float | None
     ) -> moving_frame.Translating:
-        """Kept on both discs."""
+        """Stem with the least prime circle that keeps the pressure angles, rad, on both discs."""
         return least_pair(law, *angles, self.apart, offset)
 
-    def gentler(self, exact: ExactGuided, rising: float, falling: float, mm: float) -> tuple[str, GuidedCam] | None:
-        """A base radius, with a larger distance where none keeps the angles on both discs at this one; a bell crank."""
+    def gentler_size(
+        self, exact: ExactGuided, rising: float, falling: float, mm: float
+    ) -> tuple[str, GuidedCam] | None:
+        """Base radius, and where needed a larger distance, for both pressure angles, rad; None if unknown."""
         from camgeo.cams import least_size
         from camgeo.curve import moving_frame
 
@@ -160,25 +162,25 @@ class Conjugate(Holding):
                 arm = least_size.least_arm(exact.law, guide.arm, guide.side, *angles, second=self.second_arm)
             except IntentError:
                 return None
-            return base_told(cam, arm.prime, mm, arm.pivot)
-        found = base_told(cam, least_size.least_stem(exact.law, rising, falling, guide.offset).prime, mm)
-        if found is None:
+            return base_size(cam, arm.prime, mm, arm.pivot)
+        advised = base_size(cam, least_size.least_stem(exact.law, rising, falling, guide.offset).prime, mm)
+        if advised is None:
             return None
-        told, other = found
-        stem = moving_frame.Translating.on(other.base_radius + cam.touch.radius, guide.offset)
+        sentence, resized = advised
+        stem = moving_frame.Translating.on(resized.base_radius + cam.touch.radius, guide.offset)
         least = least_apart(exact.law, rising, falling, stem)
         if least <= self.apart:
-            return told, other
+            return sentence, resized
         apart = upward(least / mm)
         farther = replace(self, apart=float(apart) * mm)
-        return f"{told} and a {self.key} of {apart}", other.resized(other.base_radius, None, farther)
+        return f"{sentence} and a {self.key} of {apart}", resized.resized(resized.base_radius, None, farther)
 
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:
-        """Of disc 2 a larger distance, or angle."""
+        """For disc 2 the larger distance or angle at which its roller is half the least convex radius."""
         if surface != SECOND:
             return Holding.rounder(self, surface, exact, mm)
         first, second = exact.follower.contacts
-        guide, roller = led_by(second), self.touch.radius
+        guide, roller = centre_guide_of(second), self.touch.radius
         prime = least_round_prime(exact.law.scaled(-1.0), guide, roller)
         if prime is None:
             return ""
@@ -189,22 +191,22 @@ class Conjugate(Holding):
 
 @dataclass(frozen=True)
 class SecondAdvice(RoundAdvice):
-    """Of the roller on disc 2, whose radius alone changes that disc."""
+    """Advice for the roller on disc 2, whose radius changes that disc alone."""
 
     roller: float
 
     @property
     def radius(self) -> float:
-        """Its own."""
+        """Radius of the roller on disc 2, mm."""
         return self.roller
 
     def same_pitch(self, mm: float) -> str:  # noqa: ARG002
-        """Nothing else changes: the pitch curve hangs on the distance."""
+        """Empty: the pitch curve depends on the distance, not on the roller."""
         return ""
 
     @property
     def most_radius(self) -> float:
-        """How near its centre comes to the shaft, mm."""
+        """Least distance of the pitch curve of disc 2 from the shaft, mm."""
         from camgeo.curve.measures import nearest
 
         _, second = self.cam.exact().surfaces
@@ -269,19 +271,19 @@ def _pair_rows(motion: Displacement, rising: float, falling: float) -> list[tupl
 
 
 def _least_apart(rows: Array, offset: float) -> float:
-    """How far apart two contacts on a stem at least are, mm, by the rows of both discs."""
+    """Least distance of two contacts on a stem, mm, by the rows of both discs."""
     needs = rows[:, 2] - rows[:, 1] * offset
     return float(needs[:2].max() + needs[2:].max())
 
 
 def least_apart(motion: Displacement, rising: float, falling: float, stem: moving_frame.Translating) -> float:
-    """How far beyond the roller of a stem the second one at least is, mm, that keeps disc 2's pressure angles (rad)."""
+    """Least distance of the second roller from that of a stem, mm, that keeps the pressure angles of disc 2, rad."""
     rows = np.array(_pair_rows(motion, rising, falling))
     return stem.foot + float((rows[2:, 2] - rows[2:, 1] * stem.offset).max())
 
 
 def opposite_face(motion: Displacement, contact: Contact[Guide, Touch]) -> Face:
-    """The face opposite the first one, over the shaft angle; `motion` is that of the first."""
+    """Face opposite the first one, over the shaft angle; `motion` is that of the first face."""
     from camgeo.curve.disc import StraightFace
 
     guide = contact.guide
@@ -303,28 +305,28 @@ CONJUGATE = mapping(
 
 
 def check_conjugate(cam: Values, reader: Reader) -> None:
-    """Note what does not go with a second disc, and what it lacks."""
-    follower, here = cam.get("follower", {}), "cam.conjugate"
-    kind, arm, given = follower.get("kind", "roller"), "arm" in follower, cam["conjugate"]
+    """Note keys that do not go with a second disc, and those that it lacks."""
+    follower, path = cam.get("follower", {}), "cam.conjugate"
+    kind, arm, conjugate = follower.get("kind", "roller"), "arm" in follower, cam["conjugate"]
     if "track" in cam and cam["track"] != "external":
         reader.fault_at("cam.track", "conjugate discs are followed from outside", None, "leave it out, or conjugate")
         return
     if kind == "knife-edge" or (kind == "flat" and arm):
         remedy = "give a roller, or leave conjugate out"
-        what = "a knife edge" if kind == "knife-edge" else "a flat face on an arm"
-        reader.fault_at("cam.follower.kind", f"{what} has no conjugate disc", None, remedy)
+        touch = "a knife edge" if kind == "knife-edge" else "a flat face on an arm"
+        reader.fault_at("cam.follower.kind", f"{touch} has no conjugate disc", None, remedy)
         return
     if kind == "flat" and follower.get("tilt", 0.0):
         reader.fault_at("cam.follower.tilt", "two faces on conjugate discs stand across the stem", None, "leave it out")
-    wanted = {"length", "angle"} if arm else {"distance"}
+    required = {"length", "angle"} if arm else {"distance"}
     for name in ("distance", "length", "angle"):
-        if name in wanted and name not in given and f"{here}.{name}" not in reader.marks:
-            reader.fault(reader.marks[here], f"{here}.{name}", "missing", None, _WANTED[name])
-        elif name in given and name not in wanted:
-            held = "an arm" if arm else "a stem"
-            reader.fault_at(f"{here}.{name}", f"does not belong to {held}", None, "leave it out")
-    if kind == "flat" and "radius" in given:
-        reader.fault_at(f"{here}.radius", "a flat face has none", None, "leave it out")
+        if name in required and name not in conjugate and f"{path}.{name}" not in reader.marks:
+            reader.fault(reader.marks[path], f"{path}.{name}", "missing", None, _WANTED[name])
+        elif name in conjugate and name not in required:
+            guide = "an arm" if arm else "a stem"
+            reader.fault_at(f"{path}.{name}", f"does not belong to {guide}", None, "leave it out")
+    if kind == "flat" and "radius" in conjugate:
+        reader.fault_at(f"{path}.radius", "a flat face has none", None, "leave it out")
 
 
 _WANTED = {
@@ -335,7 +337,7 @@ _WANTED = {
 
 
 def conjugate_of(values: Values, touch: Touch) -> Conjugate:
-    """Make the second contact of values in which there is no fault; its touch is like the first one."""
+    """The second contact of values without fault; its touch is like the first one."""
     if "radius" in values:
         touch = replace(touch, radius=values["radius"])
     apart = values["angle"] if "angle" in values else values["distance"]

@@ -59,20 +59,20 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
 
     @cached_property
     def half_turn(self) -> Motion:
-        """The lift over the half turn, of a swing over that of the relative angle."""
+        """The lift over the half turn; for a swing over half a turn of the relative angle."""
         return super().half_turn if self.frame_swing is None else self.frame_swing.half_turn
 
     def joints(self) -> tuple[Joint, ...]:
-        """Those of the half turn, or of the swing over the shaft angle, rad."""
+        """Joints of the half turn's motion, or of the swing over the shaft angle, rad."""
         return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
     def kept(self) -> Kept | None:
-        """Distances of the half turn's motion, or of the swing, from the rows of its table."""
+        """How the half turn's motion, or the swing, keeps the rows of its table; None without one."""
         return super().kept() if self.frame_swing is None else self.frame_swing.motion.kept
 
     @property
     def by_linkage(self) -> bool:
-        """Where the frame's swing is given."""
+        """Whether the frame's swing is given."""
         return self.swings
 
     def in_frame(self, ground: float, rocker: float, side: float) -> Cam:
@@ -81,7 +81,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
 
     @cached_property
     def frame_swing(self) -> FrameSwing | None:
-        """The law of the swing, over as much of the shaft as its source tells."""
+        """The law of the swing, over the shaft angles that its source gives; None without a swing."""
         if not self.swings:
             return None
         from kin.law.frame_swing import frame_swing
@@ -93,28 +93,28 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     def _swing(self) -> Motion:
         from kin.law.frame_swing import span_of
 
-        asked, last = self.motion, self.motion.last
-        if isinstance(asked, FormulaMotion):
-            last = span_of(asked.text, asked.scale)
-        motion = asked.motion(math.pi if last is None else last, "swing", None)
-        if asked.covered is not None and abs(rise := float(motion.at_end(0)[0])) < math.pi:
-            wanted = math.pi + rise
+        source, last = self.motion, self.motion.last
+        if isinstance(source, FormulaMotion):
+            last = span_of(source.text, source.scale)
+        motion = source.motion(math.pi if last is None else last, "swing", None)
+        if source.covered is not None and abs(rise := float(motion.at_end(0)[0])) < math.pi:
+            total = math.pi + rise
             # fractions of degrees add up to all but rounding
-            if abs(wanted - asked.covered) <= ROUNDED:
-                motion = asked.motion(wanted, "swing", None)
+            if abs(total - source.covered) <= ROUNDED:
+                motion = source.motion(total, "swing", None)
         return motion
 
     @property
     def advice(self) -> SizeAdvice:
-        """A larger base radius."""
+        """Advice: a larger base radius."""
         return SizeAdvice(gain=1.0)
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle as it was given, which a dwell away from it does not touch."""
+        """The base circle of the recipe; the contour need not touch it."""
         return (Circle("base circle", self.base_radius),)
 
-    def grown(self, out: float, scale: float) -> ConstantBreadthCam:
-        """A larger base circle."""
+    def grow(self, out: float, scale: float) -> ConstantBreadthCam:
+        """The cam with a larger base circle, and scaled."""
         return replace(self, base_radius=scale * (self.base_radius + out))
 
 
@@ -136,7 +136,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     undercut: Undercut = cam.get("undercut", "refuse")
     motion = cam["swing" if "swing" in cam else "motion"]
     return ConstantBreadthCam(cam["base_radius"], motion, undercut, "swing" in cam, preload=build_preload(cam))

@@ -13,7 +13,7 @@ import numpy as np
 from camgeo.cams.family import UNDERCUT, Cam, ExactCam, Family, GrownError, Preload, Undercut
 from camgeo.cams.follower import Follower
 from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
-from camgeo.cams.preload import PRELOAD, build_preload, preloaded
+from camgeo.cams.preload import PRELOAD, build_preload, with_preload
 from camgeo.motions.half_turn import BY_MOTION, MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
@@ -45,33 +45,33 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
 
     @property
     def touch(self) -> Roller:
-        """Both rollers."""
+        """The touch of both rollers."""
         return Roller(self.roller_radius)
 
     @property
     def advice(self) -> RoundAdvice:
-        """In the words of the roller."""
+        """Advice for a round touch."""
         return RoundAdvice(self, larger=LARGER_BASE, less_steep=SMALLER_STROKE)
 
     @property
-    def led(self) -> moving_frame.Translating:
-        """Through the shaft."""
+    def centre_guide(self) -> moving_frame.Translating:
+        """Guide of the first roller's centre: a line through the shaft."""
         from camgeo.curve import moving_frame
 
         return moving_frame.Translating(self.base_radius + self.roller_radius)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """By the displacement of the first roller over a whole turn."""
+        """The cam with the displacement of the first roller over a whole turn, and its preload."""
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        return preloaded(ExactGuided(self, Displacement.of(opposed(self.half_turn))), self.preload)
+        return with_preload(ExactGuided(self, Displacement.of(opposed(self.half_turn))), self.preload)
 
     def follower(self, law: Displacement) -> Follower:
         """A frame with two rollers."""
         s = law.derivatives(np.array([0.0, math.pi]), 0)[0]
         apart = 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
-        contacts = opposite(self.touch, apart, self.led.foot)
+        contacts = opposite(self.touch, apart, self.centre_guide.foot)
         return Follower("roller yoke", contacts, ("constant-diameter", "pressure-angle"), "form-closure")
 
     def resized(  # it has no arm
@@ -80,11 +80,11 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         pivot: float | None = None,  # noqa: ARG002
         holding: Holding | None = None,  # noqa: ARG002
     ) -> ConstantDiameterCam:
-        """With another base radius."""
+        """The cam with another base radius, mm."""
         return replace(self, base_radius=base)
 
-    def grown(self, out: float, scale: float) -> ConstantDiameterCam:
-        """Smaller rollers on the same pitch curve."""
+    def grow(self, out: float, scale: float) -> ConstantDiameterCam:
+        """The cam with smaller rollers on the same pitch curve, and scaled; raises GrownError without any left."""
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
         base, radius = scale * (self.base_radius + out), scale * (self.roller_radius - out)
@@ -108,7 +108,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 

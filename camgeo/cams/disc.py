@@ -1,4 +1,4 @@
-"""Disc cams for one follower: their keys in a recipe, what is checked of them, and the cam they make."""
+"""Disc cams for one follower in a recipe: keys, faults between them, and the cam."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.guided import Holding
 from camgeo.cams.preload import PRELOAD, build_preload
-from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
+from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, find_size
 from camgeo.motions.motion import ByMotion, check_whole_turn, motion_field
 from camgeo.motions.segments import LEAST
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -108,7 +108,7 @@ TABLE = Table(
 
 
 def variant(node: Node) -> Arrangement:
-    """Give the arrangement of a cam as written: its touch, and whether an arm leads it."""
+    """Arrangement of a cam as written: guide, touch and number of discs."""
     follower = entries(node).get("follower") if isinstance(node, Written) else None
     arm = isinstance(follower, Written) and "arm" in entries(follower)
     discs = 2 if isinstance(node, Written) and "conjugate" in entries(node) else 1
@@ -120,7 +120,7 @@ TOUCHES: dict[str, type[Touch]] = {"roller": Roller, "knife-edge": KnifeEdge, "s
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note segments that do not fill the turn, and keys that do not go with an arm or a flat face; find a size."""
+    """Note segments that do not fill the turn, and keys that contradict each other; find the size under `sizing`."""
     if "motion" in cam:
         check_whole_turn(cam["motion"], "cam.motion", reader)
         _check_open(cam, reader)
@@ -136,36 +136,39 @@ def check(cam: Values, reader: Reader) -> None:
         remedy = "give pressure-angle alone, or base_radius in place of sizing"
         reader.fault_at("cam.sizing.radius-of-curvature", "does not size a ring", None, remedy)
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
-        wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
-        reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
+        remedy = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
+        reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, remedy)
     if "conjugate" in cam:
         check_conjugate(cam, reader)
     if "preload" in cam and "cam.conjugate" not in reader.marks:
-        what, remedy = "one contact alone is not preloaded", "give conjugate, or leave preload out"
+        problem, remedy = "one contact alone is not preloaded", "give conjugate, or leave preload out"
         if isinstance(cam.get("track"), dict):
-            what, remedy = "a roller in a groove needs clearance", "for preload take conjugate discs, or leave it out"
-        reader.fault_at("cam.preload", what, None, remedy)
+            problem, remedy = (
+                "a roller in a groove needs clearance",
+                "for preload take conjugate discs, or leave it out",
+            )
+        reader.fault_at("cam.preload", problem, None, remedy)
     if "sizing" in cam and not reader.errors:
         _size(cam, reader)
 
 
 def _check_open(cam: Values, reader: Reader) -> None:
-    """Note what an angle that is to be found lacks: a size, and something that bounds it."""
+    """Note an open angle without a given size, or without limits that bound it."""
     angles = cam["motion"].open
     if angles is None:
         return
-    over = f"cam.motion{'.segments' if 'cam.motion.segments' in reader.marks else ''}[{angles.index(LEAST)}].over"
+    path = f"cam.motion{'.segments' if 'cam.motion.segments' in reader.marks else ''}[{angles.index(LEAST)}].over"
     if "sizing" in cam:
         remedy = "give base_radius in place of sizing, or an angle"
-        reader.fault_at(over, "the size is found for angles that are given", LEAST, remedy)
+        reader.fault_at(path, "the size is found for angles that are given", LEAST, remedy)
     if "limits" not in reader.marks:
         reader.fault_at(
-            over, "nothing bounds it", LEAST, "give limits, such as limits: {pressure-angle: {at_most: 30}}"
+            path, "nothing bounds it", LEAST, "give limits, such as limits: {pressure-angle: {at_most: 30}}"
         )
 
 
 def _size(cam: Values, reader: Reader) -> None:
-    """Find the least size and put it among the values."""
+    """Find the least size and put its cam among the values; note a fault where there is none."""
     from kin.law.programme import IntentError
 
     follower = cam["follower"]
@@ -173,9 +176,9 @@ def _size(cam: Values, reader: Reader) -> None:
     if sizing.angles is None and sizing.radius is None:
         reader.fault_at("cam.sizing", "no limit is given", None, "give pressure-angle, radius-of-curvature or both")
         return
-    start = SizedDiscCam(**_values({**cam, "base_radius": 1.0, "follower": _placed(follower)}), sizing=sizing)
+    start = SizedDiscCam(**_values({**cam, "base_radius": 1.0, "follower": _with_pivot(follower)}), sizing=sizing)
     try:
-        cam["sized"] = sized(start)
+        cam["sized"] = find_size(start)
     except IntentError as error:
         path = f"cam.{error.field}"
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
@@ -186,14 +189,14 @@ def _size(cam: Values, reader: Reader) -> None:
         reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
 
 
-def _placed(follower: Values) -> Values:
-    """The follower with some pivot, where it has an arm and none is given."""
+def _with_pivot(follower: Values) -> Values:
+    """The follower with a provisional pivot, where it has an arm without one."""
     arm = follower.get("arm")
     return follower if arm is None else {**follower, "arm": {"pivot": arm.get("length", 1.0), **arm}}
 
 
 def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized
@@ -201,7 +204,7 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
 
 
 def _values(cam: Values) -> Values:
-    """Fields of the cam of values in which there is no fault."""
+    """Fields of the cam, from values without fault."""
     follower: Values = dict(cam["follower"])
     arm = follower.get("arm")
     if arm is None:
@@ -224,7 +227,7 @@ def _values(cam: Values) -> Values:
 
 
 def _holding(cam: Values, touch: Touch) -> Holding:
-    """What holds the follower on the cam."""
+    """How the follower is held on the cam."""
     if "conjugate" in cam:
         return conjugate_of(cam["conjugate"], touch)
     track = cam.get("track")

@@ -10,8 +10,8 @@ from camgeo.cams.conjugate import opposite_face
 from camgeo.cams.family import Advice, Circle, ExactCam, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
 from camgeo.cams.follower import Follower
-from camgeo.cams.guided import SMALLER_STROKE, ExactGuided, ExactLed, GuidedCam, Holding, RoundAdvice, smaller
-from camgeo.cams.preload import preloaded
+from camgeo.cams.guided import SMALLER_STROKE, ExactGuided, ExactLed, GuidedCam, Holding, RoundAdvice, shrink_touch
+from camgeo.cams.preload import with_preload
 from camgeo.cams.surface import Surface
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Shoe, Translating
@@ -48,25 +48,25 @@ class DiscCam(GuidedCam):
 
     @property
     def arrangement(self) -> Arrangement:
-        """One touch, which a spring, gravity or a groove holds on the cam, or one on each of two discs."""
+        """Guide and touch, with one contact, or one on each of two discs."""
         discs = self.holding.discs
         return Arrangement(type(self.guide), type(self.touch), discs, discs)
 
     @property
     def open(self) -> Open | None:
-        """Angles of its motion that are yet to be found; None where all are given."""
+        """Angles that the motion leaves open; None where all are given."""
         return self.motion.open
 
     def with_motion(self, motion: MotionSource) -> DiscCam:
-        """Give the cam of the same size and follower for another motion."""
+        """The cam of the same size and follower for another motion."""
         return replace(self, motion=motion)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """By the displacement over a whole turn, 0 where it is lowest, with the preload."""
-        return preloaded(self.nominal(), self.preload)
+        """The cam with its displacement over a whole turn, 0 where it is lowest, and its preload."""
+        return with_preload(self.nominal(), self.preload)
 
     def nominal(self) -> ExactCam:
-        """Without the preload."""
+        """The exact cam without its preload."""
         from camgeo.curve.moving_frame import Displacement
 
         law = Displacement.of(self._turn.demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
@@ -83,25 +83,25 @@ class DiscCam(GuidedCam):
         return Contact(self.guide, self.touch, self.datum)
 
     def joints(self) -> tuple[Joint, ...]:
-        """Those of the turn, or of the part of it that repeats."""
+        """Joints of the motion over the turn, or over the part of it that repeats."""
         return self._turn.joints
 
     def kept(self) -> Kept | None:
-        """Distances of the turn's motion from the rows of its table."""
+        """How the motion keeps the rows of its table; None without one."""
         return self._turn.kept
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it
-        """One touch, a contact on every flank; where a face's width is given, it must stay on it."""
+        """The follower with a contact on every flank; `face-width` is checked where a face has a width."""
         checks: tuple[str, ...] = ("pressure-angle",)
         if isinstance(self.touch, Flat):
             checks += ("contact-travel",) if self.touch.width is None else ("contact-travel", "face-width")
         first, name = self._contact(), f"{self.guide.word} {self.touch.word}"
         holding = self.holding
-        return Follower(holding.named(name), holding.contacts(first), checks, holding.closure)
+        return Follower(holding.follower_name(name), holding.contacts(first), checks, holding.closure)
 
     @property
     def datum(self) -> float:
-        """Own position of the contact at displacement 0: foot or level on a line, mm, rest of an arm, rad."""
+        """Position of the contact at displacement 0: foot or level on a line, mm, angle of an arm, rad."""
         match self.guide, self.touch:
             case Translating(offset=offset), Flat(tilt=tilt):
                 return (self.base_radius - offset * math.sin(tilt)) / math.cos(tilt)
@@ -109,16 +109,16 @@ class DiscCam(GuidedCam):
                 from camgeo.curve.disc import rest_of
 
                 return rest_of(self.base_radius, pivot, nearer)
-        return self.led.datum
+        return self.centre_guide.datum
 
     @property
     def advice(self) -> Advice:
-        """In the words of the touch, and of what holds it."""
+        """Remedies by the touch and by the way it is held."""
         return self.holding.advice(self, self.own_advice)
 
     @property
     def own_advice(self) -> Advice:
-        """What would help a cam with one contact."""
+        """Remedies for a cam with one contact."""
         larger, trims = self.holding.larger, self.holding.trims
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else self.holding.beside
@@ -129,7 +129,7 @@ class DiscCam(GuidedCam):
 
     @property
     def radius_field(self) -> str:
-        """What the radius of the touch is called."""
+        """Name of the radius of the touch in advice."""
         return "shoe radius" if isinstance(self.touch, Shoe) else "roller radius"
 
     @property
@@ -145,8 +145,8 @@ class DiscCam(GuidedCam):
         return prime
 
     @property
-    def led(self) -> moving_frame.Guide:
-        """The line of travel, or the arm, of the centre of a round touch."""
+    def centre_guide(self) -> moving_frame.Guide:
+        """Guide of the centre of a round touch: a line of travel, or an arm."""
         from camgeo.curve import moving_frame
 
         if isinstance(self.guide, Translating):
@@ -164,16 +164,16 @@ class DiscCam(GuidedCam):
         return SwingingFace.on(motion, self.base_radius, self.guide.pivot, self.touch.nearer, self.guide.side)
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""
+        """The base circle, tangent to a face at displacement 0, and the prime circle of a round touch."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)
 
     def resized(self, base: float, pivot: float | None = None, holding: Holding | None = None) -> DiscCam:
-        """With another base radius, of an arm another pivot, and perhaps held otherwise."""
+        """The cam with another base radius, another pivot of an arm, mm, and another holding, if given."""
         guide = self.guide if pivot is None or isinstance(self.guide, Translating) else replace(self.guide, pivot=pivot)
         return replace(self, base_radius=base, guide=guide, holding=holding or self.holding)
 
-    def grown(self, out: float, scale: float) -> DiscCam:
-        """A smaller roller on the same pitch curve, or a larger base circle under a face."""
+    def grow(self, out: float, scale: float) -> DiscCam:
+        """The cam with a smaller roller on the same pitch curve, or a larger base circle under a face; scaled."""
         match self.guide:
             case Translating(offset=offset):
                 guide: Guide = Translating(scale * offset)
@@ -185,9 +185,9 @@ class DiscCam(GuidedCam):
             nearer = scale * (touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
             touch = Flat(touch.tilt, None if touch.width is None else scale * touch.width, nearer)
         else:
-            touch = smaller(touch, out, scale)
+            touch = shrink_touch(touch, out, scale)
         base = scale * (self.base_radius + more)
-        holding = self.holding.grown(out, scale, flat=isinstance(touch, Flat))
+        holding = self.holding.grow(out, scale, flat=isinstance(touch, Flat))
         return replace(self, base_radius=base, guide=guide, touch=touch, holding=holding)
 
 

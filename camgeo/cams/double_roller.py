@@ -30,32 +30,32 @@ ARRANGEMENT = Arrangement(Oscillating, Roller, 2)
 
 @dataclass(frozen=True)
 class RollerPairAdvice(PairAdvice):
-    """Of two rollers: smaller ones."""
+    """Advice for two rollers: smaller ones."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A smaller roller."""
+        """Radius of rollers without undercut."""
         if not free_at / mm > 0.0:
             return "no roller radius is proved to have no undercut"
         return f"a roller radius below {downward(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """A smaller roller."""
+        """Radius of rollers with the wanted radius of curvature; empty without one above 0."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
 
 @dataclass(frozen=True)
 class ArmPressure:
-    """Angle between the normal and the way of a roller's arm; each of both rollers runs round the whole pitch curve."""
+    """Pressure angle of a roller on an arm; each of both rollers runs round the whole pitch curve."""
 
     law: Transmission
     base: Curve
 
     def __call__(self, t: Array) -> Array:
-        """At parameters t (n,), rad."""
-        at, phi = self.base.sample(t), self.law.at(t, 0)[0][0]
-        arm = at.point - self.law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
+        """Angle between the normal and the path of the roller, rad (n,), at parameters t (n,), rad."""
+        frame, phi = self.base.sample(t), self.law.at(t, 0)[0][0]
+        arm = frame.point - self.law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
         arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
-        normal = at.normal
+        normal = frame.normal
         across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
         angle: Array = np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across)
         return angle
@@ -78,16 +78,16 @@ class DoubleRollerCam(PairCam):
 
     @property
     def touch(self) -> Roller:
-        """Both rollers."""
+        """The touch of both rollers."""
         return Roller(self.roller_radius)
 
     @property
     def advice(self) -> RollerPairAdvice:
-        """Without a swing the normal points to the shaft; the arm is at alpha/2 to it, alpha = 180 mu/lambda."""
+        """Advice, with the pressure angle of a cam without swing: 90 degrees less alpha/2, alpha = 180 mu/lambda."""
         return RollerPairAdvice(self, least_pressure_angle=90.0 * (1.0 - self.mu / self.lam))
 
     def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002
-        """Two rollers on one arm, its pivot as far from the shaft as from them."""
+        """The follower: two rollers on one arm, its pivot as far from the shaft as from them."""
         checks = (*self.law_checks, "pressure-angle")
         contacts = on_one_arm(self.arm, self.arm, self.touch, math.pi, law.alpha)
         return Follower("double roller", contacts, checks, "form-closure")
@@ -101,11 +101,11 @@ class DoubleRollerCam(PairCam):
         return Surface(base, curve, self.roller_radius, pressure=ArmPressure(law, base))
 
     def circles(self) -> tuple[Circle, ...]:
-        """The prime circle, and the pivot's."""
+        """The prime circle, and the circle of the pivot."""
         return (Circle("prime circle"), Circle("pivot circle", self.arm))
 
-    def grown(self, out: float, scale: float) -> DoubleRollerCam:
-        """A smaller roller on the same pitch curve."""
+    def grow(self, out: float, scale: float) -> DoubleRollerCam:
+        """The cam with smaller rollers on the same pitch curve, and scaled; raises GrownError without any left."""
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
         return replace(self, arm=scale * self.arm, roller_radius=scale * (self.roller_radius - out))
@@ -118,7 +118,7 @@ TABLE = pair_table(
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     (lam, mu), undercut = cam["ratio"], cam.get("undercut", "refuse")
     route, preload = build_route(cam, mm), build_preload(cam)
     return DoubleRollerCam(lam, mu, cam["arm"], cam["roller_radius"], route, undercut, preload)

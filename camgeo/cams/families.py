@@ -1,4 +1,4 @@
-"""The families there are: a new one is its file and its name here. One is imported when a recipe is of it."""
+"""The families of cams by kind, each imported on first use; a new one is its file and its kind here."""
 
 from __future__ import annotations
 

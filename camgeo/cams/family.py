@@ -1,7 +1,7 @@
-"""What every family of cams gives: a recipe's cam that knows its motion, its follower, its exact curve and its advice.
+"""What every family of cams implements: the cam of a recipe, its exact form, and advice.
 
-The rest of the package asks a cam by these names and never which family it is of. A cam is what a recipe says; an exact
-cam is what it is once its motion is known, and keeps the law of that to itself.
+The rest of the package uses these names alone, whatever the family. `Cam` holds what a recipe says; `ExactCam` is that
+cam with its motion worked out.
 """
 
 from __future__ import annotations
@@ -53,27 +53,27 @@ UNDERCUT = Field(
 
 
 class Circle(NamedTuple):
-    """A circle about the shaft that a drawing shows for reference; `radius` None for that of the curve's least one."""
+    """A reference circle about the shaft in drawings, radius in mm; None stands for the curve's least distance."""
 
     name: str
     radius: float | None = None
 
 
 class Margin(NamedTuple):
-    """A distance from trouble, at which it is 0: its name, value, unit, and what happens there."""
+    """A distance from a limit of what is possible: name, value (0 at the limit), unit, and what happens there."""
 
     name: str
     value: float
     unit: str
-    of: str
+    event: str
 
 
 class GrownError(CamgeoError, ValueError):
-    """A follower of which nothing would be left."""
+    """A follower with a radius of which nothing would be left; its arguments are that radius's name and value, mm."""
 
 
 class Proof(NamedTuple):
-    """What holds of a motion, or not: value and limit in a unit, and the shaft angle in degrees."""
+    """Result of a check of the motion: whether it holds, value and limit in a unit, and the shaft angle in degrees."""
 
     ok: bool
     value: float
@@ -84,16 +84,15 @@ class Proof(NamedTuple):
 
 @dataclass(frozen=True)
 class Advice(ABC):
-    """What would help, in the words of a recipe; `mm` is always its unit of length.
+    """Remedies for failed checks, in the words of a recipe; `mm` is its unit of length, mm.
 
-    gain                  by how much the follower is off per mm of the contour's error, None where that differs
+    gain                  error of the follower by that of the contour, None where it varies
     least_pressure_angle  pressure angle without any motion, degrees: no smaller stroke stays below it
-    larger                what size of the cam, made larger, makes the pressure angle less; empty where none does
+    larger                the size that makes the pressure angle less when it grows; empty without one
     less_steep            what makes the motion less steep; empty where the recipe gives no stroke
-    less_swing            how the follower comes to swing less
-    radius_field          what the radius of the touch is called
+    radius_field          name of the radius of the touch
     trims                 whether undercut may be cut off
-    others                what would help on surfaces where that is something else, by their names
+    others                advice for surfaces that need another, by their names
     """
 
     gain: float | None = field(default=None, kw_only=True)
@@ -105,7 +104,7 @@ class Advice(ABC):
     others: Mapping[str, Advice] = field(default_factory=dict, kw_only=True)
 
     def on(self, surface: str) -> Advice:
-        """What would help on a surface."""
+        """Advice for a surface, by its name."""
         return self.others.get(surface, self)
 
     @property
@@ -115,39 +114,39 @@ class Advice(ABC):
 
     @abstractmethod
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Say what would be free of undercut; `free_at` (mm) is a roller's radius, or what radii must grow by."""
+        """Remedy for undercut; `free_at`, mm, is the roller's radius without it, or the growth that radii need."""
 
     @abstractmethod
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Say what would raise the least radius of curvature from a value to a limit, in the recipe's unit."""
+        """Remedy that raises the least radius of curvature from a value to a limit, both in the recipe's unit."""
 
     def same_pitch(self, mm: float) -> str:  # noqa: ARG002
-        """Say what else changes with the roller's radius, so that the pitch curve stays; empty where nothing does."""
+        """What must change with the roller's radius to keep the pitch curve; empty where nothing must."""
         return ""
 
     @property
     def most_radius(self) -> float:
-        """Radius of a touch, mm, that leaves no base circle on the same pitch curve; infinite where any does."""
+        """Radius of a touch, mm, from which on the same pitch curve has no base circle; infinite where any has."""
         return math.inf
 
-    def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
-        """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
+    def chosen_size(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
+        """The size chosen where the recipe leaves it open, and what bounds it; empty where it is given."""
         return ""
 
     def wider_face(self, width: float, mm: float) -> str:  # noqa: ARG002 - a round tappet's has lengths of its own
-        """Say which face has a width, in the recipe's unit."""
+        """Remedy for a face that is too narrow: one that has a width, in the recipe's unit."""
         return f"a follower.width of {upward(width)}"
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
-        """Say how the follower comes to swing less."""
+        """Remedy for a follower that swings too far."""
         return "a smaller swing"
 
 
 @dataclass(frozen=True)
 class Preload:
-    """What both contacts together overlap the metal by, mm, and the stiffness of each along its normal, N/m.
+    """Preload by interference: overlap of both contacts together with the metal, mm; stiffness of each normal, N/m.
 
-    `stiffness` is None where no force is asked for; `shares` of the interference stand on the metal of each contact.
+    `stiffness` is None where no force is wanted; `shares` of the interference belong to each contact.
     """
 
     interference: float
@@ -156,18 +155,18 @@ class Preload:
 
     @property
     def overlaps(self) -> tuple[float, float]:
-        """By how much each contact overlaps the metal that it touches, mm, the follower being where it is meant to."""
+        """Overlap of each contact with its metal, mm, with the follower at its intended position."""
         first, second = self.shares
         return first * self.interference, second * self.interference
 
 
 class Linear(ABC):
-    """A cam that is linear in harmonics of its support function and in the shaft's place."""
+    """A cam as a linear function of harmonics of its support function and of the shaft's place."""
 
     @property
     @abstractmethod
     def shaft(self) -> tuple[float, float]:
-        """The shaft in the axes in which the cam is given, mm."""
+        """Place of the shaft (x, y) in the axes of the support function, mm."""
 
     @abstractmethod
     def about_origin(self) -> Cam:
@@ -175,15 +174,15 @@ class Linear(ABC):
 
     @abstractmethod
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
-        """Order, whether of a sine, and scale of the harmonic whose size stands at a path; order 0 for the mean."""
+        """Order (0 for the mean), whether a sine, and scale of the harmonic of a field's path; None for others."""
 
     @abstractmethod
-    def silent(self, orders: set[tuple[int, bool]]) -> Cam:
-        """The same cam without these harmonics (order, whether of a sine)."""
+    def without_harmonics(self, orders: set[tuple[int, bool]]) -> Cam:
+        """The same cam with these harmonics (order, whether a sine) set to 0; the mean radius stays."""
 
 
 class ExactCam(ABC):
-    """What a cam is once its motion is known; figures are found where they are asked for, and once.
+    """A cam with its motion worked out; figures are computed on first use.
 
     Raises IntentError, with the field below `cam` that is at fault, where a guide or a face cannot follow the motion.
     """
@@ -196,12 +195,12 @@ class ExactCam(ABC):
 
         @property
         def law(self) -> Lift | Displacement | Transmission:
-            """The law of the motion: nobody asks of which kind it is."""
+            """The law of the motion."""
 
     @property
     @abstractmethod
     def follower(self) -> Follower:
-        """The follower that the motion calls for."""
+        """The follower for this motion."""
 
     @property
     @abstractmethod
@@ -215,12 +214,12 @@ class ExactCam(ABC):
 
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
-        """What kin judges surfaces by, each by its name: a follower made of the same contacts by kin's own means."""
+        """Followers by which kin judges files, by the name of the surface; made from the contacts alone."""
         return self._followers(self.follower.contacts)
 
     @cached_property
     def running(self) -> dict[str, Gauge]:
-        """The follower itself on each surface, where gauges are wider; empty where they are not."""
+        """The real follower on each surface, where the gauges are wider than it; empty where they are not."""
         follower = self.follower
         contacts = [replace(contact, touch=follower.running(contact)) for contact in follower.contacts]
         return {} if tuple(contacts) == follower.contacts else self._followers(contacts)
@@ -232,13 +231,13 @@ class ExactCam(ABC):
 
     @property
     def gauge(self) -> Gauge:
-        """What kin judges the first surface by."""
+        """The gauge of the first surface."""
         return self.gauges[self.surfaces[0].name]
 
     @property
     @abstractmethod
     def judged_law(self) -> Piecewise | Transmission:
-        """The law as kin's followers take it."""
+        """The law for kin's followers."""
 
     @property
     def breaks(self) -> Array:
@@ -247,7 +246,7 @@ class ExactCam(ABC):
 
     @property
     def rounding(self) -> float:
-        """By how much the law may be off through the rounding of a recipe's own formula; 0 where there is none."""
+        """Rounding error of the law through a recipe's own formula, mm or rad; 0 without one."""
         return self.law.rounding
 
     @property
@@ -261,11 +260,11 @@ class ExactCam(ABC):
         return self.cam.kept()
 
     def circles(self, surface: str) -> tuple[Circle, ...]:  # noqa: ARG002 - most have one disc
-        """Circles about the shaft for a drawing of the disc with a surface."""
+        """Reference circles in drawings of the disc with a surface."""
         return self.cam.circles()
 
     def steepest(self, surface: Surface) -> tuple[Extreme, Extreme] | None:
-        """Greatest tangents of a surface's pressure angle on the follower's rise and return; None of none proved."""
+        """Greatest tangents of the pressure angle on the follower's rise and return; None where none is proved."""
         slope = surface.extremes("slope")
         if slope is None:
             return None
@@ -280,40 +279,40 @@ class ExactCam(ABC):
 
     @property
     def margins(self) -> list[Margin]:
-        """How far the motion is from where it would not exist."""
+        """Distances of the motion from the limits beyond which it does not exist."""
         return []
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """How checks of the motion that hang on its law are made, by their names."""
+        """Checks of the motion that depend on its law, by their names."""
         return {}
 
     @property
     def free(self) -> bool:
-        """Whether nothing undercuts it, whatever the motion: a parallel outside a convex surface."""
+        """Whether no motion can undercut it, as of a parallel outside a convex surface."""
         return False
 
     @property
     def preload(self) -> Preload | None:
-        """The interference that its contacts have, None of those that have none."""
+        """Preload of the contacts, None without one."""
         return None
 
     @property
     def plate(self) -> Lift | None:
-        """Support function of a plate that a linkage can carry, None of other cams."""
+        """Support function of a plate that a linkage can carry; None for other cams."""
         return None
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:  # noqa: ARG002
-        """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known."""
+        """The size, in words, and the cam that keep the pressure angle below both angles, rad; None if unknown."""
         return None
 
     def rounder_pitch(self, surface: str, mm: float) -> str:  # noqa: ARG002
-        """Say what makes a surface's roller half the pitch curve's least convex radius; empty where nothing rolls."""
+        """The size, in words, at which a surface's roller is half the pitch curve's least convex radius; else empty."""
         return ""
 
     @abstractmethod
-    def grown(self, out: float, scale: float) -> ExactCam:
-        """The cam with its metal grown by `out` mm and then scaled, by the motion that its follower then feels.
+    def grow(self, out: float, scale: float) -> ExactCam:
+        """The cam with its metal grown by `out` mm and then scaled, with the motion of the follower on it.
 
         Raises GrownError where the follower would be nothing.
         """
@@ -328,22 +327,22 @@ class Cam(ABC):
     @property
     @abstractmethod
     def arrangement(self) -> Arrangement:
-        """Guide, touch and greatest number of contacts: units, and what figures may be taken."""
+        """Guide, touch and greatest number of contacts; they decide units and figures."""
 
     if TYPE_CHECKING:  # a field of some families, which an abstract property would be the default of
 
         @property
         def touch(self) -> Touch:
-            """What touches the cam."""
+            """The touch of the follower: a roller, shoe, knife edge or flat face."""
 
     @property
     def side(self) -> Side:
-        """On which side of the contour the metal lies: 1 inside, -1 outside, as of a ring."""
+        """Side of the contour on which the metal lies: 1 inside, -1 outside, as of a ring."""
         return 1
 
     @abstractmethod
     def exact(self, *, framed: bool = False) -> ExactCam:
-        """The cam by its motion, `framed` where a linkage carries it.
+        """The cam with its motion worked out; `framed` where a linkage carries it.
 
         Raises kin's IntentError with the field below `cam` that is at fault.
         """
@@ -351,7 +350,7 @@ class Cam(ABC):
     @property
     @abstractmethod
     def advice(self) -> Advice:
-        """What would help."""
+        """Remedies in the words of the recipe."""
 
     def kept(self) -> Kept | None:
         """How the motion keeps the rows of the recipe's table, mm or rad; None without a table."""
@@ -359,12 +358,12 @@ class Cam(ABC):
 
     @property
     def motion_span(self) -> float:
-        """Shaft angle, rad, over which a recipe gives the motion; that of the rest of the turn follows from it."""
+        """Shaft angle, rad, over which a recipe gives the motion; the rest of the turn follows from it."""
         return TURN
 
     @property
     def linear(self) -> Linear | None:
-        """The harmonics that the cam is linear in, None where it is given otherwise."""
+        """The cam as a linear function of harmonics; None for cams that are none."""
         return None
 
     @property
@@ -373,44 +372,44 @@ class Cam(ABC):
         return False
 
     def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002
-        """The cam told of the links that its square frame slides on (`kin.law.frame_swing`), mm."""
+        """The cam with the links, mm, that its square frame slides on (`kin.law.frame_swing`)."""
         return self
 
     @property
     def frame_swing(self) -> FrameSwing | None:
-        """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
+        """The law by which the frame swings over the shaft angle; None where the recipe gives none."""
         return None
 
     @property
     def sizes(self) -> Mapping[str, float]:
-        """What was found in place of a size that the recipe leaves open, mm, by the keys below `cam` that take it."""
+        """Sizes chosen where the recipe leaves them open, mm, by their keys below `cam`."""
         return {}
 
     @property
     def open(self) -> Open | None:
-        """Angles of its motion that are yet to be found, before there is an exact cam; None where all are given."""
+        """Angles that the motion leaves open, to be settled before `exact`; None where all are given."""
         return None
 
     def with_motion(self, motion: MotionSource) -> Cam:
-        """Give the same cam with another motion; raises TypeError for one that has no angle to be found."""
+        """The same cam with another motion; raises TypeError for a family that leaves no angle open."""
         raise TypeError(f"{self.kind}: no {motion}")
 
     def circles(self) -> tuple[Circle, ...]:
-        """Circles about the shaft for a drawing to show."""
+        """Reference circles about the shaft in drawings."""
         return ()
 
-    def refusing(self) -> Cam:
+    def refusing_undercut(self) -> Cam:
         """The same cam with undercut refused."""
         return replace(self, undercut="refuse")  # type: ignore[type-var]  # every family is a dataclass
 
 
 @dataclass(frozen=True)
 class Family:
-    """How a family stands in a recipe.
+    """A family in a recipe.
 
     `table` has its keys; `check` notes the faults between them, `build` makes the cam of values without fault and the
-    unit of length in mm. `variant` looks, where that decides, at the cam as written for the arrangement of it.
-    `by_motion` are the keys by which it is given by a motion, None where it is not.
+    unit of length in mm. `variant` gives the arrangement of a cam as written, where that decides. `by_motion` has the
+    keys of a cam by its motion, None for a family without one.
     """
 
     kind: str
@@ -422,5 +421,5 @@ class Family:
     by_motion: ByMotion | None = None
 
     def of(self, node: Node | None) -> Arrangement:
-        """Give the arrangement of a cam as written, which says its units and what figures may be taken of it."""
+        """Arrangement of a cam as written, None for the usual one; it decides units and figures."""
         return self.variant(node) if self.variant and node is not None else self.arrangement

@@ -1,4 +1,4 @@
-"""What cams for flat faces have in common, above all where the lift is the support function of the contour."""
+"""Cams for flat faces whose lift is the support function of the contour, and advice for all flat faces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import Advice, Cam, ExactCam, Proof
 from camgeo.cams.follower import Follower
-from camgeo.cams.preload import preloaded
+from camgeo.cams.preload import with_preload
 from camgeo.cams.surface import Surface
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
@@ -38,9 +38,9 @@ STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however shor
 
 @dataclass(frozen=True)
 class SizeAdvice(Advice):
-    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius.
+    """Advice for a flat face: a larger cam. `size` is the key that enlarges it, by `share` per unit of radius.
 
-    `beyond` is as of the cam, for a round tappet.
+    `beyond` is how far the lobe reaches from the axis of a round tappet, mm; `beside` and `free` end the sentences.
     """
 
     size: str = "base radius"
@@ -50,23 +50,23 @@ class SizeAdvice(Advice):
     free: str = "have no undercut"
 
     def wider_face(self, width: float, mm: float) -> str:
-        """The width, or the diameter of a round tappet that has it at the lobe's farther edge."""
+        """Width of the face, or diameter of a round tappet that has this width at the lobe's farther edge."""
         across = upward(math.hypot(width, 2.0 * self.beyond / mm))
         return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
-    def enlarged(self, by: float, unit: str = "") -> str:
-        """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
-        if by == 0.0:  # a radius that is 0 needs no more than not to be
+    def enlarge(self, growth: float, unit: str = "") -> str:
+        """A larger size, in words, that raises all radii of curvature by more than `growth`, in `unit`."""
+        if growth == 0.0:  # a radius that is 0 needs no more than not to be
             return f"a larger {self.size}{self.beside}"
-        return f"{f'a {self.size} larger by more than {upward(self.share * by)} {unit}'.rstrip()}{self.beside}"
+        return f"{f'a {self.size} larger by more than {upward(self.share * growth)} {unit}'.rstrip()}{self.beside}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A larger cam."""
-        return f"{self.enlarged(free_at / mm)} would {self.free}"
+        """A size without undercut, in words."""
+        return f"{self.enlarge(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """A larger cam."""
-        return self.enlarged(limit - value, unit)
+        """A size with the wanted radius of curvature, in words."""
+        return self.enlarge(limit - value, unit)
 
 
 class FlatFacedCam(Cam):
@@ -83,19 +83,19 @@ class FlatFacedCam(Cam):
 
     @property
     def touch(self) -> Flat:
-        """A face as wide as it needs to be."""
+        """A flat face without a given width."""
         return Flat()
 
     @abstractmethod
     def lift(self) -> Lift:
-        """Distance of the face from the shaft over the shaft angle."""
+        """Distance of the face from the shaft over the shaft angle, mm."""
 
     def exact(self, *, framed: bool = False) -> ExactCam:
-        """By its support function."""
-        return preloaded(ExactLifted(self, self.lift(), framed), self.preload)
+        """The cam with its support function, and its preload."""
+        return with_preload(ExactLifted(self, self.lift(), framed), self.preload)
 
     def joints(self) -> tuple[Joint, ...]:
-        """Where derivatives of the motion that a recipe gives jump."""
+        """Angles at which derivatives of the recipe's motion jump."""
         return ()
 
     def surface(self, whole: Curve) -> Surface:
@@ -103,13 +103,13 @@ class FlatFacedCam(Cam):
         return Surface(whole, whole)
 
     @abstractmethod
-    def grown(self, out: float, scale: float) -> FlatFacedCam:
-        """The cam as far as its own lengths are drawn, the metal grown by `out` mm and then scaled."""
+    def grow(self, out: float, scale: float) -> FlatFacedCam:
+        """The cam with its metal grown by `out` mm and then scaled, as far as drawings use its own lengths."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExactLifted(ExactCam):
-    """Such a cam by its lift; `contacts` are those of the cam that this one is grown from."""
+    """A flat-faced cam with its lift; `contacts` are given for a cam grown from another, else they follow."""
 
     cam: FlatFacedCam
     law: Lift
@@ -136,7 +136,7 @@ class ExactLifted(ExactCam):
 
     @cached_property
     def motion(self) -> Position:
-        """The lift."""
+        """Lift of the face from its datum."""
         return LiftPosition(self.law, self.law.datum)
 
     @cached_property
@@ -149,39 +149,39 @@ class ExactLifted(ExactCam):
 
     @property
     def judged_law(self) -> Piecewise:
-        """The lift."""
+        """The lift, by pieces."""
         return self.law.law
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """Those that the recipe gives."""
+        """Joints of the recipe's motion."""
         return self.cam.joints()
 
     @property
     def plate(self) -> Lift:
-        """The lift."""
+        """The lift as the support function of a plate."""
         return self.law
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """That of a yoke's breadth."""
+        """The check of a yoke's breadth."""
         return {"constant-breadth": self._constant_breadth}
 
     def _constant_breadth(self) -> Proof:
         """Constancy of the breadth, for a yoke (AS eq. 4)."""
-        mean, deviation, at = self._breadth
+        mean, deviation, place = self._breadth
         limit = SAME_BREADTH * abs(mean)
-        return Proof(deviation <= limit, deviation, limit, "mm", degrees(at))
+        return Proof(deviation <= limit, deviation, limit, "mm", degrees(place))
 
-    def grown(self, out: float, scale: float) -> ExactLifted:
-        """The face farther out."""
+    def grow(self, out: float, scale: float) -> ExactLifted:
+        """The cam with its faces farther out, and scaled."""
         first, *second = self.follower.contacts
-        held = (first, *(replace(one, datum=scale * (one.datum + 2.0 * out)) for one in second))
-        return ExactLifted(self.cam.grown(out, scale), self.law.moved(out, scale), self.framed, held)
+        contacts = (first, *(replace(contact, datum=scale * (contact.datum + 2.0 * out)) for contact in second))
+        return ExactLifted(self.cam.grow(out, scale), self.law.moved(out, scale), self.framed, contacts)
 
 
 def breadth_of(lift: Lift) -> tuple[float, float, float]:
-    """Mean breadth p(t) + p(t + pi) in mm, the greatest deviation from it, and where in radians."""
+    """Mean breadth p(t) + p(t + pi), mm, its greatest deviation from the mean, mm, and the angle of that, rad."""
     t = spread(np.mod(lift.breaks, math.pi), math.pi)
     p = lift.derivatives(np.concatenate([t, t + math.pi]), 0)[0]  # continuous: one side of a break will do
     breadth = p[: len(t)] + p[len(t) :]
@@ -191,12 +191,12 @@ def breadth_of(lift: Lift) -> tuple[float, float, float]:
 
 
 def is_constant_breadth(lift: Lift) -> bool:
-    """Whether a yoke of two parallel faces fits the cam; else it works a single flat face."""
+    """Whether a yoke of two parallel faces fits the cam."""
     return is_constant(*breadth_of(lift)[:2])
 
 
 def is_constant(mean: float, deviation: float) -> bool:
-    """Whether a breadth that deviates from its mean by so much is constant."""
+    """Whether a breadth with this mean and greatest deviation counts as constant."""
     return deviation <= SAME_BREADTH * abs(mean)
 
 

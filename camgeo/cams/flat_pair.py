@@ -24,14 +24,14 @@ ARRANGEMENT = Arrangement(Oscillating, Flat, 2)
 
 @dataclass(frozen=True)
 class FacePairAdvice(PairAdvice):
-    """Of two faces: a smaller swing, as r + const closes no pair, so there is no base radius to enlarge."""
+    """Advice for two faces: a smaller swing, as a larger base radius r + const closes no pair."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
-        """A smaller swing."""
+        """A swing without undercut, in words."""
         return f"{self.less_swing(mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Nothing that is known to help."""
+        """Empty: no remedy is known."""
         return ""
 
 
@@ -51,32 +51,32 @@ class FlatPairCam(PairCam):
 
     @property
     def touch(self) -> Flat:
-        """Both faces."""
+        """The touch of both faces."""
         return Flat()
 
     @property
     def advice(self) -> FacePairAdvice:
-        """In the words of the pair."""
+        """Advice for the pair."""
         return FacePairAdvice(self)
 
     def follower(self, law: Transmission, out: float) -> Follower:
-        """Two faces whose lines pass through their pivot, or `out` beside it."""
+        """The follower: two faces whose lines pass the pivot at a distance of `out`, mm."""
         contacts = on_one_arm(2.0 * self.arm, None, Flat(nearer=-out), 0.5 * math.pi, 0.5 * law.alpha)
         return Follower("flat pair", contacts, self.law_checks, "form-closure")
 
     def surface(self, law: Transmission, out: float) -> Surface:
-        """The curve with an isoptic circle (W section 5), or a parallel to it."""
+        """The curve with an isoptic circle (W 1984, section 5), or its parallel at `out`, mm."""
         from camgeo.curve.wunderlich import FlatPairShape
 
         whole = Curve.whole(FlatPairShape(law))
         return Surface(whole, Curve.whole(Parallel(whole.shape, -out)) if out else whole)
 
     def circles(self) -> tuple[Circle, ...]:
-        """The pivot's."""
+        """The circle of the pivot."""
         return (Circle("pivot circle", 2.0 * self.arm),)
 
-    def grown(self, out: float, scale: float) -> FlatPairCam:  # noqa: ARG002 - the faces stand beside by it
-        """The same pair farther away."""
+    def grow(self, out: float, scale: float) -> FlatPairCam:  # noqa: ARG002 - the faces stand beside by it
+        """The pair with its arm scaled."""
         return replace(self, arm=scale * self.arm)
 
 
@@ -84,7 +84,7 @@ TABLE = pair_table("swing of the pair, psi/2, over 180/lambda degrees of shaft a
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     lam, mu = cam["ratio"]
     undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
     return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), undercut, preload)

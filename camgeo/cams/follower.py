@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Follower:
-    """What follows the disc: the name in reports, its contacts, the checks of its intended motion in their order.
+    """A follower: its name in reports, its contacts, the checks of its intended motion in their order.
 
     `closure` is the name of the check of files on what is left between the cam and a follower that is held from both
     sides, empty for other followers.
@@ -27,7 +27,7 @@ class Follower:
 
     @property
     def arrangement(self) -> Arrangement:
-        """Guide and touch of its contacts, and in how many places they are: one roller may touch two surfaces."""
+        """Guide and touch of the contacts, and number of their places: one roller may touch two surfaces."""
         first = self.contacts[0]
         places, surfaces = {contact.place for contact in self.contacts}, {contact.surface for contact in self.contacts}
         return Arrangement(type(first.guide), type(first.touch), len(places), min(len(places), len(surfaces)))
@@ -37,12 +37,12 @@ class Follower:
         return next(contact.sense for contact in self.contacts if contact.surface == surface)
 
     def running(self, contact: Contact[Guide, Touch]) -> Touch:
-        """The touch that runs where a contact is: that of the first one there, where a flank's gauge is wider."""
+        """The real touch at the place of a contact, where the gauge of a flank is wider."""
         return next(first.touch for first in self.contacts if first.place == contact.place)
 
     @property
     def width(self) -> float | None:
-        """How wide a flat face is, mm, centred on the axis of its stem; None of one as wide as it needs to be."""
+        """Width of a flat face, mm, centred on the axis of its stem; None where none is given."""
         touch = self.contacts[0].touch
         return touch.width if isinstance(touch, Flat) else None
 

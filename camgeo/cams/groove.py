@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Groove(Holding):
-    """A groove: its width less the roller's diameter, and its depth from the top face, None where none is given; mm."""
+    """A groove: `clearance`, its width less the roller's diameter, mm, and depth from the top face, mm, if given."""
 
     closure: ClassVar[str] = "form-closure"
     trims: ClassVar[bool] = False
@@ -34,7 +34,7 @@ class Groove(Holding):
     depth: float | None = None
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:  # noqa: ARG002 - the metal lies on both
-        """The inner one, which pushes the roller out, and the outer one, which stops it."""
+        """The inner flank, which pushes the roller out, and the outer one, which pulls it back."""
         inner, outer = touch.radius, touch.radius + self.clearance
         return (
             Flank("inner", 1, inner, "GROOVE_INNER", self.depth),
@@ -42,16 +42,16 @@ class Groove(Holding):
         )
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
-        """One roller on either flank, as wide as the gauge that judges it."""
+        """A contact on either flank, with the radius of the gauge that judges it."""
         flanks = self.flanks(first.touch, 1)
         return tuple(replace(first, touch=Roller(flank.radius), surface=flank.name) for flank in flanks)
 
-    def grown(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
-        """The groove drawn larger."""
+    def grow(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
+        """The groove scaled."""
         return Groove(clearance=scale * self.clearance, depth=None if self.depth is None else scale * self.depth)
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:
-        """A roller smaller by the clearance, unless the size is found."""
+        """Advice with a roller smaller by the clearance, unless `sizing` gives the size."""
         if not isinstance(own, RoundAdvice):
             return own
         return GrooveAdvice(cam, self.clearance, larger=own.larger, less_steep=own.less_steep, trims=own.trims)
@@ -59,16 +59,16 @@ class Groove(Holding):
 
 @dataclass(frozen=True)
 class GrooveAdvice(RoundAdvice):
-    """Of a roller between flanks: what frees the outer one's gauge frees it of a roller smaller by the clearance."""
+    """Advice for a roller between flanks: that for the outer flank's gauge, less the clearance."""
 
     clearance: float = 0.0
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A smaller roller on the same pitch curve."""
+        """Radius of a roller without undercut, in words."""
         return super().free_of_undercut(free_at - self.clearance, mm)
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """A smaller roller on the same pitch curve."""
+        """Radius of a roller with the wanted radius of curvature, in words."""
         return super().rounder(value - self.clearance / (25.4 if unit == "in" else 1.0), limit, unit)
 
 

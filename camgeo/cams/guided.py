@@ -1,4 +1,4 @@
-"""What cams for a roller, shoe or knife edge on a guide have in common: the path of its centre, a parallel, advice.
+"""Cams for a roller, shoe or knife edge on a guide: the path of its centre, the parallel contour, and advice.
 
 The pitch curve is `camgeo.curve.moving_frame.CentreShape`, its parameter the shaft angle.
 """
@@ -38,13 +38,13 @@ MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet roun
 
 @dataclass(frozen=True)
 class RoundAdvice(Advice):
-    """Of a round touch: a smaller radius on the same pitch curve."""
+    """Advice for a round touch: a smaller radius on the same pitch curve."""
 
     cam: GuidedCam
 
     @property
     def radius(self) -> float:
-        """That of the cam's touch."""
+        """Radius of the roller or shoe, mm; 0 for a knife edge."""
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
@@ -59,20 +59,20 @@ class RoundAdvice(Advice):
         return f"a {self.radius_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
 
     def same_pitch(self, mm: float) -> str:
-        """The base radius that leaves the prime circle as it is."""
+        """The base radius that keeps the prime circle, in words."""
         word = "less" if self.cam.side > 0 else "and"
-        return f" with a base radius of {self.cam.led.prime / mm:.12g} {word} that radius"
+        return f" with a base radius of {self.cam.centre_guide.prime / mm:.12g} {word} that radius"
 
     @property
     def most_radius(self) -> float:
-        """That of the prime circle, of a cam within it."""
-        return self.cam.led.prime if self.cam.side > 0 else math.inf
+        """Radius of the prime circle, mm; infinite for a ring."""
+        return self.cam.centre_guide.prime if self.cam.side > 0 else math.inf
 
 
 class Flank(NamedTuple):
-    """A surface beside a centre's path: its name, the side of its metal, what radius judges it, where it stands.
+    """A surface beside a centre's path: its name, the side of its metal and the radius of its gauge, mm.
 
-    That is the layer of drawings, its depth from the top face, mm, and the rank of its disc.
+    `layer` is that of drawings, `depth` reaches down from the top face, mm, `disc` counts the discs from 0.
     """
 
     name: str
@@ -85,10 +85,10 @@ class Flank(NamedTuple):
 
 @dataclass(frozen=True)
 class Holding:
-    """What holds a follower on its cam: a spring or gravity, or the contacts themselves; on one surface.
+    """How a follower is held on its cam; here by a spring or gravity on one surface.
 
-    `closure` is the name of the check on what is left to a follower between two surfaces, empty where there is none;
-    `discs` is how many there are on the shaft, `gap` how far apart, mm; `trims` whether undercut may be cut off.
+    `closure` names the check of the play between two surfaces, empty without it; `discs` is the number of discs on the
+    shaft, `gap` the axial gap between them, mm; `trims` says whether undercut may be cut off.
     """
 
     closure: ClassVar[str] = ""
@@ -98,12 +98,12 @@ class Holding:
 
     @property
     def larger(self) -> str:
-        """What size, made larger, makes the pressure angle less."""
+        """The size that makes the pressure angle less when it grows, in words."""
         return LARGER_BASE
 
     @property
     def beside(self) -> str:
-        """What else is larger with a larger base radius under a flat face."""
+        """What must grow with the base radius under a flat face, in words; empty where nothing must."""
         return ""
 
     @property
@@ -111,7 +111,7 @@ class Holding:
         """Length of the second arm of a bell crank, mm, and the angle between both, rad; None without one."""
         return None
 
-    def named(self, name: str) -> str:
+    def follower_name(self, name: str) -> str:
         """The follower's name in reports, from that of its guide and touch."""
         return name
 
@@ -120,76 +120,78 @@ class Holding:
         return (Flank("", side, touch.radius),)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
-        """Every contact of the follower, one on each surface, from the first."""
+        """Every contact of the follower, one on each surface, by the first."""
         return (first,)
 
     def demand(self, first: Contact[Guide, Touch], greatest: float) -> None:
-        """Raise IntentError where another contact could not be led to the greatest displacement, mm or rad."""
+        """Raise IntentError where a second contact cannot reach the greatest displacement, mm or rad."""
 
-    def grown(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002
-        """With the metal grown by `out` mm and then scaled; raises GrownError where a touch would be nothing."""
+    def grow(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002
+        """The holding with the metal grown by `out` mm and then scaled; GrownError where nothing of a touch is left."""
         return self
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:  # noqa: ARG002
-        """What would help, from what would help a cam with one contact."""
+        """Advice for all surfaces, from that for a cam with one contact."""
         return own
 
     def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002
-        """Circles about the shaft beside a surface, from those of a cam with one contact."""
+        """Reference circles beside a surface, from those of a cam with one contact."""
         return own
 
     def least_stem(
         self, law: Displacement, angles: tuple[float, float], offset: float | None
     ) -> moving_frame.Translating:
-        """Stem with the least prime circle that keeps pressure angles, rad; its offset is found unless given."""
+        """Stem with the least prime circle that keeps the pressure angles, rad; at the best offset unless given, mm."""
         from camgeo.cams.least_size import least_stem
 
         return least_stem(law, *angles, offset)
 
-    def gentler(self, exact: ExactGuided, rising: float, falling: float, mm: float) -> tuple[str, GuidedCam] | None:
-        """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known.
+    def gentler_size(
+        self, exact: ExactGuided, rising: float, falling: float, mm: float
+    ) -> tuple[str, GuidedCam] | None:
+        """The size, in words, and the cam that keep the pressure angle below both angles, rad; None if unknown.
 
-        It is the least base radius on this stem; for this length of arm that with the pivot's distance.
+        The size is the least base radius on this stem; for this length of arm with the pivot's distance.
         """
         from camgeo.cams.least_size import least_arm, least_stem
 
         cam, guide = exact.cam, exact.follower.contacts[0].guide
         if isinstance(guide, Translating):
-            return base_told(cam, least_stem(exact.law, rising, falling, guide.offset).prime, mm)
+            return base_size(cam, least_stem(exact.law, rising, falling, guide.offset).prime, mm)
         try:
             arm = least_arm(exact.law, guide.arm, guide.side, rising - MARGIN, falling - MARGIN)
         except IntentError:
             return None
-        return base_told(cam, arm.prime, mm, arm.pivot)
+        return base_size(cam, arm.prime, mm, arm.pivot)
 
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002
-        """Say which size makes a roller half of the pitch curve's least convex radius; empty where none does."""
+        """The size, in words, at which a roller is half the pitch curve's least convex radius; empty without one."""
         cam, roller = exact.cam, exact.cam.touch.radius
-        prime = least_round_prime(exact.law, cam.led, roller)
+        prime = least_round_prime(exact.law, cam.centre_guide, roller)
         return "" if prime is None else f"a base radius of {upward((prime - cam.side * roller) / mm)}"
 
 
-def smaller(touch: Touch, out: float, scale: float) -> Touch:
+def shrink_touch(touch: Touch, out: float, scale: float) -> Touch:
     """A round touch smaller by `out` mm and then scaled; raises GrownError where nothing of it is left."""
     radius, kind = touch.radius, Shoe if isinstance(touch, Shoe) else Roller
     if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
         raise GrownError("the shoe radius" if kind is Shoe else "the roller's radius", radius)
-    left = scale * (radius - out)
-    return kind(left) if left else KnifeEdge()
+    remaining = scale * (radius - out)
+    return kind(remaining) if remaining else KnifeEdge()
 
 
-def base_told(cam: GuidedCam, prime: float, mm: float, pivot: float | None = None) -> tuple[str, GuidedCam] | None:
-    """Say a base radius, from a prime circle, mm, and of an arm the pivot's distance, with the cam; None for none."""
+def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = None) -> tuple[str, GuidedCam] | None:
+    """Base radius of a prime circle, mm, and pivot's distance, mm, in words, with the cam; None for no radius."""
     base = (prime - cam.side * cam.touch.radius) / mm
     if base <= 0.0:
         return None
-    size, place = upward(base), "" if pivot is None else f"{pivot / mm:.6g}"
-    told = f"a base radius of {size}{place and f' with a pivot at {place}'}"
-    return told, cam.resized(float(size) * mm, float(place) * mm if place else None)
+    size, pivot_words = upward(base), "" if pivot is None else f"{pivot / mm:.6g}"
+    words = f"a base radius of {size}{pivot_words and f' with a pivot at {pivot_words}'}"
+    return words, cam.resized(float(size) * mm, float(pivot_words) * mm if pivot_words else None)
 
 
 def least_round_prime(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
-    """Prime circle, mm, at which a roller is half of the pitch curve's least convex radius; None where none is."""
+    """Prime circle, mm, at which a roller is half the pitch curve's least convex radius; None without one."""
     from camgeo.cams.least_size import least_prime
     from camgeo.curve.moving_frame import CentreShape
 
@@ -200,26 +202,26 @@ def least_round_prime(law: Displacement, guide: moving_frame.Guide, roller: floa
 
 
 class GuidedCam(Cam):
-    """A cam whose follower's centre is led along a line or about a pivot."""
+    """A cam whose follower's centre moves along a line or about a pivot."""
 
     base_radius: float
 
     @property
     @abstractmethod
-    def led(self) -> moving_frame.Guide:
-        """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
+    def centre_guide(self) -> moving_frame.Guide:
+        """Guide of the centre; raises IntentError where it does not reach the prime circle."""
 
     @abstractmethod
     def joints(self) -> tuple[Joint, ...]:
-        """Where derivatives of the motion that a recipe gives jump."""
+        """Angles at which derivatives of the recipe's motion jump."""
 
     @abstractmethod
     def follower(self, law: Displacement) -> Follower:
-        """The follower that a motion calls for."""
+        """The follower for a motion."""
 
     @property
     def holding(self) -> Holding:
-        """What holds the follower on the cam."""
+        """How the follower is held on the cam."""
         return Holding()
 
     @abstractmethod
@@ -227,19 +229,19 @@ class GuidedCam(Cam):
         """The cam with another base radius, of an arm another distance of the pivot, mm, and perhaps held otherwise."""
 
     @abstractmethod
-    def grown(self, out: float, scale: float) -> GuidedCam:
+    def grow(self, out: float, scale: float) -> GuidedCam:
         """The cam with a smaller touch on the same pitch curve, scaled; raises GrownError where it would be nothing."""
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle, and the prime circle."""
+        """The base circle, and the prime circle of a round touch."""
         circles = [Circle("base circle", self.base_radius)]
         if self.touch.radius:
-            circles.append(Circle("prime circle", self.led.prime))
+            circles.append(Circle("prime circle", self.centre_guide.prime))
         return tuple(circles)
 
 
-def led_by(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
-    """How the centre of a round touch is led, by the displacement of its own position."""
+def centre_guide_of(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
+    """Guide of the centre of a round touch, by the displacement of that contact."""
     from camgeo.curve import moving_frame
 
     guide = contact.guide
@@ -250,32 +252,32 @@ def led_by(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
 
 @dataclass(frozen=True)
 class Spin:
-    """Turns of a roller per turn of the shaft; on the inner side of a ring it turns the other way round."""
+    """Turns of a roller per turn of the shaft; `sense` -1 on the inner side of a ring."""
 
     pitch: CentreShape
     radius: float
     sense: float
 
     def __call__(self, tau: Series, side: Before = 1) -> Series:
-        """Over jets of the shaft angle."""
+        """Turns per turn over jets of the shaft angle."""
         return self.pitch.spin(tau, side, self.radius, self.sense)
 
 
 @dataclass(frozen=True, eq=False)
 class ExactLed(ExactCam):
-    """Such a cam by the displacement of its follower, whatever touches it."""
+    """A guided cam with the displacement of its follower, for any touch."""
 
     cam: GuidedCam
     law: Displacement
 
     @cached_property
     def follower(self) -> Follower:
-        """As the family has it."""
+        """The follower for this motion."""
         return self.cam.follower(self.law)
 
     @cached_property
     def motion(self) -> Position:
-        """Along a stem or about an arm's pivot, by its law from displacement 0."""
+        """Position along a stem or about an arm's pivot, from displacement 0."""
         guide = self.follower.contacts[0].guide
         if isinstance(guide, Translating):
             return LiftPosition(self.law)
@@ -283,39 +285,39 @@ class ExactLed(ExactCam):
 
     @cached_property
     def judged_law(self) -> Piecewise:
-        """The displacement."""
+        """The displacement over the shaft angle."""
         return self.law.law()
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """Those that the recipe gives."""
+        """Joints of the recipe's motion."""
         return self.cam.joints()
 
     def circles(self, surface: str) -> tuple[Circle, ...]:
-        """The cam's, or those of a second disc."""
+        """Reference circles of the disc with a surface."""
         return self.cam.holding.circles(surface, self.cam.circles())
 
     @property
     def gap(self) -> float:
-        """As the recipe gives it."""
+        """Axial gap between the discs, mm."""
         return self.cam.holding.gap
 
     @property
     def flanks(self) -> tuple[Flank, ...]:
-        """Every surface with where it stands; raises IntentError where a contact cannot be led through the motion."""
+        """Every surface of the cam; raises IntentError where a contact cannot follow the whole motion."""
         holding = self.cam.holding
         holding.demand(self.follower.contacts[0], self.law.range[1])
         return holding.flanks(self.cam.touch, self.cam.side)
 
-    def grown(self, out: float, scale: float) -> ExactCam:
-        """The same pitch curve, or a face farther out; a lift is scaled with the drawing, a swing is not."""
+    def grow(self, out: float, scale: float) -> ExactCam:
+        """The same pitch curve, or a face farther out; a lift is scaled, a swing is not."""
         law = self.law.scaled(scale) if self.cam.arrangement.unit == "mm" else self.law
-        return replace(self, cam=self.cam.grown(out, scale), law=law)
+        return replace(self, cam=self.cam.grow(out, scale), law=law)
 
 
 @dataclass(frozen=True, eq=False)
 class ExactGuided(ExactLed):
-    """Under a touch that is round about a centre."""
+    """A guided cam under a touch that is round about a centre."""
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
@@ -331,7 +333,7 @@ class ExactGuided(ExactLed):
         for flank in self.flanks:
             contact = contacts[flank.name]
             if contact.place not in paths:
-                pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), led_by(contact))
+                pitch = CentreShape(self.law if contact.sense > 0 else self.law.scaled(-1.0), centre_guide_of(contact))
                 paths[contact.place] = pitch, Curve.whole(pitch)
             surfaces.append(self._surface(*paths[contact.place], contact, flank))
         return tuple(surfaces)
@@ -346,10 +348,10 @@ class ExactGuided(ExactLed):
         return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, disc, layer, depth)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """By what holds the follower."""
-        return self.cam.holding.gentler(self, rising, falling, mm)
+        """The size and the cam that keep the pressure angle below both angles, rad, by the way the follower is held."""
+        return self.cam.holding.gentler_size(self, rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
-        """By what holds the follower."""
+        """The size for a half as large roller, by the way the follower is held; empty where nothing rolls."""
         rolls = isinstance(self.cam.touch, Roller)
         return self.cam.holding.rounder(surface, self, mm) if rolls else ""

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from camgeo.curve.rates import Series
     from kin.numeric.arrays import Array, Mask
 
-    _Kept = Callable[[Array, Array | float], Mask]
+    _Limits = Callable[[Array, Array | float], Mask]
 
 _GuideT = TypeVar("_GuideT", Translating, Oscillating)
 _CUTS = 60  # pairs of cutting planes
@@ -55,7 +55,7 @@ _NARROWER = 8.0  # times, the directions from one look to the next
 _LOOKS = 4  # at ever fewer directions, before the exact figures are asked
 _FINE = 1e-9  # rad: directions this close are told apart
 _EXCHANGES = 16
-_ROOM = 1e-10  # rad, and of a radius: so much more is kept than is given, for rounding
+_SPARE = 1e-10  # rad, and of a radius: so much more is kept than is given, for rounding
 _TINY = 1e-9  # rad: a face stands at some angle
 _RESTS = 256  # of a swinging face
 _LOOSE = 1e-4  # of the pivot's distance: what radii between the angles looked at may be less
@@ -64,8 +64,8 @@ _LOOSE = 1e-4  # of the pivot's distance: what radii between the angles looked a
 class _Planes(Protocol):
     """Rows (x, y, c) of half planes ``x X + y Y >= c`` over the shaft angle."""
 
-    def __call__(self, tau: Series, at: Side = 1) -> list[tuple[Series, Series, Series]]:
-        """Give them as series."""
+    def __call__(self, tau: Series, break_side: Side = 1) -> list[tuple[Series, Series, Series]]:
+        """The rows as series at jets of the shaft angle; `break_side` picks a side at a break."""
         ...
 
 
@@ -79,7 +79,10 @@ def _demand_angles(rising: float, falling: float) -> None:
 
 
 def stem_needs(motion: Displacement, rising: float, falling: float) -> tuple[float, float]:
-    """A_r and A_f, mm: ``d + e cot alpha_r >= A_r`` and ``d - e cot alpha_f >= A_f`` keep both limits (rad)."""
+    """Bounds A_r and A_f, mm, by which a stem with foot d and offset e keeps both pressure angles, rad.
+
+    It does where ``d + e cot alpha_r >= A_r`` on the rise and ``d - e cot alpha_f >= A_f`` on the return.
+    """
     _demand_angles(rising, falling)
 
     def need(cotangent: float) -> float:
@@ -88,8 +91,7 @@ def stem_needs(motion: Displacement, rising: float, falling: float) -> tuple[flo
             v = s.derivative()
             return v * cotangent - cut(s, v.order)
 
-        found = greatest(figure, stretches(motion))
-        return found.value
+        return greatest(figure, stretches(motion)).value
 
     return need(1.0 / math.tan(rising)), need(-1.0 / math.tan(falling))
 
@@ -113,7 +115,7 @@ def least_stem(motion: Displacement, rising: float, falling: float, offset: floa
 
 
 def positive_foot(foot: float) -> float:
-    """Give the foot d of a stem back, mm; raises IntentError where it is none."""
+    """The foot d of a stem, mm, itself; raises IntentError unless it is above 0."""
     if not foot > 0.0:
         raise IntentError("a motion that stands still needs no pressure angle; give a base radius", "sizing")
     return foot
@@ -141,25 +143,25 @@ def least_arm(
     rows = np.empty((0, 3))
     shaft = np.array([length, 0.0])
     for _ in range(_CUTS):
-        worst, added = 0.0, []
+        worst, new_rows = 0.0, []
         for of_arm, kind in product(planes, (0, 1)):
 
             def broken(
-                tau: Series, at: Side = 1, of_arm: _Planes = of_arm, kind: int = kind, shaft: Array = shaft
+                tau: Series, break_side: Side = 1, of_arm: _Planes = of_arm, kind: int = kind, shaft: Array = shaft
             ) -> Series:
-                x, y, c = of_arm(tau, at)[kind]
+                x, y, c = of_arm(tau, break_side)[kind]
                 return c - x * float(shaft[0]) - y * float(shaft[1])
 
-            found = greatest(broken, stretches(motion))
-            worst = max(worst, found.value)
-            added.append([float(row.c[0, 0]) for row in of_arm(Jet.variable(found.at, 1))[kind]])
+            extreme = greatest(broken, stretches(motion))
+            worst = max(worst, extreme.value)
+            new_rows.append([float(row.c[0, 0]) for row in of_arm(Jet.variable(extreme.at, 1))[kind]])
         if worst <= _BROKEN * length:
             break
-        rows = np.vstack([rows, added])
-        to, before = np.array([length, 0.0]), shaft
-        shaft = nearest_in(rows, to, _FEASIBLE * length)
-        if bool((shaft == before).all()):  # a corner that breaks a plane at hand, and was let pass
-            shaft = nearest_in(rows, to, 0.5 * _BROKEN * length)
+        rows = np.vstack([rows, new_rows])
+        target, previous = np.array([length, 0.0]), shaft
+        shaft = nearest_in(rows, target, _FEASIBLE * length)
+        if bool((shaft == previous).all()):  # a corner that breaks a plane at hand, and was let pass
+            shaft = nearest_in(rows, target, 0.5 * _BROKEN * length)
     else:
         raise IntentError("the least prime circle of the arm was not found", "sizing")
     x, y = shaft
@@ -175,8 +177,8 @@ def _half_planes(
     """
     ahead, behind = (rising, falling) if side > 0 else (falling, rising)
 
-    def planes(tau: Series, at: Side = 1) -> list[tuple[Series, Series, Series]]:
-        s = motion.on(tau, at)
+    def planes(tau: Series, break_side: Side = 1) -> list[tuple[Series, Series, Series]]:
+        s = motion.on(tau, break_side)
         pace = (s.derivative() * float(side) + 1.0) * length
         s = cut(s, pace.order)
         first, second = s - ahead, s + behind
@@ -192,10 +194,10 @@ def _half_planes(
     return planes
 
 
-def nearest_in(rows: Array, to: Array, slack: float) -> Array:
-    """Point nearest to a given one (2,) in the meet of half planes, rows (m, 3); IntentError where that is empty."""
+def nearest_in(rows: Array, target: Array, slack: float) -> Array:
+    """Point (2,) nearest to `target` in the intersection of half planes, rows (m, 3); IntentError where it is empty."""
     normals, level = rows[:, :2], rows[:, 2]
-    feet = to + np.maximum(level - normals @ to, 0.0)[:, None] * normals
+    feet = target + np.maximum(level - normals @ target, 0.0)[:, None] * normals
     i, j = np.triu_indices(len(rows), 1)
     determinant = normals[i, 0] * normals[j, 1] - normals[i, 1] * normals[j, 0]
     i, j, determinant = (part[np.abs(determinant) > 0.0] for part in (i, j, determinant))
@@ -206,13 +208,13 @@ def nearest_in(rows: Array, to: Array, slack: float) -> Array:
         ]
     )
     points = np.concatenate([feet, corners])
-    kept = points[(points @ normals.T >= level - slack).all(axis=1)]
-    if not kept.size:
+    inside = points[(points @ normals.T >= level - slack).all(axis=1)]
+    if not inside.size:
         raise IntentError(
             "no pivot keeps the pressure angles with this arm; a smaller swing, a longer rise or wider limits do",
             "sizing.pressure-angle",
         )
-    nearest: Array = kept[np.argmin(np.hypot(*(kept - to).T))]
+    nearest: Array = inside[np.argmin(np.hypot(*(inside - target).T))]
     return nearest
 
 
@@ -226,52 +228,52 @@ def least_round(
     """
     rising, falling = angles
     _demand_angles(rising, falling)
-    steep = math.tan(rising - _ROOM), math.tan(falling - _ROOM)
-    looked: Array = _looked_at(motion)
+    steep = math.tan(rising - _SPARE), math.tan(falling - _SPARE)
+    samples: Array = _samples(motion)
 
-    def kept(direction: Array, prime: Array | float) -> Mask:
+    def keeps(direction: Array, prime: Array | float) -> Mask:
         """Whether the limits are kept in directions (n,), the shaft on prime circles (n,)."""
         along, across = prime * np.cos(direction), prime * np.sin(direction)
-        s = np.broadcast_to(looked[:, None], (4, len(direction), looked.shape[1]))
+        s = np.broadcast_to(samples[:, None], (4, len(direction), samples.shape[1]))
         b, a, rate = guide.with_shaft(along[:, None], across[:, None]).rows(s)
         speed = np.hypot(a[0], b[0])
         turn = rate[0] + (b[1] * a[0] - a[1] * b[0]) / speed**2
         gentle = (b[0] > 0.0) & (a[0] <= b[0] * steep[0]) & (-a[0] <= b[0] * steep[1])
-        held: Mask = (gentle & (speed >= radius * (1.0 + _ROOM) * turn)).all(axis=1)
-        return held
+        mask: Mask = (gentle & (speed >= radius * (1.0 + _SPARE) * turn)).all(axis=1)
+        return mask
 
     # at rest, where the motion is lowest, the pressure angle is that of the direction, turned round
     middle, half = 0.5 * (falling - rising), 0.5 * (falling + rising)
     directions = middle + half * np.linspace(-1.0, 1.0, 2 * _DIRECTIONS - 1)
-    prime = _first(kept, directions, (start * _GROWTH**k for k in range(_SIZES)))
-    prime = _first(kept, directions, np.linspace(start, prime, _PARTS + 1).tolist())
+    prime = _first_size(keeps, directions, (start * _GROWTH**k for k in range(_SIZES)))
+    prime = _first_size(keeps, directions, np.linspace(start, prime, _PARTS + 1).tolist())
     for _ in range(_EXCHANGES):
         for _ in range(_LOOKS):
-            prime = _first(kept, directions, (prime * (1.0 + half) ** k for k in range(_SIZES)))
+            prime = _first_size(keeps, directions, (prime * (1.0 + half) ** k for k in range(_SIZES)))
             middle, prime = _best_direction(
-                kept, directions, prime, max(start, prime * (1.0 - _NARROWER * half)), start
+                keeps, directions, prime, max(start, prime * (1.0 - _NARROWER * half)), start
             )
             half /= _NARROWER
             directions = middle + half * np.linspace(-1.0, 1.0, _DIRECTIONS)
         best: _GuideT = guide.with_shaft(prime * math.cos(middle), prime * math.sin(middle))
-        worst, at = _broken(CentreShape(motion, best), angles, radius)
+        worst, places = _violation(CentreShape(motion, best), angles, radius)
         if worst <= 0.0 and half < _FINE:
             return best
-        looked = np.hstack([looked, motion.derivatives(at, 3, 1), motion.derivatives(at, 3, -1)])
+        samples = np.hstack([samples, motion.derivatives(places, 3, 1), motion.derivatives(places, 3, -1)])
         half = max(half, _NARROWER * math.sqrt(max(worst, 0.0)))
         directions = middle + half * np.linspace(-1.0, 1.0, _DIRECTIONS)
     raise IntentError("the least cam within both limits was not found", "sizing")
 
 
-def _looked_at(motion: Displacement) -> Array:
-    """S with three derivatives (4, m) at shaft angles that stand for all, the ends of stretches from inside."""
+def _samples(motion: Displacement) -> Array:
+    """Displacement with three derivatives (4, m) at sample angles, at the ends of stretches from inside."""
     over = stretches(motion)[: max(1, len(motion.breaks) // motion.repeats)]
     low, _ = divided(over[:, 0], over[:, 1], max(6, math.ceil(_ANGLES / len(over))))
     return np.concatenate([motion.derivatives(low, 3, 1), motion.derivatives(over[:, 1], 3, -1)], axis=1)
 
 
-def _first(limits: _Kept, directions: Array, sizes: Iterable[float]) -> float:
-    """First prime circle that keeps the limits in some direction; IntentError where none does."""
+def _first_size(limits: _Limits, directions: Array, sizes: Iterable[float]) -> float:
+    """First of `sizes`, prime circles, that keeps the limits in some direction; IntentError where none does."""
     for size in sizes:
         if limits(directions, size).any():
             return size
@@ -282,8 +284,8 @@ def _first(limits: _Kept, directions: Array, sizes: Iterable[float]) -> float:
     )
 
 
-def _best_direction(limits: _Kept, directions: Array, high: float, low: float, start: float) -> tuple[float, float]:
-    """Direction of the least prime circle, and that, up to one that keeps the limits in some direction."""
+def _best_direction(limits: _Limits, directions: Array, high: float, low: float, start: float) -> tuple[float, float]:
+    """Direction, rad, of the least prime circle up to `high`, mm, that keeps the limits, and that circle."""
     directions = directions[limits(directions, high)]
     if limits(directions, low).any():
         low = start
@@ -297,13 +299,13 @@ def _best_direction(limits: _Kept, directions: Array, high: float, low: float, s
     return float(directions[best]), float(above[best])
 
 
-def _broken(pitch: CentreShape, angles: tuple[float, float], radius: float) -> tuple[float, Array]:
-    """By how much the worst limit is broken, rad or a share of the radius, and the shaft angles (3,) to look at."""
+def _violation(pitch: CentreShape, angles: tuple[float, float], radius: float) -> tuple[float, Array]:
+    """Excess over the worst limit, rad or share of the radius, and the shaft angles (3,) of the worst of each."""
     over = stretches(pitch.law)
     rise, fall = greatest(pitch.slope, over), least(pitch.slope, over)
-    bent, at = least_radius(Curve.whole(pitch))
-    broken = (math.atan(rise.value) - angles[0], -math.atan(fall.value) - angles[1], 1.0 - bent / radius)
-    return max(broken), np.array([rise.at, fall.at, at])
+    least_bend, place = least_radius(Curve.whole(pitch))
+    broken = (math.atan(rise.value) - angles[0], -math.atan(fall.value) - angles[1], 1.0 - least_bend / radius)
+    return max(broken), np.array([rise.at, fall.at, place])
 
 
 def least_face(face: Face, radius: float) -> float:
@@ -324,19 +326,19 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
         less, field = ("face", "follower.arm.face") if high > 0.0 else ("swing", "motion")
         raise IntentError(f"no base radius leaves the face room to swing; a smaller {less} does", field)
     SwingingFace(motion, pivot, nearer, 0.5 * high, side)  # raises where the motion is too fast, whatever the size
-    s, v, w, _ = _looked_at(motion)
+    s, v, w, _ = _samples(motion)
     k = 1.0 + side * v
     rests = high * np.arange(_RESTS) / _RESTS
     rests = np.append(low, rests[rests > low])
     psi = rests[:, None] + s
-    # that of a face through the pivot: p + dq/dt
+    # radius of the contour of a face through the pivot: p + dq/dt
     radii = pivot * (np.sin(psi) * (1.0 - (v / k) ** 2) + np.cos(psi) * w / k**3).min(axis=1)
     enough = radii - nearer >= radius
     if enough[0]:
         raise IntentError("any base radius keeps this radius of curvature; give one", "sizing.radius-of-curvature")
 
-    def excess(at: Array) -> Array:
-        faces = [SwingingFace(motion, pivot, nearer, rest, side) for rest in at.tolist()]
+    def excess(angles: Array) -> Array:
+        faces = [SwingingFace(motion, pivot, nearer, rest, side) for rest in angles.tolist()]
         return np.array([least_radius(Curve.whole(face_shape(face)))[0] for face in faces]) - radius
 
     for i in np.flatnonzero(enough):
@@ -364,8 +366,8 @@ def least_prime(
     def short(prime: Array) -> Array:
         curves = [Curve.whole(shape(float(p))) for p in prime]
         # a stretch that is no longer hollow has no radius
-        found = [least_radius(curve)[0] if bend is None else min(bend(curve), 2.0 * radius) for curve in curves]
-        return np.array(found) - radius
+        radii = [least_radius(curve)[0] if bend is None else min(bend(curve), 2.0 * radius) for curve in curves]
+        return np.array(radii) - radius
 
     low = np.array([start])
     if short(low)[0] >= 0.0:

@@ -1,4 +1,4 @@
-"""What Wunderlich's single-disk cams have in common: the routes to their law, and how such a law may fail (W 1984)."""
+"""Wunderlich's single-disk cams: the routes from a recipe to their law of transmission, and its checks (W 1984)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Preload, Proof
 from camgeo.cams.flat_faced import spread
-from camgeo.cams.preload import PRELOAD, preloaded
+from camgeo.cams.preload import PRELOAD, with_preload
 from camgeo.common.rounding import downward
 from camgeo.motions.motion import MotionSource, check_filled, motion_field
 from camgeo.motions.position import Position, SwingPosition
@@ -100,7 +100,7 @@ SwingOf: TypeAlias = Literal["arm", "pair"]
 def _nearest(
     lam: int, mu: int, swing_of: SwingOf, route: WantedRoute, share: float = 1.0
 ) -> tuple[Nearest, Transmission]:
-    """The nearest series of arms of length 1, and the wanted law, with a share of its strokes."""
+    """Nearest series for arms of length 1, and the wanted law, both with a share of its strokes."""
     from kin.law.transmission import from_law
     from kin.law.wanted import nearest
 
@@ -110,7 +110,7 @@ def _nearest(
 
 
 def _greatest_share(law: Callable[[float], Transmission]) -> float:
-    """Greatest share of its swing, to a thousandth and below 1, with which a law is possible; 0 where none is seen."""
+    """Greatest share of the swing, below 1 and to a thousandth, with which a law is possible; 0 if none is seen."""
     from kin.law.programme import IntentError
 
     low, high = 0.0, 1.0
@@ -144,33 +144,33 @@ class PairCam(Cam):
     preload: Preload | None
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """By Wunderlich's law of transmission, by the route that the recipe takes."""
-        return preloaded(ExactPair(self, self.transmission()), self.preload)
+        """The cam with Wunderlich's law of transmission, and its preload."""
+        return with_preload(ExactPair(self, self.transmission()), self.preload)
 
     @abstractmethod
     def follower(self, law: Transmission, out: float) -> Follower:
-        """The follower, its faces `out` mm beside the lines through their pivot."""
+        """The follower; faces stand `out` mm beside the lines through their pivot."""
 
     @abstractmethod
     def surface(self, law: Transmission, out: float) -> Surface:
-        """The surface, of faces so far out."""
+        """The surface; for faces `out` mm beside their lines."""
 
     @abstractmethod
-    def grown(self, out: float, scale: float) -> PairCam:
-        """The same pair farther away; raises GrownError where a roller would be nothing."""
+    def grow(self, out: float, scale: float) -> PairCam:
+        """The pair with its metal grown by `out` mm, then scaled; raises GrownError where a roller would be nothing."""
 
     @property
     def motion_span(self) -> float:
-        """A section of the turn, pi/lambda, rad."""
+        """The section of the turn that repeats, pi/lambda, rad."""
         return math.pi / self.lam
 
     @property
     def mean_distance(self) -> float:
-        """Mean distance R = 2 l cos(alpha/2) of the arms' ends, mm: an arc about the shaft at it has no swing."""
+        """Mean distance R = 2 l cos(alpha/2) of the arms' ends from the shaft, mm: an arc at it has no swing."""
         return 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
 
     def transmission(self) -> Transmission:
-        """Wunderlich's law of transmission, by the route that the recipe takes."""
+        """Wunderlich's law of transmission, by the recipe's route; raises IntentError where there is none."""
         from kin.law.programme import IntentError
 
         try:
@@ -181,12 +181,14 @@ class PairCam(Cam):
             share = _greatest_share(self._law)
             if not share:
                 raise
-            what = "stroke" if isinstance(self.route, LawRoute | WantedRoute) else "value of D"
-            less = f"{error.message}; with each {what} multiplied by {downward(share, 3)} such a motion is possible"
-            raise IntentError(less, error.field, error.at_deg) from error
+            factor = "stroke" if isinstance(self.route, LawRoute | WantedRoute) else "value of D"
+            message = (
+                f"{error.message}; with each {factor} multiplied by {downward(share, 3)} such a motion is possible"
+            )
+            raise IntentError(message, error.field, error.at_deg) from error
 
     def _law(self, share: float = 1.0) -> Transmission:
-        """The law with this share of the swing's D, or of the strokes that the recipe gives."""
+        """The law with this share of the recipe's D or strokes."""
         from kin.law import transmission
 
         route = self.route
@@ -216,11 +218,11 @@ class PairCam(Cam):
 
     @property
     def law_checks(self) -> tuple[str, ...]:
-        """Names of the checks of its law."""
+        """Names of the checks of the law."""
         return ("closing-equation", "velocity-ratio", *(("law-error",) if isinstance(self.route, WantedRoute) else ()))
 
     def law_error(self) -> Proof:
-        """How far the follower's swing is from the wanted one, proved; one that stands still is off by the limit."""
+        """Proved error of the swing against the wanted one, degrees; the limit is the error of no swing at all."""
         from kin.law.wanted import proved_error
 
         if not isinstance(self.route, WantedRoute):
@@ -233,14 +235,14 @@ class PairCam(Cam):
         return Proof(error < still or not still, error, still, "deg", degrees(float(wanted.at(series.at, 0)[0][0, 0])))
 
     def kept(self) -> Kept | None:
-        """Distances of the swing over 360/lambda degrees from the rows of its table, rad."""
+        """How the swing over 360/lambda degrees keeps the rows of its table, rad; None without one."""
         if isinstance(self.route, LawRoute | WantedRoute):
             field = "law" if isinstance(self.route, LawRoute) else "delta.law"
             return self.route.motion.motion(math.pi / self.lam, field, None).kept
         return None
 
     def joints(self, law: Transmission) -> tuple[Joint, ...]:
-        """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""
+        """Joints of the swing over 360/lambda degrees; empty where the recipe gives D or an arc by numbers."""
         if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):
             return ()
         share = 0.5 if self.swing_of == "pair" else 1.0
@@ -249,17 +251,17 @@ class PairCam(Cam):
 
 @dataclass(frozen=True)
 class PairAdvice(Advice):
-    """Of a pair of contacts on one arm."""
+    """Advice for a pair of contacts on one arm."""
 
     cam: PairCam
 
     @property
     def radius(self) -> float:
-        """That of the cam's touch."""
+        """Radius of the rollers, mm; 0 for faces."""
         return self.cam.touch.radius
 
     def less_swing(self, mm: float) -> str:
-        """An arc nearer to the circle about the shaft."""
+        """A smaller swing, in words: of an arc one nearer to the circle about the shaft."""
         if not isinstance(self.cam.route, ArcRoute):
             return super().less_swing(mm)
         return f"an arc.radius nearer to {self.cam.mean_distance / mm:.6g}"
@@ -267,7 +269,7 @@ class PairAdvice(Advice):
 
 @dataclass(frozen=True, eq=False)
 class ExactPair(ExactCam):
-    """Such a cam by its law of transmission; faces of a grown one stand `out` mm beside the lines through the pivot."""
+    """A pair cam with its law of transmission; faces stand `out` mm beside the lines through the pivot."""
 
     cam: PairCam
     law: Transmission
@@ -275,7 +277,7 @@ class ExactPair(ExactCam):
 
     @cached_property
     def follower(self) -> Follower:
-        """As the family has it."""
+        """The follower for this motion."""
         return self.cam.follower(self.law, self.out)
 
     @cached_property
@@ -285,36 +287,36 @@ class ExactPair(ExactCam):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """As the family has it."""
+        """The one surface of the disc."""
         return (self.cam.surface(self.law, self.out),)
 
     @property
     def judged_law(self) -> Transmission:
-        """The transmission."""
+        """The law of transmission."""
         return self.law
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """Those that the recipe gives."""
+        """Joints of the recipe's motion."""
         return self.cam.joints(self.law)
 
-    def grown(self, out: float, scale: float) -> ExactPair:
-        """The same swing about a pivot farther away; of faces the metal grows before them."""
-        return ExactPair(self.cam.grown(out, scale), self.law.scaled(scale), scale * (self.out + out))
+    def grow(self, out: float, scale: float) -> ExactPair:
+        """The same swing with the pivot scaled; faces stand farther out by the growth."""
+        return ExactPair(self.cam.grow(out, scale), self.law.scaled(scale), scale * (self.out + out))
 
     @property
     def free(self) -> bool:
-        """Where faces stand farther out."""
+        """Whether these are faces beside their lines: a parallel outside a convex surface."""
         return self.out > 0.0 and self.cam.arrangement.touch is Flat
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """Those of the law."""
+        """Checks of the law, by their names."""
         proofs = (self._closing_equation, self._velocity_ratio, self.cam.law_error)
         return dict(zip(self.cam.law_checks, proofs, strict=False))
 
     def _closing_equation(self) -> Proof:
-        """That the second arm's end runs on the same curve (W 4.6, 7.1).
+        """Check that the second arm's end runs on the same curve (W 1984, 4.6 and 7.1).
 
         Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
         phi - (psi - alpha)/2 of the second: over it |psi'| < 2, while over the shaft angle psi may rise as steeply as
@@ -326,19 +328,19 @@ class ExactPair(ExactCam):
         image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
         gap = law.arm * np.abs(image + psi[0])
         worst = int(np.argmax(gap))
-        limit, at = EXACT * law.arm, degrees(float(phi[0, worst]))
-        return Proof(bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at)
+        limit, at_deg = EXACT * law.arm, degrees(float(phi[0, worst]))
+        return Proof(bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at_deg)
 
     def _velocity_ratio(self) -> Proof:
-        """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
+        """Check that the greatest velocity ratio, psi' by the shaft angle, is below 1: the cam does not turn back."""
         from kin.law.feasibility import steepest
 
-        at, value = steepest(self.law)
-        return Proof(value < 1.0, value, 1.0, "", degrees(float(self.law.at(at, 0)[0][0, 0])))
+        place, value = steepest(self.law)
+        return Proof(value < 1.0, value, 1.0, "", degrees(float(self.law.at(place, 0)[0][0, 0])))
 
     @property
     def margins(self) -> list[Margin]:
-        """Turning through, the root of the analytic route, and the arms' end at the shaft or stretched out."""
+        """Distances from turning back, the root of the analytic route, and the arm's end at the shaft or stretched."""
         from kin.law.feasibility import steepest
 
         law = self.law
@@ -409,7 +411,7 @@ _ROSETTE = mapping(
 
 
 def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
-    """Make the table of a double roller or a flat pair, which differ in the roller and in what swings."""
+    """Table of a double roller or a flat pair, with their keys of a roller and the words for the swing."""
     routes = (_DELTA, motion_field("law", Kind.ANGLE, law), _ARC, _ROSETTE)
     return Table(
         (
@@ -433,12 +435,12 @@ _APART = (
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note harmonics that make no motion, what a formula leaves no room for, and segments that leave an angle."""
+    """Note harmonics without motion, keys that exclude each other, and segments that do not fill their angle."""
     _harmonics(cam, reader)
-    for path, others in _APART:
-        for other in others:
-            if f"cam.{path}" in reader.marks and f"cam.{path.partition('.')[0]}.{other}" in reader.marks:
-                reader.fault_at(f"cam.{path}", f"cannot stand beside {other}", None, "leave one of them out")
+    for path, excluded in _APART:
+        for key in excluded:
+            if f"cam.{path}" in reader.marks and f"cam.{path.partition('.')[0]}.{key}" in reader.marks:
+                reader.fault_at(f"cam.{path}", f"cannot stand beside {key}", None, "leave one of them out")
     if "cam.delta.harmonics" in reader.marks and "cam.delta.law" not in reader.marks:
         reader.fault_at("cam.delta.harmonics", "cannot stand without a law", None, "leave it out, or give delta.law")
     for path, values in (("cam.law", cam), ("cam.delta.law", cam.get("delta") or {})):
@@ -455,7 +457,7 @@ def _harmonics(cam: Values, reader: Reader) -> None:
 
 
 def build_route(cam: Values, mm: float) -> Route:
-    """Make the route of values in which there is no fault."""
+    """The route of values without fault."""
     if "formula" in cam.get("delta", ()):
         return DeltaFormulaRoute(cam["delta"]["formula"], mm * mm)
     if "law" in cam.get("delta", ()):

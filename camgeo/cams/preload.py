@@ -1,8 +1,8 @@
-"""Preload by interference: metal grown towards every contact of a follower that is held from both sides.
+"""Preload by interference: the metal grows towards every contact of a follower that is held from both sides.
 
 Both contacts together overlap the metal by the interference along their normals, so on one contour it grows by half of
-that all round, and of two discs the second by all of it. The motion is the one asked for:
-the overlap is taken up by what gives way at either contact.
+that all round, and of two discs the second by all of it. The motion stays nominal: the contacts' elasticity takes up
+the overlap.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Preloaded(ExactCam):
-    """An exact cam whose metal overlaps the contacts that `nominal` has; the motion is that one's.
+class PreloadedCam(ExactCam):
+    """The exact cam `nominal` with metal that overlaps its contacts; the motion stays.
 
-    `grown_metal` is the cam that each of its surfaces is taken from.
+    Surface k is that of `grown_metal[k]`.
     """
 
     nominal: ExactCam
@@ -44,7 +44,7 @@ class Preloaded(ExactCam):
 
     @property
     def preload(self) -> Preload:
-        """The one that it is made by."""
+        """The preload of the contacts."""
         return self.held_by
 
     @property
@@ -54,22 +54,22 @@ class Preloaded(ExactCam):
 
     @property
     def law(self) -> Lift | Displacement | Transmission:
-        """The nominal one."""
+        """The law of the nominal motion."""
         return self.nominal.law
 
     @property
     def follower(self) -> Follower:
-        """The follower as it is."""
+        """The real follower."""
         return self.nominal.follower
 
     @property
     def motion(self) -> Position:
-        """The nominal one."""
+        """The nominal motion."""
         return self.nominal.motion
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """Those of the grown metal; what the follower does on them is nominal."""
+        """Surfaces of the grown metal, with pressure angles and places of the nominal motion."""
         metal = (exact.surfaces[rank] for rank, exact in enumerate(self.grown_metal))
         pairs = zip(metal, self.nominal.surfaces, strict=True)
         return tuple(
@@ -78,71 +78,71 @@ class Preloaded(ExactCam):
 
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
-        """Followers with room for the metal by which it has grown."""
+        """Followers that judge files: the contacts stand back by the growth of the metal."""
         return self._followers(list(map(eased, self.follower.contacts, self.preload.overlaps)))
 
     @property
     def running(self) -> dict[str, Gauge]:
-        """The follower itself, which overlaps the metal."""
+        """The real follower, which overlaps the metal."""
         return self.nominal.gauges
 
     @property
     def judged_law(self) -> Piecewise | Transmission:
-        """The nominal one."""
+        """The law of the nominal motion, for kin's followers."""
         return self.nominal.judged_law
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The nominal ones."""
+        """Joints of the nominal motion."""
         return self.nominal.joints
 
     @property
     def margins(self) -> list[Margin]:
-        """Those of the nominal motion."""
+        """Margins of the nominal motion."""
         return self.nominal.margins
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """Those of the nominal motion."""
+        """Checks of the nominal motion."""
         return self.nominal.proofs
 
     @property
     def free(self) -> bool:
-        """As the grown metal is."""
+        """Whether no motion can undercut any of the grown metal."""
         return all(exact.free for exact in self.grown_metal)
 
     @property
     def plate(self) -> Lift | None:
-        """The nominal one."""
+        """Support function of the nominal plate; None for other cams."""
         return self.nominal.plate
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """Of the nominal cam."""
+        """The size and the cam that keep the pressure angle, for the nominal cam."""
         return self.nominal.less_pressure(rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
-        """Of the nominal cam."""
+        """The size for a half as large roller, for the nominal cam."""
         return self.nominal.rounder_pitch(surface, mm)
 
     @property
     def gap(self) -> float:
-        """The nominal one."""
+        """Axial gap between the discs, mm."""
         return self.nominal.gap
 
     def circles(self, surface: str) -> tuple[Circle, ...]:
-        """The nominal ones."""
+        """Reference circles of the nominal cam."""
         return self.nominal.circles(surface)
 
-    def grown(self, out: float, scale: float) -> ExactCam:
-        """Drawn larger, with as much interference; it is scaled with the drawing."""
+    def grow(self, out: float, scale: float) -> ExactCam:
+        """The nominal cam grown and scaled, with the same interference, scaled too."""
         preload = replace(self.preload, interference=scale * self.preload.interference)
-        return preloaded(self.nominal.grown(out, scale), preload)
+        return with_preload(self.nominal.grow(out, scale), preload)
 
 
-def preloaded(nominal: ExactCam, preload: Preload | None) -> ExactCam:
-    """An exact cam with its metal grown by what each contact has of an interference, itself without one.
+def with_preload(nominal: ExactCam, preload: Preload | None) -> ExactCam:
+    """An exact cam with its metal grown by each contact's share of an interference; itself without a preload.
 
-    Raises IntentError for a follower that is not held from both sides, and one of which nothing would be left.
+    Raises IntentError for a follower that is not held from both sides, and for a radius of which nothing is left.
     """
     if preload is None:
         return nominal
@@ -157,14 +157,14 @@ def preloaded(nominal: ExactCam, preload: Preload | None) -> ExactCam:
     contacts = zip(nominal.follower.contacts, preload.overlaps, strict=True)
     overlaps = {contact.surface: overlap for contact, overlap in contacts}
     try:
-        metal = tuple(nominal.grown(overlaps[surface.name], 1.0) for surface in nominal.surfaces)
+        metal = tuple(nominal.grow(overlaps[surface.name], 1.0) for surface in nominal.surfaces)
     except GrownError as error:
         name, radius = error.args
         share = "it" if 1.0 in preload.shares else "half of it"
         raise IntentError(
             f"{share} is no less than {name}, {radius:.6g} mm; give less", "preload.interference"
         ) from error
-    return Preloaded(nominal, metal, preload)
+    return PreloadedCam(nominal, metal, preload)
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------
@@ -187,9 +187,9 @@ PRELOAD = mapping(
 
 
 def build_preload(cam: Values, shares: tuple[float, float] = (0.5, 0.5)) -> Preload | None:
-    """Make the preload of a cam's values in which there is no fault, None where they have none; `shares` of it."""
-    given = cam.get("preload")
-    if given is None:
+    """Preload of a cam's values without fault, None without one; each contact has one of the `shares`."""
+    values = cam.get("preload")
+    if values is None:
         return None
-    first, *second = given.get("stiffness") or (None,)
-    return Preload(given["interference"], None if first is None else (first, *(second or [first])), shares)
+    first, *second = values.get("stiffness") or (None,)
+    return Preload(values["interference"], None if first is None else (first, *(second or [first])), shares)

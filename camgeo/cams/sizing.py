@@ -1,6 +1,6 @@
 """A size in place of a base radius: the least that keeps given pressure angles and a radius of curvature.
 
-What is found is held against the exact figures before it is used (`camgeo.cams.least_size` finds it).
+`camgeo.cams.least_size` finds it; here it is checked by the exact figures before it is used.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ SIZING = mapping(
 
 @dataclass(frozen=True)
 class Sizing:
-    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm; or None.
+    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm, if limited.
 
-    `place` is the offset or the pivot that is given, mm, None where it is found or none is.
+    `place` is the given offset or distance of the pivot, mm; None where there is none.
     """
 
     angles: tuple[float, float] | None = None
@@ -63,7 +63,7 @@ class Sizing:
 
     @staticmethod
     def of(values: Values, follower: Values) -> Sizing:
-        """Take the values of a recipe."""
+        """Limits of the values of a recipe."""
         angle, radius = values.get("pressure-angle"), values.get("radius-of-curvature")
         angles = None if angle is None else (angle["at_most"], angle.get("on_return", angle["at_most"]))
         place = follower["arm"].get("pivot") if "arm" in follower else follower.get("offset")
@@ -78,13 +78,13 @@ class SizedDiscCam(DiscCam):
 
     @property
     def own_advice(self) -> SizedAdvice:
-        """In the words of `sizing`."""
+        """Remedies in the words of `sizing`."""
         trims = self.holding.trims
         return SizedAdvice(self, less_steep=SMALLER_STROKE, radius_field=self.radius_field, trims=trims)
 
     @property
     def sizes(self) -> dict[str, float]:
-        """Base radius, and offset or pivot where that is found with it."""
+        """Base radius, and offset or pivot chosen with it, mm, by their keys below `cam`."""
         sizes = {"base_radius": self.base_radius}
         if self.sizing.place is None and self.sizing.angles is not None:
             if isinstance(self.guide, Translating):
@@ -96,20 +96,20 @@ class SizedDiscCam(DiscCam):
 
 @dataclass(frozen=True)
 class SizedAdvice(Advice):
-    """Of a cam whose size is found: a limit in the words of `sizing`; a smaller roller in a ring, which none sizes.
+    """Advice for a cam whose size is found: other limits under `sizing`; in a ring, which it does not size, a roller.
 
-    The pitch curve that pressure angles alone size stays with another roller.
+    A pitch curve sized by pressure angles alone stays with another roller.
     """
 
     cam: SizedDiscCam
 
     @property
     def radius(self) -> float:
-        """That of the cam's touch."""
+        """Radius of the roller or shoe, mm; 0 for others."""
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A radius of curvature as large as the roller, which makes it half of the pitch curve's."""
+        """A radius of curvature as large as the roller, in words; it makes the roller half of the pitch curve's."""
         if self.cam.side < 0:
             less = free_at / mm
             return f"a {self.radius_field} below {downward(less)} would be free of it" if less > 0.0 else ""
@@ -117,97 +117,97 @@ class SizedAdvice(Advice):
         return f"{_at_least(radius)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """A radius of curvature; in a ring a smaller roller."""
+        """The wanted radius of curvature under `sizing`, in words; in a ring a smaller roller."""
         if self.cam.side < 0:
             return f"a {self.radius_field} below {downward(value)} {unit}" if value > 0.0 else ""
         return _at_least(limit)
 
-    def size_found(self, exact: ExactCam, mm: float) -> str:
-        """Base radius, offset or pivot, what bounds them, and the size with the usual pressure angle on the return."""
+    def chosen_size(self, exact: ExactCam, mm: float) -> str:
+        """Base radius, offset or pivot and what bounds them, in words, and the size with 45 degrees on the return."""
         from kin.law.programme import IntentError
 
-        cam, limits, bounding = self.cam, self.cam.sizing, _binding(self.cam, exact)
+        cam, limits, bounding = self.cam, self.cam.sizing, _binding_limits(self.cam, exact)
         more = "".join(
-            f" with {path.rpartition('.')[2]} {_shown(x / mm)}" for path, x in cam.sizes.items() if "." in path
+            f" with {path.rpartition('.')[2]} {_four_digits(x / mm)}" for path, x in cam.sizes.items() if "." in path
         )
-        bounds = [f"{name} at {at:.4g} deg" for name, at in bounding.items()]
-        told = f"base radius {_shown(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
+        bounds = [f"{name} at {at_deg:.4g} deg" for name, at_deg in bounding.items()]
+        sentence = f"base radius {_four_digits(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
         if limits.angles is not None and limits.angles[1] < RETURN and ON_RETURN in bounding:
             try:
-                other = sized(replace(cam, sizing=replace(limits, angles=(limits.angles[0], RETURN))))
+                gentler = find_size(replace(cam, sizing=replace(limits, angles=(limits.angles[0], RETURN))))
             except IntentError:
-                return told
-            if other.base_radius < _LESS * cam.base_radius:
-                told += f"; {_shown(other.base_radius / mm)} with on_return: {math.degrees(RETURN):.0f}"
-        return told
+                return sentence
+            if gentler.base_radius < _LESS * cam.base_radius:
+                sentence += f"; {_four_digits(gentler.base_radius / mm)} with on_return: {math.degrees(RETURN):.0f}"
+        return sentence
 
 
 def _at_least(radius: float) -> str:
     return f"radius-of-curvature: {{at_least: {upward(radius)}}} under sizing"
 
 
-def _shown(size: float) -> str:
+def _four_digits(size: float) -> str:
     return f"{size:#.4g}".rstrip(".")
 
 
-def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
-    """The figures that are at their limits, and at which shaft angle, degrees."""
+def _binding_limits(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
+    """Shaft angle, degrees, of each figure that is at its limit, by its name."""
     limits, bounds = cam.sizing, {}
     for surface in exact.surfaces:
-        of, steepest = f" of {surface.name}" if cam.holding.discs > 1 else "", exact.steepest(surface)
+        suffix, steepest = f" of {surface.name}" if cam.holding.discs > 1 else "", exact.steepest(surface)
         if limits.angles is not None and steepest is not None:
             for name, most, limit in zip(("pressure-angle-rise", ON_RETURN), steepest, limits.angles, strict=True):
                 if math.atan(most.value) > limit - _NEAR:
-                    bounds[f"{name}{of}"] = degrees(most.at)
+                    bounds[f"{name}{suffix}"] = degrees(most.at)
         if limits.radius is not None:
-            radius, at = _bend(surface)
+            radius, place = _least_convex_radius(surface)
             if radius < limits.radius * (1.0 + _NEAR):
-                bounds[f"radius-of-curvature{of}"] = exact.motion.shaft_deg(at)
+                bounds[f"radius-of-curvature{suffix}"] = exact.motion.shaft_deg(place)
     return bounds
 
 
-def _bend(surface: Surface) -> tuple[float, float]:
-    """Least radius of a surface's convex metal, mm, and its parameter: where it lies round, of hollows."""
+def _least_convex_radius(surface: Surface) -> tuple[float, float]:
+    """Least radius of a surface's convex metal, mm, and its parameter; hollows of the curve for metal outside."""
     from camgeo.curve.backwards import least_hollow
     from camgeo.curve.curvature import least_radius
 
-    radius, at = least_radius(surface.base) if surface.side > 0 else least_hollow(surface.base)
-    return radius - surface.radius, at
+    radius, place = least_radius(surface.base) if surface.side > 0 else least_hollow(surface.base)
+    return radius - surface.radius, place
 
 
-def sized(cam: SizedDiscCam) -> SizedDiscCam:
-    """The cam with the least size that keeps its limits; raises IntentError where there is none."""
+def find_size(cam: SizedDiscCam) -> SizedDiscCam:
+    """The cam with the least size that keeps the limits of its `sizing`; raises IntentError where there is none."""
     from kin.law.programme import IntentError
 
     match cam.guide, cam.nominal():
         case Translating(), ExactGuided(law=law):
-            found = _stem(cam, law)
+            result = _stem(cam, law)
         case Oscillating(length=float(length), side=side), ExactGuided(law=law):
-            found = _arm(cam, law, length, side)
+            result = _arm(cam, law, length, side)
         case guide, ExactFaced(law=law):
             if isinstance(guide, Oscillating) and cam.sizing.place is None:
                 raise IntentError("a flat face does not find the pivot; give follower.arm.pivot", "follower.arm")
-            found = _face(cam, law)
+            result = _face(cam, law)
         case _:
             raise TypeError("a disc cam has a round touch or a flat face")
-    _demand_kept(found)
-    return found
+    _demand_kept(result)
+    return result
 
 
 def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
-    """A roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
+    """The cam for a roller, shoe or knife edge on a stem: with base radius and, unless given, offset."""
     from camgeo.curve import moving_frame
 
     limits = cam.sizing
     stem = moving_frame.Translating(0.0, limits.place or 0.0)
     if limits.angles is not None:
         stem = cam.holding.least_stem(motion, limits.angles, limits.place)
-    stem = _opened(cam, motion, _rounder(cam, motion, stem, settled=limits.place is not None))
+    stem = _keep_outer_radius(cam, motion, _keep_radius(cam, motion, stem, settled=limits.place is not None))
     return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
 def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> SizedDiscCam:
-    """A roller, shoe or knife edge on an arm: base radius and, unless given, pivot."""
+    """The cam for a roller, shoe or knife edge on an arm: with base radius and, unless given, pivot."""
     from camgeo.cams.least_size import least_arm
     from camgeo.curve import moving_frame
     from kin.law.programme import IntentError
@@ -222,21 +222,21 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
     else:
         arm = moving_frame.Oscillating(pivot, length, 0.0, side)
-    arm = _opened(cam, motion, _rounder(cam, motion, arm, settled=False))
+    arm = _keep_outer_radius(cam, motion, _keep_radius(cam, motion, arm, settled=False))
     return replace(cam, guide=Oscillating(float(arm.pivot), side, length), base_radius=_base(cam, arm.prime))
 
 
 def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
-    """A flat face, on a stem or on an arm whose pivot is given."""
+    """The cam for a flat face, on a stem or on an arm whose pivot is given: with base radius."""
     from camgeo.cams.least_size import least_face, least_swing
     from kin.law.programme import IntentError
 
     limits = cam.sizing
     if limits.angles is not None or limits.radius is None:
-        why = "the pressure angle of a flat face is its tilt, whatever the size"
+        problem = "the pressure angle of a flat face is its tilt, whatever the size"
         if isinstance(cam.guide, Oscillating):
-            why = "a flat face on an arm is sized by its radius of curvature alone"
-        raise IntentError(why, "sizing.pressure-angle")
+            problem = "a flat face on an arm is sized by its radius of curvature alone"
+        raise IntentError(problem, "sizing.pressure-angle")
     if isinstance(cam.guide, Oscillating) and isinstance(cam.touch, Flat):
         guide = cam.guide
         return replace(
@@ -249,35 +249,37 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 
 def _demand_kept(cam: SizedDiscCam) -> None:
-    """Raise IntentError where a size that was found does not keep its limits, by the exact figures."""
+    """Raise IntentError where the exact figures of a cam break the limits of its `sizing`."""
     from kin.law.programme import IntentError
 
     limits = cam.sizing
     exact = cam.exact()
     for surface in exact.surfaces:
         several, steepest = cam.holding.discs > 1, exact.steepest(surface)
-        where = f" of {surface.name}" if several else ""
+        suffix = f" of {surface.name}" if several else ""
         if limits.angles is not None and steepest is not None:
             for name, reached, limit in zip(("rise", "return"), steepest, limits.angles, strict=True):
                 angle, most = math.degrees(math.atan(reached.value)), math.degrees(limit)
                 if angle > most + SLACK:
                     raise IntentError(
-                        f"the least size for the radius of curvature has a pressure angle{where} of {angle:.6g} "
+                        f"the least size for the radius of curvature has a pressure angle{suffix} of {angle:.6g} "
                         f"degrees on the {name}, more than {most:.6g}; give a base radius, or a smaller radius of "
                         "curvature",
                         "sizing",
                     )
         if limits.radius is not None:
-            found, _ = _bend(surface)
-            if found < limits.radius * (1.0 - SLACK):
+            radius, _ = _least_convex_radius(surface)
+            if radius < limits.radius * (1.0 - SLACK):
                 less = f"; {cam.advice.on(surface.name).larger} leaves more" if several else ""
-                raise IntentError(f"the size found has a radius of curvature{where} of {found:.9g} mm{less}", "sizing")
+                raise IntentError(
+                    f"the size found has a radius of curvature{suffix} of {radius:.9g} mm{less}", "sizing"
+                )
 
 
-def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled: bool) -> _GuideT:
-    """Guide of the least prime circle, from that of a guide on, at which the radius of curvature is kept too.
+def _keep_radius(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled: bool) -> _GuideT:
+    """The guide with the least prime circle, from its own on, that keeps the radius of curvature too.
 
-    The offset or pivot is found with it where there are pressure angles, unless it is `settled`.
+    The offset or pivot is found with it where there are pressure angles, unless `settled`.
     """
     from camgeo.cams.least_size import least_prime, least_round
     from camgeo.curve.curvature import least_radius
@@ -288,7 +290,7 @@ def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled
     if limits.radius is None:
         return guide
     radius, prime = limits.radius + cam.touch.radius, guide.prime
-    # where nothing else sets a least size there is some size below which no cam is looked for
+    # where nothing else bounds the size from below, a search needs some start
     start = max(prime, cam.touch.radius, _SMALL * limits.radius)
     if limits.angles is None:
         start = max(start, prime * (1.0 + 1e-9))
@@ -299,10 +301,10 @@ def _rounder(cam: SizedDiscCam, motion: Displacement, guide: _GuideT, *, settled
     return guide.resized(least_prime(lambda size: CentreShape(motion, guide.resized(size)), radius, start))
 
 
-def _opened(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) -> _GuideT:
-    """Guide of the least prime circle from that of a guide on at which the outer flank keeps the radius too.
+def _keep_outer_radius(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) -> _GuideT:
+    """The guide with the least prime circle, from its own on, that keeps the radius on the outer flank too.
 
-    Its metal is convex where the path is hollow.
+    The metal of that flank is convex where the path is hollow.
     """
     from camgeo.cams.least_size import least_prime
     from camgeo.curve.backwards import least_hollow

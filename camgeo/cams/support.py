@@ -85,24 +85,24 @@ class SupportCam(FlatFacedCam):
     preload: Preload | None = None
 
     def lift(self) -> Lift:
-        """The support function about the shaft."""
+        """The support function about the shaft, mm (AS 2023)."""
         from kin.law import support_function
 
         shape = self.shape
         if isinstance(shape, FormulaShape):
             return _with_size(_formula(shape, self.shaft), "p", shape.scale)
         if isinstance(shape, FourierShape):
-            found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.shaft)
-            return _with_size(found, "fourier.mean")
+            lift = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.shaft)
+            return _with_size(lift, "fourier.mean")
         if isinstance(shape, ReuleauxShape):
-            of = shape.sides, shape.breadth, shape.rounding, self.shaft, shape.angles
-            found = support_function.lift_reuleaux(*of)
-            return _with_size(found, "reuleaux.breadth")
-        found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.shaft)
-        return _with_size(found, "hypocycloid.breadth")
+            parameters = shape.sides, shape.breadth, shape.rounding, self.shaft, shape.angles
+            lift = support_function.lift_reuleaux(*parameters)
+            return _with_size(lift, "reuleaux.breadth")
+        lift = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.shaft)
+        return _with_size(lift, "hypocycloid.breadth")
 
     def surface(self, whole: Curve) -> Surface:
-        """The sharp corners of a Reuleaux polygon are corners of the contour."""
+        """The contour; sharp corners of a Reuleaux polygon are corners of it."""
         if not isinstance(self.shape, ReuleauxShape):
             return super().surface(whole)
         from camgeo.curve.support import with_corners
@@ -111,7 +111,7 @@ class SupportCam(FlatFacedCam):
 
     @property
     def advice(self) -> SizeAdvice:
-        """A larger mean radius, or what stands for it; a support function has no stroke of its own."""
+        """Advice: a larger mean radius, by the key that sets it; a support function has no stroke."""
         if isinstance(self.shape, ReuleauxShape):
             return ReuleauxAdvice(shape=self.shape, gain=1.0, less_steep="", size="reuleaux.rounding")
         if isinstance(self.shape, HypocycloidShape):
@@ -120,50 +120,50 @@ class SupportCam(FlatFacedCam):
 
     @property
     def linear(self) -> LinearSupport:
-        """Harmonics of a Fourier series or a hypocycloid, and the shaft of all."""
+        """The cam as a linear function of its harmonics and its shaft's place."""
         return LinearSupport(self)
 
-    def grown(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002
-        """The same: its lengths are not drawn."""
+    def grow(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002
+        """The cam itself, as drawings use none of its own lengths."""
         return self
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle about the shaft, where the shaft does not stand on the contour."""
+        """The base circle: that of the least distance from the shaft."""
         return (Circle("base circle"),)
 
 
 @dataclass(frozen=True)
 class ReuleauxAdvice(SizeAdvice):
-    """Of a Reuleaux polygon: its corners are rounded, by less than half its breadth."""
+    """Advice for a Reuleaux polygon: a larger rounding of its corners, below half its breadth."""
 
     shape: ReuleauxShape = field(kw_only=True)
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Larger corners, and where they fill it a larger breadth."""
-        told = super().free_of_undercut(free_at, mm)
+        """A larger rounding, in words, and where that reaches half the breadth a larger breadth."""
+        sentence = super().free_of_undercut(free_at, mm)
         if self.shape.rounding + free_at < 0.5 * self.shape.breadth:
-            return told
+            return sentence
         breadth = 2.0 * (self.shape.rounding + free_at) / mm
-        return told.replace(" would", f" and a reuleaux.breadth of more than {upward(breadth)} would")
+        return sentence.replace(" would", f" and a reuleaux.breadth of more than {upward(breadth)} would")
 
 
 @dataclass(frozen=True)
 class LinearSupport(Linear):
-    """A cam by its support function, as far as that is linear in harmonics."""
+    """A cam by its support function as a linear function of harmonics."""
 
     cam: SupportCam
 
     @property
     def shaft(self) -> tuple[float, float]:
-        """Where the recipe puts it."""
+        """Place of the shaft in the axes of p, mm."""
         return self.cam.shaft
 
     def about_origin(self) -> SupportCam:
-        """The shaft at the origin of p."""
+        """The cam with its shaft at the origin of p."""
         return replace(self.cam, shaft=(0.0, 0.0))
 
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
-        """Harmonics of a Fourier series or a hypocycloid: all that these are linear in."""
+        """Order, whether a sine, and scale of a field of a Fourier series or a hypocycloid; None for other fields."""
         if isinstance(self.cam.shape, HypocycloidShape):
             own = {
                 "cam.hypocycloid.size": (self.cam.shape.cusps, False, 1.0),
@@ -177,8 +177,8 @@ class LinearSupport(Linear):
         kind, _, order = path.removeprefix("cam.fourier.").partition(".")
         return (int(order), kind == "sin", 1.0) if kind in {"cos", "sin"} and order.isdigit() else None
 
-    def silent(self, orders: set[tuple[int, bool]]) -> SupportCam:
-        """Without these harmonics, but for the mean radius."""
+    def without_harmonics(self, orders: set[tuple[int, bool]]) -> SupportCam:
+        """The cam with these harmonics set to 0; the mean radius stays."""
         shape = self.cam.shape
         if isinstance(shape, FourierShape):
             shape = FourierShape(
@@ -192,9 +192,9 @@ class LinearSupport(Linear):
 
 
 def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
-    """Give the lift back unless its mean is no length: 2 pi times the mean is the perimeter, wherever the shaft is.
+    """The lift itself, if its mean radius is above 0: 2 pi times it is the perimeter, wherever the shaft is.
 
-    Raises IntentError with the mean in the recipe's unit, `scale` mm.
+    Raises IntentError else, with the mean in the recipe's unit, `scale` mm.
     """
     from kin.law.programme import IntentError
 
@@ -225,9 +225,11 @@ def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     size = np.abs(lift.derivatives(t, 0)[0]) / shape.scale
     largest = int(np.argmax(size))
     if size[largest] > MOST:  # other lengths are bounded as they are read
-        at = math.degrees(t[largest])
+        at_deg = math.degrees(t[largest])
         raise IntentError(
-            f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}; give a p of smaller values", "p", at
+            f"p reaches {size[largest]:.6g} at {at_deg:.6g} degrees, above {MOST:.0f}; give a p of smaller values",
+            "p",
+            at_deg,
         )
     return lift
 
@@ -300,13 +302,13 @@ TABLE = Table(
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note corners that leave no side or are nearly none, and too few or too many angles."""
+    """Note corners that are too large or too small for a file, and a wrong number of angles."""
     reuleaux = cam.get("reuleaux", {})
     if {"sides", "angles"} <= reuleaux.keys():
-        sides, given = reuleaux["sides"], len(reuleaux["angles"])
+        sides, count = reuleaux["sides"], len(reuleaux["angles"])
         remedy = f"give {sides - FREE}; the last three follow" if sides > FREE else "leave it out: it is regular"
-        if given != sides - FREE:
-            reader.fault_at("cam.reuleaux.angles", f"not as many as {sides} sides leave open", str(given), remedy)
+        if count != sides - FREE:
+            reader.fault_at("cam.reuleaux.angles", f"not as many as {sides} sides leave open", str(count), remedy)
     if {"breadth", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] >= reuleaux["breadth"] / 2:
         remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
         value = f"{reuleaux['rounding'] / reader.mm:g}"
@@ -314,14 +316,14 @@ def check(cam: Values, reader: Reader) -> None:
     if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
         arc = 2.0 * math.sin(0.5 * _least_angle(**reuleaux))  # chord of a corner's arc of radius 1
         if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
-            held = 1.001 * LEAST_PIECE / arc  # clear of rounding
-            remedy = f"give at least {upward(held / reader.mm)} {reader.units}"
+            least = 1.001 * LEAST_PIECE / arc  # clear of rounding
+            remedy = f"give at least {upward(least / reader.mm)} {reader.units}"
             value = f"{reuleaux['rounding'] / reader.mm:g}"
             reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
 
 
 def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> float:
-    """Least of the angles, rad, for which the cam turns about a corner; the regular one where none has those given."""
+    """Least angle, rad, for which the cam turns about a corner; the regular one where no polygon has those given."""
     from kin.law.programme import IntentError
     from kin.law.reuleaux import closed_angles
 
@@ -332,7 +334,7 @@ def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> floa
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """Make the cam of values in which there is no fault."""
+    """The cam of values without fault."""
     return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"), build_preload(cam))
 
 

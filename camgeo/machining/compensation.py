@@ -59,7 +59,7 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
     """
     growth, scale = compensation.out, compensation.scale
     try:
-        exact = design.exact if growth == 0.0 and scale == 1.0 else design.exact.grown(growth, scale)
+        exact = design.exact if growth == 0.0 and scale == 1.0 else design.exact.grow(growth, scale)
     except GrownError as error:
         name, radius = error.args
         problem = f"the metal is enlarged by {growth / recipe.mm:.6g}, "

@@ -119,7 +119,7 @@ def remarks_of(
 
 def _sizing(recipe: Recipe, design: Design) -> Remark | None:
     """The size that `sizing` gave, and what bounds it."""
-    sentence = recipe.cam.advice.size_found(design.exact, recipe.mm)
+    sentence = recipe.cam.advice.chosen_size(design.exact, recipe.mm)
     return Remark("sizing", None, None, "", sentence) if sentence else None
 
 
@@ -187,7 +187,7 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
     from camgeo.synthesis.design import sound
     from kin.law.programme import IntentError
 
-    cam = cam.refusing()
+    cam = cam.refusing_undercut()
     try:
         exact = cam.exact()
         surfaces = [sound(replace(recipe, cam=cam), exact, surface) for surface in exact.surfaces]

@@ -311,14 +311,14 @@ def test_arms_square_to_the_line_of_centres() -> None:
 def test_a_grown_pair_keeps_its_pitch_curves() -> None:
     cam = recipe(STEM, "distance: 120, radius: 11, gap: 2", more="part: {thickness: 8}\n")
     exact = designed(cam).exact
-    grown = exact.grown(0.1, 2.0)
+    grown = exact.grow(0.1, 2.0)
     t = np.linspace(0.0, 6.0, 50)
     for one, other in zip(exact.surfaces, grown.surfaces, strict=True):
         assert other.base.sample(t).point == pytest.approx(2 * one.base.sample(t).point, abs=1e-11)
         assert other.radius == pytest.approx(2 * (one.radius - 0.1))
     assert grown.gap == 4.0
     flat = designed(recipe("kind: flat", "distance: 90", LOW)).exact
-    for one, other in zip(flat.surfaces, flat.grown(0.1, 1.0).surfaces, strict=True):
+    for one, other in zip(flat.surfaces, flat.grow(0.1, 1.0).surfaces, strict=True):
         at = one.curve.sample(t)
         normal = np.stack([at.tangent[:, 1], -at.tangent[:, 0]], axis=1)
         assert other.curve.sample(t).point == pytest.approx(at.point + 0.1 * normal, abs=1e-11)

@@ -68,7 +68,7 @@ def test_a_size_obeys_both_flanks(name):
     radii = {"inner": 1.0 / bend.max() - inner.radius, "outer": -1.0 / bend.min() - outer.radius}
     assert radii[bound] == pytest.approx(least, rel=1e-3)
     assert min(radii.values()) > least * (1.0 - 1e-9)
-    assert "radius-of-curvature at" in recipe.cam.advice.size_found(designed(recipe).exact, 1.0)
+    assert "radius-of-curvature at" in recipe.cam.advice.chosen_size(designed(recipe).exact, 1.0)
 
 
 def remarks(folder, clearance, tolerance):

@@ -43,7 +43,7 @@ def sized(text: str) -> Any:
 
 def least_prime_by_chance(cam: Any, looks: int, seed: int) -> float:
     """Least prime circle of random places of the shaft; limits are taken at angles alone, a hair too lax."""
-    motion, guide, rng = cam.exact().law, cam.led, np.random.default_rng(seed)
+    motion, guide, rng = cam.exact().law, cam.centre_guide, np.random.default_rng(seed)
     ends = np.append(motion.breaks, motion.breaks[0] + 2.0 * math.pi)
     shares = np.linspace(0.0, 1.0, 300)
     tau = ends[:-1, None] * (1.0 - shares) + ends[1:, None] * shares

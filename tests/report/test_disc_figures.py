@@ -161,7 +161,7 @@ def sampled(text: str) -> tuple[Array, Array, Recipe]:
     """Pressure angles and roller speeds from differences of the centre's place, at many shaft angles."""
     recipe = load_text(text, "cam.yaml")
     cam = cast("DiscCam", recipe.cam)
-    law, guide = cast("Displacement", cam.exact().law), cam.led
+    law, guide = cast("Displacement", cam.exact().law), cam.centre_guide
     theta = np.linspace(0.0, 2.0 * math.pi, 20_001)
     step = 1e-6
     near, far = (guide.place(theta + by, law.derivatives(theta + by, 0)[0])[0] for by in (-step, step))

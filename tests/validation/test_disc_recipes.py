@@ -465,7 +465,7 @@ D16 = {"trailing": (16.727263336, 72.169575733, 12.668363853), "leading": (16.27
 def test_d16_sizing_of_an_arm(side):
     recipe, design = sized(35, 45, f", arm: {{length: 65, side: {side}}}", M07)
     cam = recipe.cam
-    found = (cam.base_radius, cam.guide.pivot, math.degrees(cam.led.rest))
+    found = (cam.base_radius, cam.guide.pivot, math.degrees(cam.centre_guide.rest))
     assert found == pytest.approx(D16[side], abs=1e-6)
     leans_of(pitch_of(design), 35.0, -45.0, 1e-6)
     proved(recipe, design)

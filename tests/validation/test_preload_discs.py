@@ -231,6 +231,6 @@ def test_a_sweep_ranks_by_the_force(tmp_path):
 def test_a_drawing_made_larger_keeps_the_interference():
     """Scaled with all of it: what a cutter or a printer is given."""
     exact = designed(recipe_of()).exact
-    grown = exact.grown(0.1, 2.0)
+    grown = exact.grow(0.1, 2.0)
     assert grown.preload.interference == 2.0 * DELTA
     assert [one.radius for one in grown.surfaces] == pytest.approx([2.0 * 8.9, 2.0 * (10.9 - DELTA)])

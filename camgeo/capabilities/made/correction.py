@@ -212,10 +212,10 @@ class CorrectedCam(ExactCam):
         """The same of the follower itself, where gauges are wider."""
         return {name: self.on_metal[name].run_by(follower) for name, follower in self.exact.running.items()}
 
-    def grown(self, out: float, scale: float) -> ExactCam:
+    def grow(self, out: float, scale: float) -> ExactCam:
         """The nominal cam grown, and as far off."""
         curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
-        return CorrectedCam(self.exact.grown(out, scale), curves)
+        return CorrectedCam(self.exact.grow(out, scale), curves)
 
 
 def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:

@@ -118,7 +118,7 @@ class CamSampler:
         if others:  # harmonics that vary beside them are part of the same cam
             others, harmonics = tuple(sorted({*others, *(harmonic.column for harmonic in harmonics)})), []
         elif harmonics and linear is not None:
-            silent = linear.silent({(harmonic.order, harmonic.is_sine) for harmonic in harmonics})
+            silent = linear.without_harmonics({(harmonic.order, harmonic.is_sine) for harmonic in harmonics})
             base = _CentredCam.sample(replace(recipe, cam=silent), count)
         else:
             base = _CentredCam.sample(recipe, count)
