@@ -186,8 +186,8 @@ def test_the_cutter_swings_about_the_corners_either_way():
     path = cutter_path(contour, 3.0)
     assert path.curve.closed
     assert path.lost == ()
-    exact = path.within(1e-6)
-    swung = CutterPath(Curve(Parallel(contour.shape, -3.0), contour.runs), 3.0, corners=True).within(1e-6)
+    exact = path.arcs(1e-6)
+    swung = CutterPath(Curve(Parallel(contour.shape, -3.0), contour.runs), 3.0, corners=True).arcs(1e-6)
     for made in (exact, swung):
         found = Contour.from_bulges(made.points, made.bulges)
         assert found.length == pytest.approx(math.pi * 56.0, rel=1e-12)  # Barbier
