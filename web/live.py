@@ -32,11 +32,11 @@ from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.report.page import tables
-from camgeo.schema.change import changed
-from camgeo.schema.edit import spelled
+from camgeo.schema.change import set_value
+from camgeo.schema.edit import number_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
-from camgeo.schema.quantity import parted, read_quantity, units_for
+from camgeo.schema.quantity import read_quantity, split_unit, units_for
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
@@ -235,7 +235,7 @@ def _entry(reader: Reader, path: str, node: Scalar) -> Iterator[dict[str, Any]]:
 
 def _number(reader: Reader, field: Field, node: Scalar, shown: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """A field of a number: its value, unit and bounds; the place is that of the number without the unit."""
-    number, unit = parted(node.text)
+    number, unit = split_unit(node.text)
     try:
         value = read_number(number)
     except Complaint:
@@ -298,7 +298,7 @@ def added(name: str, text: str, path: str, value: str) -> dict[str, Any]:
         plain = yaml.safe_load(value)
     except yaml.YAMLError:
         return {"faults": [_sentence(f"{path}: {value} is no value of YAML: check quotes and brackets")]}
-    return {"text": changed(Source.of(text, name), path, plain)}
+    return {"text": set_value(Source.of(text, name), path, plain)}
 
 
 def converted(name: str, text: str, units: Length) -> dict[str, Any]:
@@ -319,7 +319,7 @@ def converted(name: str, text: str, units: Length) -> dict[str, Any]:
             continue
         kind = Kind.LENGTH if field.kind is Kind.FORMULA and field.unit is None else field.unit or field.kind
         power = powers.get(reader.unit(kind), 0)
-        if not power or parted(node.text)[1]:
+        if not power or split_unit(node.text)[1]:
             continue
         start, end = source.index(node.mark), source.index(node.end)
         if field.kind is Kind.FORMULA:
@@ -328,7 +328,7 @@ def converted(name: str, text: str, units: Length) -> dict[str, Any]:
         else:
             number = _brief(read_number(node.text) * factor**power)
         new = new[:start] + new[start:end].replace(node.text, number) + new[end:]
-    new = changed(Source.of(new, name), "units", units)
+    new = set_value(Source.of(new, name), "units", units)
     try:
         same = _alike(before, _recipe(name, new))
     except camgeo.CamgeoError:
@@ -341,7 +341,7 @@ def converted(name: str, text: str, units: Length) -> dict[str, Any]:
 def _brief(value: float) -> str:
     """A number with as few digits as keep it within 2e-8 of its size, so that 36 mm are 36 mm again."""
     shorter = (float(f"{value:.{digits}g}") for digits in range(1, 10))
-    return spelled(next(number for number in (*shorter, value) if abs(number - value) <= 2e-8 * abs(value)))
+    return number_text(next(number for number in (*shorter, value) if abs(number - value) <= 2e-8 * abs(value)))
 
 
 def _alike(first: Recipe, second: Recipe) -> bool:

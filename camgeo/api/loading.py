@@ -35,9 +35,9 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
-        from camgeo.schema.change import written
+        from camgeo.schema.change import yaml_text
 
-        return load_order_text(written(source, NAME), NAME, NAME)
+        return load_order_text(yaml_text(source, NAME), NAME, NAME)
     if isinstance(source, str) and any(mark in source for mark in OF_TEXT):
         return load_order_text(source, NAME)
     return load_order(path_of("source", source))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.registry.formats import Format
-from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import Field, Form, Kind, Table, either
-from camgeo.schema.yaml_source import Scalar, described, join
+from camgeo.schema.yaml_source import Scalar, describe, join
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,16 +36,16 @@ def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple
     for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
         word = item.text if isinstance(item, Scalar) else ""
         if word in names:
-            reader.fault(item.mark, join(path, i), "the same overlay twice", shown(word), "leave one out")
+            reader.fault(item.mark, join(path, i), "the same overlay twice", quote(word), "leave one out")
         elif word in there:
             names.append(word)
         elif word in OVERLAYS:
             of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
             remedy = f"give {either(tuple(there))}"
-            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", shown(word), remedy)
+            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", quote(word), remedy)
         else:
             remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
-            reader.fault(item.mark, join(path, i), "no overlay", described(item), remedy)
+            reader.fault(item.mark, join(path, i), "no overlay", describe(item), remedy)
     return tuple(names)
 
 

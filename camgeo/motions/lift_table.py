@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.schema.fields import MOST, Field, Form, Kind
-from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.scalars import MOST_TEXT, Complaint
-from camgeo.schema.yaml_source import Scalar, Sequence, described, join
+from camgeo.schema.yaml_source import Scalar, Sequence, describe, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None
     """Read the path of a file, as written."""
     if isinstance(node, Scalar) and 0 < len(node.text) <= MOST_TEXT and node.text.isprintable():
         return node.text
-    reader.fault(node.mark, path, "not the path of a file", described(node), reader.wanted(field))
+    reader.fault(node.mark, path, "not the path of a file", describe(node), reader.wanted(field))
     return None
 
 
@@ -76,7 +76,7 @@ def _read_origin(reader: Reader, field: Field, node: Node, path: str) -> Origin 
         cells = item.items if isinstance(item, Sequence) else ()
         texts = [cell.text for cell in cells if isinstance(cell, Scalar)]
         if len(texts) != len(cells) or len(texts) < _PAIR or not all(map(_NUMBER.fullmatch, texts)):
-            reader.fault(item.mark, join(path, i), "not a row", described(item), "give a list [angle, displacement]")
+            reader.fault(item.mark, join(path, i), "not a row", describe(item), "give a list [angle, displacement]")
             return None
         lines.append(";".join(texts))
     return Origin("the rows", "\n".join(lines)) if lines else None
@@ -105,13 +105,13 @@ def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[
     columns: list[Column] = []
     for i, item in enumerate(reader.items(field, node, path, 2)):
         if not isinstance(item, Scalar) or not 0 < len(item.text) <= MOST_TEXT or not item.text.isprintable():
-            reader.fault(item.mark, join(path, i), "not a column", described(item), reader.wanted(field))
+            reader.fault(item.mark, join(path, i), "not a column", describe(item), reader.wanted(field))
             return None
         columns.append(int(item.text) if item.plain and item.text.isdecimal() else item.text)
     if len(columns) == 2:
         return columns[0], columns[1]
     if columns:
-        value = described(node) if isinstance(node, Sequence) else None
+        value = describe(node) if isinstance(node, Sequence) else None
         reader.fault(node.mark, path, "not two columns", value, reader.wanted(field))
     return None
 
@@ -172,7 +172,7 @@ def read_rows(
     try:
         text = origin.text
         if text is None:
-            text = _text(bytes_of(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table"))
+            text = _text(read_bytes(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table"))
         return _rows(text, sheet)
     except Complaint as complaint:
         remedy = complaint.remedy or "give its path as seen from the recipe's folder"

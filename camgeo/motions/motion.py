@@ -17,7 +17,7 @@ from camgeo.motions.lobes import lobe_field, read_sides
 from camgeo.motions.segments import LEAST, REST, read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, join
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries, join
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -534,7 +534,7 @@ def _read_points(
     for i, item in enumerate(reader.items(field, node, path, MOST_POINTS)):
         below = join(path, i)
         if not isinstance(item, Sequence) or len(item.items) != 2:
-            reader.fault(item.mark, below, "not a point", described(item), "give a list [angle, displacement]")
+            reader.fault(item.mark, below, "not a point", describe(item), "give a list [angle, displacement]")
             continue
         points.append(
             tuple(

@@ -7,10 +7,10 @@ from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
-from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Scalar, Sequence, described, join
+from camgeo.schema.yaml_source import Scalar, Sequence, describe, join
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -217,7 +217,7 @@ def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[t
     for i, item in enumerate(reader.items(field, node, path, MOST_LAW_POINTS)):
         below = join(path, i)
         if not isinstance(item, Sequence) or len(item.items) != 2:
-            reader.fault(item.mark, below, "not a point", described(item), "give a list [u, s]")
+            reader.fault(item.mark, below, "not a point", describe(item), "give a list [u, s]")
             continue
         points.append(tuple(reader.field(number, part, join(below, k)) for k, part in enumerate(item.items)))
     return tuple(points) if points and not any(None in point for point in points) else None
@@ -278,7 +278,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
             return node.text
         own = "{polynomial: [...]}, {scca: {...}}, {uniform: {blend: 10}}, {points: [...]} or {table: s.csv}"
         remedy = suggestion(node.text, names) or f"give {', '.join(names)}, {own}"
-        reader.fault(node.mark, path, "unknown motion law", shown(node.text), remedy)
+        reader.fault(node.mark, path, "unknown motion law", quote(node.text), remedy)
         return None
     faults = len(reader.errors)
     values = reader.mapping(field, node, path) or {}

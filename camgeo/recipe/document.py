@@ -81,10 +81,10 @@ class Document:
 
     def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
         """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
-        from camgeo.schema.change import changed
+        from camgeo.schema.change import set_value
 
         text = self.text
         for path, value in values.items():
             is_a("path", path, str, "a str")
-            text = changed(Source.of(text, str(self.path)), path, value)
+            text = set_value(Source.of(text, str(self.path)), path, value)
         return text

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from camgeo.recipe.machining import COMPENSATION, Compensation, alterations, build_compensation
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS, variant
-from camgeo.schema.errors import shown
+from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
-from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
+from camgeo.schema.yaml_source import Mapping, Scalar, describe, is_empty, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -161,10 +161,10 @@ def read_files(options: Options, reader: Reader, field: Field, node: Node, path:
         kind, given = _format(item)
         if kind is None:
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
-            reader.fault(item.mark, below, "not a file", described(item), remedy)
+            reader.fault(item.mark, below, "not a file", describe(item), remedy)
             continue
         if kind.text not in options:
-            reader.fault(kind.mark, below, "unknown file format", shown(kind.text), f"give {either(tuple(options))}")
+            reader.fault(kind.mark, below, "unknown file format", quote(kind.text), f"give {either(tuple(options))}")
         elif given is None:
             found.append({"kind": kind.text, "path": below})
         else:

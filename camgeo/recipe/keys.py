@@ -20,7 +20,7 @@ from camgeo.registry.formats import FORMATS
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
 from camgeo.schema.reader import kind_of
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
     root = reader.source.root
     reader.survey(root, "")
     if not isinstance(root, Mapping):
-        reader.fault(root.mark, "", "a recipe is a mapping", described(root), "begin with the key `cam:`")
+        reader.fault(root.mark, "", "a recipe is a mapping", describe(root), "begin with the key `cam:`")
         return {}
     top = entries(root)
     units = top.get("units")

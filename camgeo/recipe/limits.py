@@ -11,7 +11,7 @@ from camgeo.recipe.words import words_of
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys
+from camgeo.schema.yaml_source import Mapping, Sequence, describe, entries, join, keys
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def limits_form(*, swept: bool) -> Form[Reader]:
 def _read_limits(swept: bool, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
     """Read limits by the figures that they bound; lengths in mm, angles in degrees."""
     if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
     given = entries(node)
     limits = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, either, length
 from camgeo.schema.json_schema import one_of_schema, table_schema
 from camgeo.schema.readers import form_of_kinds
-from camgeo.schema.yaml_source import Scalar, described, join
+from camgeo.schema.yaml_source import Scalar, describe, join
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -196,7 +196,7 @@ def _read_link(reader: Reader, field: Field, node: Node, path: str) -> str | Non
     """Read the name of a moving link."""
     if isinstance(node, Scalar) and _LINK.fullmatch(node.text):
         return node.text
-    reader.fault(node.mark, path, "no moving link", described(node), reader.wanted(field))
+    reader.fault(node.mark, path, "no moving link", describe(node), reader.wanted(field))
     return None
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.din6885 import LEAST, key_for
 from camgeo.recipe.din6885 import MOST as WIDEST
-from camgeo.schema.errors import shown
+from camgeo.schema.errors import quote
 from camgeo.schema.fields import Field, Form, Kind, Table, length, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.read_scalar import read_numeric
@@ -270,7 +270,7 @@ def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values |
     if isinstance(node, Scalar):
         if node.text in STANDARDS:
             return {"standard": node.text}
-        reader.fault(node.mark, path, "unknown keyway", shown(node.text), reader.wanted(field))
+        reader.fault(node.mark, path, "unknown keyway", quote(node.text), reader.wanted(field))
         return None
     return reader.mapping(field, node, path)
 

@@ -27,7 +27,7 @@ from camgeo.registry import registry
 from camgeo.registry import root as roots
 from camgeo.registry.root import CAM
 from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
-from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
@@ -217,16 +217,16 @@ class Recipe(Order):
 
     def sized(self) -> Recipe:
         """Give the recipe with what was found in the place of `sizing`, of `least` and `rest`; itself without them."""
-        from camgeo.schema.change import changed, exchanged
+        from camgeo.schema.change import replace_entry, set_value
 
         angles = {} if self.settled is None else dict((self.settled.least, self.settled.rest))
         document = Document(path=self.path, text=self.changed(angles))
         for path, size in self.cam.sizes.items():
             source, value = document.source(), size / self.mm
             if path == "base_radius":
-                text = exchanged(source, "cam.sizing", path, value)
+                text = replace_entry(source, "cam.sizing", path, value)
             else:
-                text = changed(source, f"cam.{path}", value)
+                text = set_value(source, f"cam.{path}", value)
             document = Document(path=self.path, text=text)
         return load_text(document.text, self.path, f"{self.path} (sized)") if self.cam.sizes or angles else self
 
@@ -333,7 +333,7 @@ def file_bytes(path: str | PathLike[str]) -> bytes:
     if not str(path):
         raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
     try:
-        return bytes_of(path, MAX_BYTES, "recipe")
+        return read_bytes(path, MAX_BYTES, "recipe")
     except Complaint as complaint:
         raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
 

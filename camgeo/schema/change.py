@@ -10,8 +10,8 @@ from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
-from camgeo.schema.edit import spelled
-from camgeo.schema.errors import RecipeError, RecipeErrors, shown
+from camgeo.schema.edit import number_text
+from camgeo.schema.errors import RecipeError, RecipeErrors, quote
 from camgeo.schema.yaml_source import (
     MAX_DEPTH,
     Mapping,
@@ -36,63 +36,67 @@ Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Va
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people read as they stand
 _WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
+_NO_PATH = ("not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
+_BY_HAND = ("the value cannot be put there", "write it into the text by hand")
 _STEP = re.compile(r"\.?(?:([A-Za-z0-9_-]+)|'([^'\\]*)')|\[([0-9]+)\]")
 
 
-def written(values: AnyMapping[str, Value], file: str) -> str:
-    """Write a recipe's values as YAML, a key a line; raises RecipeErrors, which name `file`, for what none may hold."""
+def yaml_text(values: AnyMapping[str, Value], file: str) -> str:
+    """YAML text of a recipe's values, a key a line; raises RecipeErrors, naming `file`, for values it may not hold."""
     return "".join(f"{line}\n" for line in _block(values, "", file, 0))
 
 
-def changed(source: Source, path: str, value: Value) -> str:
-    """Put a value in the place of another in a recipe's text, or add it where its path has none yet.
+def set_value(source: Source, path: str, value: Value) -> str:
+    """Text of a recipe with a value set at a path such as `cam.motion[1].over`, or added where the path has none yet.
 
-    All else stays as it is, comments included; what a list or a mapping held goes with its comments. Raises
+    All else stays as it is, comments included; a list or mapping that is replaced goes with its comments. Raises
     RecipeErrors for a path that leads nowhere, a value that no recipe may hold, and a place that aliases share.
     """
     steps = _steps(source, path)
-    node, at = source.root, ""
+    node, node_path = source.root, ""
     for i, step in enumerate(steps):
-        found = _entry(node, step)
-        if found is None:
-            return _checked(source, path, _added(source, node, at, steps[i:], value))
-        node, at = found, join(at, step)
-    own = {id(scalar) for _, scalar in scalars(node)}
-    if any(id(scalar) in own for there, scalar in scalars(source.root) if not is_within(there, path)):
-        raise _refused(source, path, "an alias shares this place with others", "write the value out where it stands")
+        child = _entry(node, step)
+        if child is None:
+            return _verify_change(source, path, _add_entry(source, node, node_path, steps[i:], value))
+        node, node_path = child, join(node_path, step)
+    own_ids = {id(scalar) for _, scalar in scalars(node)}
+    if any(id(scalar) in own_ids for scalar_path, scalar in scalars(source.root) if not is_within(scalar_path, path)):
+        raise _refusal(
+            source.file, path, "an alias shares this place with others", "write the value out where it stands"
+        )
     text = _flow(value, path, source.file, 0)
     first, behind = _span(source, node.mark, node.end)
     old = source.text[first:behind]
     if not old:  # `key:` and nothing behind it
         text = text if source.text[first - 1 : first].isspace() else f" {text}"
-    return _checked(source, path, source.text[:first] + text + old[len(old.rstrip()) :] + source.text[behind:])
+    return _verify_change(source, path, source.text[:first] + text + old[len(old.rstrip()) :] + source.text[behind:])
 
 
-def exchanged(source: Source, path: str, key: str, value: Value) -> str:
-    """Put an entry with another key in the place of one; all else stays as `changed` has it."""
-    *above, name = _steps(source, path)
+def replace_entry(source: Source, path: str, key: str, value: Value) -> str:
+    """Text of a recipe whose entry at a path has another key and value; all else and errors as of `set_value`."""
+    *parents, name = _steps(source, path)
     node: Node | None = source.root
-    for step in above:
+    for step in parents:
         node = None if node is None else _entry(node, step)
     pairs = node.entries if isinstance(node, Mapping) else ()
-    for old, held in pairs:
-        if isinstance(old, Scalar) and old.text == name:
-            first, behind = source.index(old.mark), source.index(held.end)
+    for key_node, value_node in pairs:
+        if isinstance(key_node, Scalar) and key_node.text == name:
+            first, behind = source.index(key_node.mark), source.index(value_node.end)
             text = source.text[first:behind]
-            there = f"{path.removesuffix(str(name))}{key}"
-            new = f"{key}: {_flow(value, there, source.file, 0)}{text[len(text.rstrip()) :]}"
-            return _checked(source, path, source.text[:first] + new + source.text[behind:], there)
-    raise _refused(source, path, "not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
+            new_path = f"{path.removesuffix(str(name))}{key}"
+            new = f"{key}: {_flow(value, new_path, source.file, 0)}{text[len(text.rstrip()) :]}"
+            return _verify_change(source, path, source.text[:first] + new + source.text[behind:], new_path)
+    raise _refusal(source.file, path, *_NO_PATH)
 
 
 def _steps(source: Source, path: str) -> list[str | int]:
     steps: list[str | int] = []
-    at = 0
-    while found := _STEP.match(path, at):
-        steps.append(int(found[3]) if found[3] else found[1] or found[2])
-        at = found.end()
-    if at < len(path) or not steps or path.startswith("."):
-        raise _refused(source, path, "not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
+    position = 0
+    while match := _STEP.match(path, position):
+        steps.append(int(match[3]) if match[3] else match[1] or match[2])
+        position = match.end()
+    if position < len(path) or not steps or path.startswith("."):
+        raise _refusal(source.file, path, *_NO_PATH)
     return steps
 
 
@@ -102,21 +106,23 @@ def _entry(node: Node, step: str | int) -> Node | None:
     return entries(node).get(step) if isinstance(node, Mapping) else None
 
 
-def _added(source: Source, node: Node, target: str, steps: list[str | int], value: Value) -> str:
-    """Add an entry to the mapping at a path; the mappings between come to be with it."""
+def _add_entry(source: Source, node: Node, target: str, steps: list[str | int], value: Value) -> str:
+    """Add an entry to the mapping `node` at the path `target`, with the mappings that `steps` name in between."""
     whole = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
     path = f"{target}{'' if whole.startswith('[') or not target else '.'}{whole}"
     for step in reversed(steps[1:]):
         if isinstance(step, int):
-            raise _refused(source, path, "the entry does not exist", "give the whole list by its own path")
+            raise _refusal(source.file, path, "the entry does not exist", "give the whole list by its own path")
         value = {step: value}
     name = steps[0]
     if isinstance(name, int) or not (isinstance(node, Mapping) or is_empty(node)):
-        held = "entry" if isinstance(name, int) else "field"
-        raise _refused(source, path, f"the {held} does not exist", "give a value to a field or an entry that is there")
+        noun = "entry" if isinstance(name, int) else "field"
+        raise _refusal(
+            source.file, path, f"the {noun} does not exist", "give a value to a field or an entry that is there"
+        )
     text = f"{name}: {_flow(value, path, source.file, 0)}"
     if not isinstance(node, Mapping):
-        return changed(source, target, {name: value})
+        return set_value(source, target, {name: value})
     if node.flow:
         end = source.index(node.entries[-1][1].end) if node.entries else source.index(node.end) - 1
         return f"{source.text[:end]}{', ' if node.entries else ''}{text}{source.text[end:]}"
@@ -128,28 +134,32 @@ def _added(source: Source, node: Node, target: str, steps: list[str | int], valu
     return f"{before}{' ' * (node.entries[0][0].mark[1] - 1)}{text}{newline}{source.text[cut:]}"
 
 
-def _checked(source: Source, path: str, text: str, new_path: str = "") -> str:
-    """Give back the new text, if it says what the old one did but for the value at a path, or at a new one."""
+def _verify_change(source: Source, path: str, text: str, new_path: str = "") -> str:
+    """Give the new text, whose values at all other paths must be the old ones; the entry may move to `new_path`."""
     try:
         new = Source.of(text, source.file).root
     except RecipeErrors as errors:
-        raise _refused(source, path, "the value cannot be put there", "write it into the text by hand") from errors
-    if _others(source.root, path) != _others(new, new_path or path):
-        raise _refused(source, path, "the value cannot be put there", "write it into the text by hand")
+        raise _refusal(source.file, path, *_BY_HAND) from errors
+    if _texts_elsewhere(source.root, path) != _texts_elsewhere(new, new_path or path):
+        raise _refusal(source.file, path, *_BY_HAND)
     return text
 
 
-def _others(root: Node, path: str) -> dict[str, str]:
-    """Give the texts at all other paths; nothing, which a value may have replaced, is none."""
-    return {at: scalar.text for at, scalar in scalars(root) if not (is_within(at, path) or is_empty(scalar))}
+def _texts_elsewhere(root: Node, path: str) -> dict[str, str]:
+    """Texts by all paths but this one and those below it, without empty values."""
+    return {
+        scalar_path: scalar.text
+        for scalar_path, scalar in scalars(root)
+        if not (is_within(scalar_path, path) or is_empty(scalar))
+    }
 
 
 def _span(source: Source, mark: tuple[int, int], end: tuple[int, int]) -> tuple[int, int]:
     return source.index(mark), max(source.index(mark), source.index(end))
 
 
-def _refused(source: Source, path: str, problem: str, remedy: str) -> RecipeErrors:
-    return RecipeErrors([RecipeError(source.file, 0, 0, path, problem, None, remedy)])
+def _refusal(file: str, path: str, problem: str, remedy: str = "", value: str | None = None) -> RecipeErrors:
+    return RecipeErrors([RecipeError(file, 0, 0, path, problem, value, remedy)])
 
 
 # --- values as YAML ---------------------------------------------------------------------------------------------------
@@ -160,17 +170,17 @@ def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> 
     lines = []
     indent = "  " * depth
     for key, value in values.items():
-        at = join(path, _key(key, path, file))
-        name = _scalar(key, at, file)
+        entry_path = join(path, _key(key, path, file))
+        name = _scalar(key, entry_path, file)
         if isinstance(value, AnyMapping) and value:
-            lines += [f"{indent}{name}:", *_block(value, at, file, _deeper(depth, at, file))]
+            lines += [f"{indent}{name}:", *_block(value, entry_path, file, _deeper(depth, entry_path, file))]
             continue
-        held = _without_arrays(value)
-        if _is_list(held) and any(isinstance(item, AnyMapping) or _is_list(_without_arrays(item)) for item in held):
-            items = (_flow(item, join(at, i), file, depth + 1) for i, item in enumerate(held))
+        plain = _without_arrays(value)
+        if _is_list(plain) and any(isinstance(item, AnyMapping) or _is_list(_without_arrays(item)) for item in plain):
+            items = (_flow(item, join(entry_path, i), file, depth + 1) for i, item in enumerate(plain))
             lines += [f"{indent}{name}:", *(f"{indent}  - {item}" for item in items)]
         else:
-            lines.append(f"{indent}{name}: {_flow(value, at, file, depth)}")
+            lines.append(f"{indent}{name}: {_flow(value, entry_path, file, depth)}")
     return lines
 
 
@@ -201,13 +211,13 @@ def _is_list(value: object) -> TypeGuard[AnySequence[Value]]:
 
 def _deeper(depth: int, path: str, file: str) -> int:
     if depth > MAX_DEPTH:
-        raise RecipeErrors([RecipeError(file, 0, 0, path[:60], f"nested more than {MAX_DEPTH} deep")])
+        raise _refusal(file, path[:60], f"nested more than {MAX_DEPTH} deep")
     return depth + 1
 
 
 def _key(key: object, path: str, file: str) -> str:
     if not isinstance(key, str):
-        raise RecipeErrors([RecipeError(file, 0, 0, path, "a key is a text", shown(str(key)))])
+        raise _refusal(file, path, "a key is a text", value=quote(str(key)))
     return key
 
 
@@ -220,14 +230,11 @@ def _scalar(value: object, path: str, file: str) -> str:
         try:
             return str(value)
         except ValueError:  # Python writes none of thousands of digits
-            remedy = "give one of a few digits"
-            raise RecipeErrors([RecipeError(file, 0, 0, path, "a number of too many digits", None, remedy)]) from None
+            raise _refusal(file, path, "a number of too many digits", "give one of a few digits") from None
     if isinstance(value, float) and math.isfinite(value):
-        return spelled(value)
+        return number_text(value)
     if isinstance(value, str):
-        return (
-            value if _PLAIN.fullmatch(value) and value.lower() not in _WORDS else json.dumps(value, ensure_ascii=False)
-        )
-    told = shown(str(value))
-    what = "a number is finite" if isinstance(value, float) else "neither a text, a number, a list nor a mapping"
-    raise RecipeErrors([RecipeError(file, 0, 0, path, what, told)])
+        is_plain = _PLAIN.fullmatch(value) and value.lower() not in _WORDS
+        return value if is_plain else json.dumps(value, ensure_ascii=False)
+    problem = "a number is finite" if isinstance(value, float) else "neither a text, a number, a list nor a mapping"
+    raise _refusal(file, path, problem, value=quote(str(value)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.common.errors import CallError
 from camgeo.schema.errors import RecipeError, RecipeErrors
-from camgeo.schema.quantity import parted
+from camgeo.schema.quantity import split_unit
 from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import Mapping, Scalar, Source, keys, read_source, scalars
 
@@ -21,27 +21,27 @@ _NAME = "recipe"  # of a text in errors
 
 
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
-    """Put numbers in the place of others in a recipe's text, by paths such as `cam.shaft[0]`.
+    """Text of a recipe with numbers in the place of others, by paths such as `cam.shaft[0]`.
 
     A number is written as briefly as reads back exactly, in the recipe's unit: that of the old one goes with it. Raises
     CallError for a path at which no number stands, for one whose number an alias shares with other fields, and for a
     number that is not finite; RecipeErrors for a text that is no YAML.
     """
     source = _source(recipe)
-    found = list(scalars(source.root))
-    places = dict(found)
+    placed = list(scalars(source.root))
+    places = dict(placed)
     changes = []
     for path, value in values.items():
         if path not in places:
             raise CallError(f"no number at {path}")
         scalar = places[path]
         try:
-            read_number(parted(scalar.text)[0])
+            read_number(split_unit(scalar.text)[0])
         except Complaint as complaint:
             raise CallError(f"no number at {path}: {complaint.problem}") from None
-        if shared := [other for other, node in found if node is scalar and other != path]:
+        if shared := [other_path for other_path, node in placed if node is scalar and other_path != path]:
             raise CallError(f"an alias shares the number at {path} with {shared[0]}")
-        changes.append((scalar, spelled(value)))
+        changes.append((scalar, number_text(value)))
     text = source.text
     for scalar, number in sorted(changes, key=lambda change: change[0].mark, reverse=True):
         first, behind = source.index(scalar.mark), source.index(scalar.end)
@@ -49,8 +49,8 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
     return text
 
 
-def without(recipe: str | Source, section: str) -> str:
-    """Take a section of the top level out of a recipe's text, with the comments in it; as it is where there is none.
+def remove_section(recipe: str | Source, section: str) -> str:
+    """Text of a recipe without a section of the top level and its comments; unchanged where it has no such section.
 
     Raises RecipeErrors for a text that is no YAML, or from which the section cannot be cut without harm to the rest, as
     where an alias outside stands for something inside.
@@ -61,17 +61,21 @@ def without(recipe: str | Source, section: str) -> str:
         return source.text
     index = next(i for i, (key, _) in enumerate(root.entries) if isinstance(key, Scalar) and key.text == section)
     text = _without_entry(source, root, index) if root.flow else _without_lines(source, root, index)
-    rest = [pair for i, pair in enumerate(root.entries) if i != index]
-    left = read_source(text.encode(), source.file).root if rest else None
-    if left is None or not isinstance(left, Mapping) or _plain(left) != [_plain_pair(pair) for pair in rest]:
+    other_entries = [pair for i, pair in enumerate(root.entries) if i != index]
+    root_after = read_source(text.encode(), source.file).root if other_entries else None
+    if (
+        root_after is None
+        or not isinstance(root_after, Mapping)
+        or _plain(root_after) != [_plain_pair(pair) for pair in other_entries]
+    ):
         remedy = "let it stand as a block of lines of its own"
         problem = "cannot be taken out of the text without harm"
         raise RecipeErrors([RecipeError(source.file, *root.entries[index][0].mark, section, problem, None, remedy)])
     return text
 
 
-def spelled(value: float) -> str:
-    """Write a number so that it reads back exactly; raises CallError where it is not finite."""
+def number_text(value: float) -> str:
+    """Shortest text of a number that reads back exactly; raises CallError where it is not finite."""
     value = float(value)
     if not math.isfinite(value):
         raise CallError(f"{value} cannot stand in a recipe")

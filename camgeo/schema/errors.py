@@ -41,12 +41,12 @@ class RecipeError:
 
     def __str__(self) -> str:
         """Write the fault on one line: file:line:column: path: problem, given value; remedy."""
-        given = f", given {self.value}" if self.value is not None else ""
+        value = f", given {self.value}" if self.value is not None else ""
         remedy = f"; {self.remedy}" if self.remedy else ""
-        return f"{self.statement}{given}{remedy}"
+        return f"{self.statement}{value}{remedy}"
 
     def without_place(self, file: str) -> RecipeError:
-        """Give the fault of a text without lines that anybody has seen, under another name than a file's."""
+        """Copy of the fault without line and column, under another name: for texts that no file holds."""
         return replace(self, file=file, line=0, column=0)
 
 
@@ -65,16 +65,19 @@ class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
         return "\n".join(map(str, self.errors))
 
 
-def shown(text: str) -> str:
-    """Quote a text for an error, shortened, with nothing in it that could disturb a terminal."""
+def quote(text: str) -> str:
+    """Text in quotes for an error, at most 60 characters of it, control characters escaped."""
     return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
 
 
 def suggestion(word: str, words: Iterable[str], near: float = NEAR) -> str:
-    """Name the nearest of the known words, if one is as near as `near`, of 1 for the same word."""
+    """Question that names the nearest of the known words, `did you mean arm?`; empty if none is near.
+
+    `near` is the least likeness from 0 to 1, the ratio of difflib; 1 is the same word.
+    """
     from difflib import get_close_matches  # for the message alone
 
     if len(word) > _LONGEST_WORD:
         return ""
-    found = get_close_matches(word.lower(), list(words), n=1, cutoff=near)
-    return f"did you mean {found[0]}?" if found else ""
+    matches = get_close_matches(word.lower(), list(words), n=1, cutoff=near)
+    return f"did you mean {matches[0]}?" if matches else ""

@@ -1,7 +1,7 @@
-"""What a schema of a recipe is made of: fields and tables of fields, with their bounds.
+"""Fields and tables of fields, of which the schema of a recipe is made, with their bounds.
 
-The tables themselves stand in the topics above this room. They are data: recipes are read and checked by them,
-`json_schema` publishes them, `starter` turns them into comments.
+The packages above declare the tables. They are data: recipes are read and checked by them, `json_schema` publishes
+them, `starter` turns them into comments.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 Schema: TypeAlias = dict[str, Any]  # a JSON schema
-R = TypeVar("R")  # who reads recipes by these tables, of whom they know nothing
+R = TypeVar("R")  # reader of recipes
 
 MOST = 2e6  # of lengths as written, two kilometres in mm: a bound against slips, far above any cam
 _SLIPS = (MOST, MOST**2)
@@ -31,7 +31,7 @@ MOST_FILES = 20
 
 
 def either(words: Iterable[str], conjunction: str = "or") -> str:
-    """Join words: `a, b or c`."""
+    """Words joined as `a, b or c`."""
     words = tuple(words)
     return f" {conjunction} ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
@@ -73,11 +73,11 @@ class Kind(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Form(Generic[R]):
-    """What a field of `Kind.OWN` holds, as the topic that knows it declares it.
+    """Form of a field of `Kind.OWN`, declared by the module that knows it.
 
-    `noun` and `wanted` are for messages; `read` gives None for what is faulty and has noted the fault; `schema` makes
-    the JSON schema. Of a mapping whose `kind` says which keys it has, `tables` are those of each kind, and `group` with
-    the kind says where a key belongs: `cam of kind support`.
+    `noun` and `wanted` are for messages; `read` notes a fault and gives None for a faulty value; `schema` makes the
+    JSON schema. For a mapping whose `kind` chooses its keys, `tables` has the table of each kind, and `group` with the
+    kind says where a key belongs: `cam of kind support`.
     """
 
     noun: str
@@ -94,7 +94,7 @@ class Form(Generic[R]):
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `after` is the core's key behind which that of a capability stands, `unshown` are starters that it is of no use to.
+    `after` is the core's key behind which the key of a capability stands; `unshown` are starters that leave it out.
     """
 
     name: str
@@ -119,7 +119,7 @@ class Field:
 
     @property
     def noun(self) -> str:
-        """What the field holds, for messages: `a length`."""
+        """Value that the field holds, for messages: `a length`."""
         return self.form.noun if self.form else self.kind.value
 
     @property
@@ -131,13 +131,13 @@ class Field:
 
     @property
     def inner(self) -> Table:
-        """The table of a field that has one."""
+        """Table of a field that has one; an AssertionError elsewhere."""
         if self.table is None:
             raise AssertionError(self.name)
         return self.table
 
     def wanted(self) -> str:
-        """Say what would do: `an odd whole number from 3 to 99`."""
+        """Values that the field takes, in words: `an odd whole number from 3 to 99`."""
         if self.form is not None:
             return self.form.wanted
         match self.kind:
@@ -160,7 +160,7 @@ class Field:
                 return f"{noun}{self._bounds()}"
 
     def out_of_bounds(self, value: float) -> str:
-        """Say which bound a number breaks, or nothing."""
+        """Bound that a number breaks, in words: `above 99`; empty for a number within the bounds."""
         if self.above is not None and value <= self.above:
             return f"not above {self.above:.10g}"
         if self.at_least is not None and value < self.at_least:
@@ -170,7 +170,7 @@ class Field:
         return "an even number" if self.odd and value % 2 == 0 else ""
 
     def _bounds(self) -> str:
-        """Say the bounds, but not those against slips alone."""
+        """Bounds in words, without those that only guard against slips."""
         if self.at_least is not None and self.at_most is not None:
             if self.at_most not in _SLIPS:
                 return f" from {self.at_least:.10g} to {self.at_most:.10g}"
@@ -182,9 +182,10 @@ class Field:
 
 @dataclass(frozen=True)
 class Table:
-    """The keys of a mapping.
+    """Fields of a mapping.
 
-    Of `alternatives` exactly one is given, or none where they are `optional`; each names what must come with it.
+    A recipe gives exactly one of the `alternatives`, or none where they are `optional`; each is a key with the keys
+    that must come with it.
     """
 
     fields: tuple[Field, ...]
@@ -193,34 +194,34 @@ class Table:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The keys."""
+        """Names of the fields."""
         return tuple(item.name for item in self.fields)
 
     def field(self, name: str) -> Field:
-        """Find a field by its key, which must be one of the table's."""
+        """Field of a key; raises StopIteration for a key that the table has not."""
         return next(item for item in self.fields if item.name == name)
 
 
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
-    """Make the field of a length above 0, in the recipe's unit."""
+    """Field of a length above 0, in the recipe's unit."""
     return Field(name, Kind.LENGTH, about, required, default=default, above=0, at_most=MOST)
 
 
 def coordinate(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
-    """Make the field of a length that may be 0 or negative."""
+    """Field of a length that may be 0 or negative, in the recipe's unit."""
     return Field(name, Kind.LENGTH, about, required, default=default, at_least=-MOST, at_most=MOST)
 
 
 def mapping(name: str, about: str, *fields: Field) -> Field:
-    """Make the field of a mapping with these fields."""
+    """Field of a mapping with these fields."""
     return Field(name, Kind.TABLE, about, table=Table(fields))
 
 
 def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
-    """Find the field at a path such as `cam.shaft[0]`, whichever entry of a list it is in, or None.
+    """Field at a path such as `cam.shaft[0]`, the same for every entry of a list; None where the schema has none.
 
-    `kinds` says which kind each mapping with kinds is of; one that it does not name may be of any. An entry of points,
-    numbers and harmonics has the field of the whole.
+    `kinds` has the kind of each mapping with kinds, by its key; a mapping it does not name may be of any kind. An entry
+    of points, numbers and harmonics has the field of the whole.
     """
     table: Table | None = root
     field: Field | None = None
@@ -241,37 +242,37 @@ def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
         elif field.name in kinds:
             table = tables.get(kinds[field.name])
         else:
-            table = Table(tuple(item for each in tables.values() for item in each.fields))
+            table = Table(tuple(item for kind_table in tables.values() for item in kind_table.fields))
     return field
 
 
-def elsewhere(root: Table, name: str, here: Table) -> str:
-    """Say where a key belongs that stands in the wrong place, or else which keys there are."""
-    below = tuple(item.name for item in here.fields if item.table and name in item.table.keys)
-    if below and here is not root:
+def place_of_key(root: Table, name: str, table: Table) -> str:
+    """Place where a misplaced key belongs, `it belongs under part`, or else the keys of this table, as a remedy."""
+    below = tuple(item.name for item in table.fields if item.table and name in item.table.keys)
+    if below and table is not root:
         return f"it belongs under {either(below)}"
     if name in root.keys:
         return "it belongs at the top level"
     plain = tuple(item.name for item in root.fields if item.table and name in item.table.keys)
     places = [either(plain)] if plain else []
     of_group: dict[str, list[str]] = {}
-    for group, kind, table in _grouped(root):
-        if name in table.keys:
+    for group, kind, kind_table in _grouped(root):
+        if name in kind_table.keys:
             of_group.setdefault(group, []).append(kind)
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
         return f"it belongs under {', or under '.join(places)}"
-    return f"the keys here are {either(here.keys, 'and')}" if here.keys else "there are no keys here"
+    return f"the keys here are {either(table.keys, 'and')}" if table.keys else "there are no keys here"
 
 
-def of_other_kind(root: Table, path: str) -> bool:
-    """Tell whether a key that the kind of its mapping does not have is another kind's: `cam.swing` of a disc cam."""
+def belongs_to_other_kind(root: Table, path: str) -> bool:
+    """Whether a key that the kind of its mapping lacks belongs to another kind: `cam.swing` of a disc cam."""
     parent, _, name = path.rpartition(".")
     return any(group.split()[0] == parent and name in table.keys for group, _, table in _grouped(root))
 
 
 def _grouped(table: Table) -> list[tuple[str, str, Table]]:
-    """Every table that a kind chooses: files before cams, linkages and their dyads."""
+    """Group, kind and table of every table that a kind chooses: files before cams, linkages and their dyads."""
     forms: dict[str, Form[Any]] = {}
 
     def walk(within: Table) -> None:
@@ -279,10 +280,10 @@ def _grouped(table: Table) -> list[tuple[str, str, Table]]:
             if item.form and item.form.group and item.form.tables:
                 forms.setdefault(item.form.group, item.form)
             below = (*(item.form.tables.values() if item.form and item.form.tables else ()), item.table)
-            for each in below:
-                if each is not None:
-                    walk(each)
+            for inner in below:
+                if inner is not None:
+                    walk(inner)
 
     walk(table)
     order = sorted(forms, key=lambda group: (group != "the file", list(forms).index(group)))
-    return [(group, kind, found) for group in order for kind, found in (forms[group].tables or {}).items()]
+    return [(group, kind, kind_table) for group in order for kind, kind_table in (forms[group].tables or {}).items()]

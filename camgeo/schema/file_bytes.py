@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
 
-def bytes_of(path: str | PathLike[str], most: int, what: str) -> bytes:
-    """Read a file that is `what`, of a longer one the first `most` + 1 bytes; raises Complaint where it cannot."""
+def read_bytes(path: str | PathLike[str], most: int, noun: str) -> bytes:
+    """Bytes of a file, of a longer one the first `most` + 1; raises Complaint, `noun` says what the file holds."""
     try:
         mode = Path(path).stat().st_mode
         waits = not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))  # its reader, for ever perhaps
@@ -26,4 +26,4 @@ def bytes_of(path: str | PathLike[str], most: int, what: str) -> bytes:
         raise Complaint(f"cannot be read: {error.strerror or error}") from None
     except ValueError:  # a null character
         raise Complaint("not the name of a file") from None
-    raise Complaint("a pipe or a device, not a file", f"save the {what} as a file")
+    raise Complaint("a pipe or a device, not a file", f"save the {noun} as a file")

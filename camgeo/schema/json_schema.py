@@ -5,13 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import (
-    MOST,
-    Field,
-    Kind,
-    Table,
-    length,
-)
+from camgeo.schema.fields import MOST, Field, Kind, Table, length
 from camgeo.schema.quantity import ANGLES, FORCES, LENGTHS, MASSES, MOMENTS, PRESSURES, RATES
 from camgeo.schema.scalars import MOST_TEXT
 
@@ -20,8 +14,7 @@ if TYPE_CHECKING:
 
     from camgeo.schema.fields import Schema
 
-# Texts that are numbers all the same: 1e-3, which YAML 1.1 takes for a text, fractions and plain arithmetic. What the
-# signs mean is for `load` to say.
+# Texts that are numbers: 1e-3, which YAML 1.1 takes for a text, fractions and arithmetic. `load` judges their meaning.
 _NUMBER_TEXT = r"(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+"
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 _EITHER = {Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.BACKLASH}  # a length or an angle
@@ -38,43 +31,35 @@ _RATIO = r"^[0-9]+(/[0-9]+)?$"
 
 
 def json_schema(root: Table) -> Schema:
-    """Make the JSON schema of a recipe with these keys.
-
-    What it refuses is refused by `load`; the reverse needs more than a schema.
-    """
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "camgeo recipe",
-        **table_schema(root),
-    }
+    """JSON schema of a recipe with these keys; `load` refuses all that it refuses, and more."""
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": draft, "title": "camgeo recipe", **table_schema(root)}
 
 
 def table_schema(table: Table) -> Schema:
-    """Make the schema of a mapping."""
-    found: Schema = {
+    """JSON schema of a mapping with the keys of a table."""
+    schema: Schema = {
         "type": "object",
-        "properties": {
-            **{field.name: _field(field) for field in table.fields},
-        },
+        "properties": {field.name: _field(field) for field in table.fields},
         "additionalProperties": False,
     }
     if required := [field.name for field in table.fields if field.required]:
-        found["required"] = required
+        schema["required"] = required
     if table.alternatives:
         names = [name for name, _ in table.alternatives]
-        found["oneOf"] = [_alternative(table, name) for name in names]
+        schema["oneOf"] = [_alternative(table, name) for name in names]
         if table.optional:
-            found["oneOf"].append({"required": [], "properties": dict.fromkeys(sorted(names), False)})
-    return found
+            schema["oneOf"].append({"required": [], "properties": dict.fromkeys(sorted(names), False)})
+    return schema
 
 
 def _alternative(table: Table, chosen: str) -> Schema:
-    """One alternative with its companions, and no other alternative's."""
+    """Schema of one alternative with its companions and no other alternative."""
     companions = dict(table.alternatives)
     with_it = (chosen, *companions[chosen])
-    every = {name for key, names in companions.items() for name in (key, *names)}
-    others = every - set(with_it)
-    return {"required": list(with_it), "properties": dict.fromkeys(sorted(others), False)}
+    all_names = {name for key, names in companions.items() for name in (key, *names)}
+    excluded = all_names - set(with_it)
+    return {"required": list(with_it), "properties": dict.fromkeys(sorted(excluded), False)}
 
 
 def _field(field: Field) -> Schema:
@@ -116,9 +101,9 @@ def _kind(field: Field) -> Schema:
 
 
 def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schema:
-    """Make the schema of a number within the bounds of its field, which as a text may carry a unit of its kind.
+    """JSON schema of a number within the bounds of its field, or of a text with a number and a unit of its kind.
 
-    `unit` says of what kind a number without a field is.
+    `unit` is the kind of a number without a field.
     """
     number: Schema = {"type": "number"}
     if field is not None:
@@ -138,11 +123,11 @@ def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schem
 
 
 def one_of_schema(noun: str, tables: Mapping[str, Table]) -> Schema:
-    """Make the schema of a mapping whose `kind` says which of the tables is its own."""
+    """JSON schema of a mapping whose `kind` chooses one of the tables; `noun` is what the mapping describes."""
     kinds = []
     for kind, table in tables.items():
-        found = table_schema(table)
-        found["properties"] = {"kind": {"const": kind, "description": f"the kind of {noun}"}, **found["properties"]}
-        found["required"] = ["kind", *found.get("required", [])]
-        kinds.append(found)
+        schema = table_schema(table)
+        schema["properties"] = {"kind": {"const": kind, "description": f"the kind of {noun}"}, **schema["properties"]}
+        schema["required"] = ["kind", *schema.get("required", [])]
+        kinds.append(schema)
     return {"oneOf": kinds}

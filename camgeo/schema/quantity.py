@@ -33,17 +33,17 @@ _TAKEN = {
     "N/m": (RATES, "N/m", "a spring rate"),
     "N/mm^2": (PRESSURES, "N/mm^2", "a pressure"),
     "kg": (MASSES, "kg", "a mass"),
-}  # with the own one's name, and what carries them
+}  # by the unit of a field: the units that may be written, its own name among them, and the quantity
 
 
-def units_for(own: str) -> tuple[str, ...]:
-    """Name the units that a number may carry where the own one is such as `degrees`, `mm` or `N/m`; none elsewhere."""
-    return tuple(_TAKEN[own][0]) if own in _TAKEN else ()
+def units_for(own_unit: str) -> tuple[str, ...]:
+    """Units that a number may carry in a field whose own unit is `degrees`, `mm`, `N/m`; empty for other units."""
+    return tuple(_TAKEN[own_unit][0]) if own_unit in _TAKEN else ()
 
 
-def quantity_in(own: str) -> str:
-    """Say what is measured in a unit: `a length`."""
-    return _TAKEN[own][2]
+def quantity_in(own_unit: str) -> str:
+    """Quantity that a unit measures, for messages: `a length`."""
+    return _TAKEN[own_unit][2]
 
 
 def holds_unit(text: str) -> bool:
@@ -53,20 +53,20 @@ def holds_unit(text: str) -> bool:
 
 def is_metric(text: str) -> bool:
     """Tell whether a number carries a metric unit of length."""
-    return parted(text)[1] in {"mm", "cm"}
+    return split_unit(text)[1] in {"mm", "cm"}
 
 
-def parted(text: str) -> tuple[str, str]:
-    """Part a text into its number and the unit behind it, which is empty where there is none.
+def split_unit(text: str) -> tuple[str, str]:
+    """Split a text into its number and the unit behind it; the unit is empty where no number stands before it.
 
-    What no number stands before is no unit: `0x1F` and `true` stay whole.
+    `0x1F` and `true` stay whole.
     """
-    found = re.fullmatch(_QUANTITY, text) if len(text) <= _MOST else None
-    if found is None:
+    match = re.fullmatch(_QUANTITY, text) if len(text) <= _MOST else None
+    if match is None:
         return text, ""
-    number, unit = found.groups()
-    known = any(unit in units for units, *_ in _TAKEN.values())
-    return (number, unit) if known or _is_number(number) else (text, "")
+    number, unit = match.groups()
+    is_known = any(unit in units for units, *_ in _TAKEN.values())
+    return (number, unit) if is_known or _is_number(number) else (text, "")
 
 
 def _is_number(text: str) -> bool:
@@ -77,27 +77,27 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def read_quantity(text: str, own: str) -> float:
-    """Read a number, with a unit or without, as one in the field's `own` unit; raises Complaint.
+def read_quantity(text: str, own_unit: str) -> float:
+    """Number in the field's own unit, written with a unit or without; raises Complaint.
 
-    A unit turns the number as written, a decimal or a fraction, into the own unit and rounds it once: `0.75 in` where
-    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m`,
-    `N/mm^2` or `kg`; other fields take none.
+    A number with another unit, a decimal or a fraction, is converted exactly and rounded once: `0.75 in` in a field of
+    mm is 19.05. Arithmetic is worked out first. `own_unit` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m`, `N/mm^2` or
+    `kg`; in fields of other units a number carries none.
     """
-    number, unit = parted(text)
+    number, unit = split_unit(text)
     value = read_number(number)
     if not unit:
         return value
-    if unit not in units_for(own):
+    if unit not in units_for(own_unit):
         raise UnitComplaint(unit)
-    known, same, _ = _TAKEN[own]
-    if value == 0.0 or known[unit] == known[same]:
+    factors, own_name, _ = _TAKEN[own_unit]
+    if value == 0.0 or factors[unit] == factors[own_name]:
         return value
     from fractions import Fraction
 
     exact = Fraction(number) if re.fullmatch(_RATIONAL, number) else Fraction(value)
     try:
-        return within_range(float(exact * Fraction(known[unit], known[same])))
+        return within_range(float(exact * Fraction(factors[unit], factors[own_name])))
     except OverflowError:
         raise Complaint("too large") from None
 

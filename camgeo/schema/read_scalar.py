@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.schema.errors import NEAR, NEARER, shown, suggestion
+from camgeo.schema.errors import NEAR, NEARER, quote, suggestion
 from camgeo.schema.fields import Kind, either
 from camgeo.schema.quantity import UnitComplaint, holds_unit, is_metric, quantity_in, read_quantity, units_for
 from camgeo.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
-from camgeo.schema.yaml_source import Scalar, described, written
+from camgeo.schema.yaml_source import Scalar, describe, scalar_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
-    """Read a text, a name, or a ratio, which is a pair."""
+    """Text of a note, a name, or a ratio as a pair (lambda, mu); None where faulty, with the fault noted."""
     readers: dict[Kind, Callable[[str], object]] = {
         Kind.TEXT: read_paragraph,
         Kind.NAME: read_name,
@@ -36,27 +36,30 @@ def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
 
 
 def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Read one of a few words."""
+    """Word of a field with choices; None where it is none of them, with the fault noted."""
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
     remedy = suggestion(scalar.text, field.choices, NEARER if field.others else NEAR)
     remedy = remedy or field.others or reader.wanted(field)
-    reader.fault(node.mark, path, "not one of the choices", shown(scalar.text), remedy)
+    reader.fault(node.mark, path, "not one of the choices", quote(scalar.text), remedy)
     return None
 
 
 def read_truth(reader: Reader, field: Field, node: Node, path: str) -> bool | None:
-    """Read true or false, and none of YAML's other words for them."""
+    """Truth value of the words true and false alone, not of YAML's others; None where faulty, with the fault noted."""
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in {"true", "false"}:
         return None if scalar is None else scalar.text == "true"
-    reader.fault(node.mark, path, "not true or false", shown(scalar.text), reader.wanted(field))
+    reader.fault(node.mark, path, "not true or false", quote(scalar.text), reader.wanted(field))
     return None
 
 
 def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float | int | None:
-    """Read a number in the recipe's unit or its own, check its bounds in the recipe's, and convert it."""
+    """Number in mm, rad or the field's own unit, within its bounds; None where faulty, with the fault noted.
+
+    It is written in the recipe's unit or with a unit of its own; bounds hold in the recipe's unit.
+    """
     scalar = _scalar(reader, field, node, path)
     if scalar is None:
         return None
@@ -68,13 +71,13 @@ def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float |
         return None
     except SmallComplaint as complaint:
         remedy = complaint.instead if field.out_of_bounds(0.0) else complaint.remedy
-        reader.fault(node.mark, path, complaint.problem, written(scalar), remedy)
+        reader.fault(node.mark, path, complaint.problem, scalar_text(scalar), remedy)
         return None
     except Complaint as complaint:
         _complain(reader, field, scalar, path, complaint)
         return None
     if problem := field.out_of_bounds(value):
-        reader.fault(node.mark, path, problem, written(scalar), reader.wanted(field))
+        reader.fault(node.mark, path, problem, scalar_text(scalar), reader.wanted(field))
         return None
     reader.numbers[path] = field
     if field.kind is Kind.INTEGER:
@@ -86,19 +89,19 @@ def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float |
 
 
 def _refuse_unit(reader: Reader, field: Field, scalar: Scalar, path: str, unit: str) -> None:
-    """Note a unit that a number of this field does not take, with those that it does."""
-    own = reader.unit(field.unit or field.kind)
-    if taken := units_for(own):
-        problem = f"'{unit}' is no unit of {quantity_in(own)}"
-        remedy = f"give {either(taken)}, or a number alone, which is in {own}"
+    """Note a fault: a unit that numbers of this field do not take, with the units that they do."""
+    own_unit = reader.unit(field.unit or field.kind)
+    if units := units_for(own_unit):
+        problem = f"'{unit}' is no unit of {quantity_in(own_unit)}"
+        remedy = f"give {either(units)}, or a number alone, which is in {own_unit}"
     else:
         problem, meaning = "carries a unit", f": {field.about}" if field.about else ""
-        remedy = f"give {field.wanted()}{f' in {own}' if own else ''} without a unit{meaning}"
-    reader.fault(scalar.mark, path, problem, written(scalar), remedy)
+        remedy = f"give {field.wanted()}{f' in {own_unit}' if own_unit else ''} without a unit{meaning}"
+    reader.fault(scalar.mark, path, problem, scalar_text(scalar), remedy)
 
 
 def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Read a formula, pointing into its text where it is faulty."""
+    """Text of a formula on one line; None where it is faulty, with the fault noted at its place in the text."""
     from kin.law.formula.formula import Formula, FormulaError
 
     scalar = _scalar(reader, field, node, path)
@@ -113,9 +116,9 @@ def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | N
             remedy = "a formula with a comma in it needs quotes inside braces"
         mark, problem = _inside(reader, scalar, error.column), error.message
         if holds_unit(text):
-            own = reader.unit(field.unit or Kind.LENGTH)
-            problem, remedy = "a formula carries no units", f"give its numbers alone, in {own}"
-        reader.fault(mark, path, problem, shown(text), remedy)
+            unit = reader.unit(field.unit or Kind.LENGTH)
+            problem, remedy = "a formula carries no units", f"give its numbers alone, in {unit}"
+        reader.fault(mark, path, problem, quote(text), remedy)
         return None
     return text
 
@@ -123,13 +126,13 @@ def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | N
 def _scalar(reader: Reader, field: Field, node: Node, path: str) -> Scalar | None:
     if isinstance(node, Scalar):
         return node
-    reader.fault(node.mark, path, f"not {field.noun}", described(node), reader.wanted(field))
+    reader.fault(node.mark, path, f"not {field.noun}", describe(node), reader.wanted(field))
     return None
 
 
 def _complain(reader: Reader, field: Field, node: Scalar, path: str, complaint: Complaint) -> None:
     remedy = complaint.remedy or reader.wanted(field)
-    reader.fault(node.mark, path, complaint.problem, written(node), remedy)
+    reader.fault(node.mark, path, complaint.problem, scalar_text(node), remedy)
 
 
 def _inside(reader: Reader, node: Scalar, column: int) -> Mark:

@@ -6,12 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.schema.fields import Form, Kind
 from camgeo.schema.json_schema import one_of_schema
-from camgeo.schema.read_list import (
-    read_harmonics,
-    read_numbers,
-    read_pair,
-    read_point,
-)
+from camgeo.schema.read_list import read_harmonics, read_numbers, read_pair, read_point
 from camgeo.schema.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
 from camgeo.schema.reader import Reader
 
@@ -48,7 +43,7 @@ READERS: Readers = {
 
 
 def form_of_kinds(noun: str, tables: Mapping[str, Table], group: str = "", others: str = "") -> Form[Reader]:
-    """Make the form of a mapping whose `kind` says which table has its keys; see `Form` for `group` and `others`."""
+    """Form of a mapping whose `kind` chooses the table of its keys; see `Form` for `group` and `others`."""
     return Form(
         f"a {noun}",
         f"a mapping with the kind of {noun} and its fields",

@@ -12,7 +12,7 @@ _NUMBER = rf"[+-]?{_UNSIGNED}"
 _FRACTION = r"([+-]?[0-9]{1,9})/([0-9]{1,9})"
 _RATIO = r"([0-9]{1,9})(?:/([0-9]{1,9}))?"
 _ZEROS_BEFORE = r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]"
-_ARITHMETIC = r"[-+*/() ]*[-+*/()][-+*/() ]*"  # what is left of it without numbers and pi
+_ARITHMETIC = r"[-+*/() ]*[-+*/()][-+*/() ]*"  # arithmetic once its numbers and pi are blanks
 _LEADING_ZERO = r"[+-]?0+[0-9]"
 _MOST_DIGITS = 60
 _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
@@ -37,7 +37,7 @@ RESERVED_SUFFIX = ".rejected"  # of the folder that a failing run leaves
 
 
 class Complaint(ValueError):  # noqa: N818 - it never leaves the package
-    """What is wrong with a text, and what would do, if that is not plain from the field."""
+    """Problem of a text, and its remedy; the remedy is empty where the field says it."""
 
     def __init__(self, problem: str, remedy: str = "") -> None:
         super().__init__(problem)
@@ -46,7 +46,7 @@ class Complaint(ValueError):  # noqa: N818 - it never leaves the package
 
 
 class SmallComplaint(Complaint):
-    """A number too near 0 to be worked with; `instead` is what would do where 0 would not."""
+    """A number too near 0 to compute with; `instead` is the remedy where 0 is not allowed."""
 
     def __init__(self, least: float) -> None:
         super().__init__("too small", "write 0, or the intended number")
@@ -54,28 +54,28 @@ class SmallComplaint(Complaint):
 
 
 def read_number(text: str) -> float:
-    """Read a decimal number, a fraction such as 180/7 or plain arithmetic such as 15/25.4; raises Complaint."""
+    """Value of a decimal number, a fraction such as 180/7 or arithmetic such as 15/25.4; raises Complaint."""
     if len(text) > _MOST_DIGITS:
         raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
-    if found := re.fullmatch(_FRACTION, text):
-        if int(found[2]) == 0:
+    if match := re.fullmatch(_FRACTION, text):
+        if int(match[2]) == 0:
             raise Complaint("divides by zero")
-        return int(found[1]) / int(found[2])
+        return int(match[1]) / int(match[2])
     if re.fullmatch(_NUMBER, text):
         if re.match(_LEADING_ZERO, text):
             raise Complaint("a leading zero, which some read as octal", "leave the zero out")
         value = float(text)
     else:
         hint = next((hint for pattern, hint in _NOT_NUMBERS if re.fullmatch(pattern, text)), None)
-        left = re.sub(r"\bpi\b", " ", re.sub(_UNSIGNED, " ", text))
-        if hint is not None or not (re.fullmatch(_ARITHMETIC, left) or text == "pi"):
+        remainder = re.sub(r"\bpi\b", " ", re.sub(_UNSIGNED, " ", text))
+        if hint is not None or not (re.fullmatch(_ARITHMETIC, remainder) or text == "pi"):
             raise Complaint("not a number", hint or "")
-        value = _worked_out(text)
+        value = _evaluate(text)
     return within_range(value)
 
 
 def within_range(value: float) -> float:
-    """Give a number back; raises Complaint for one beyond what is worked with."""
+    """The number itself; raises Complaint for one that is not finite or below 1e-30 without being 0."""
     if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
@@ -83,8 +83,8 @@ def within_range(value: float) -> float:
     return value
 
 
-def _worked_out(text: str) -> float:
-    """Work out sums, products and quotients of numbers and pi; raises Complaint."""
+def _evaluate(text: str) -> float:
+    """Value of sums, products and quotients of numbers and pi; raises Complaint."""
     from kin.law.formula.formula import FormulaError
     from kin.law.formula.parser import parse
 
@@ -95,30 +95,31 @@ def _worked_out(text: str) -> float:
     try:
         return float(parse(text, ()).steps[-1].value)
     except FormulaError as error:
-        known = {"division by zero": "divides by zero", "overflow": "too large"}
-        problem = known.get(error.message, f"not a number: {error.message.replace('the formula', 'it')}")
+        phrases = {"division by zero": "divides by zero", "overflow": "too large"}
+        problem = phrases.get(error.message, f"not a number: {error.message.replace('the formula', 'it')}")
         raise Complaint(problem) from None
 
 
 def whole(value: float) -> int:
-    """Give a whole number; raises Complaint for any other."""
+    """The number as an integer; raises Complaint for a number that is not whole."""
     if value != math.floor(value):
         raise Complaint("not a whole number")
     return int(value)
 
 
 def read_ratio(text: str) -> tuple[int, int]:
-    """Read lambda/mu as (lambda, mu), above 1, in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
-    found = re.fullmatch(_RATIO, text)
-    if not found:
+    """Pair (lambda, mu) of a ratio above 1 in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
+    match = re.fullmatch(_RATIO, text)
+    if not match:
         raise Complaint("not a fraction of whole numbers")
-    lam, mu = int(found[1]), int(found[2] or 1)
+    lam, mu = int(match[1]), int(match[2] or 1)
     if mu == 0:
         raise Complaint("divides by zero")
     if lam <= mu:
         raise Complaint("not above 1", "the arms' angle alpha = pi mu/lambda must stay below 180 degrees")
     if (common := math.gcd(lam, mu)) > 1:
-        raise Complaint("not in lowest terms", f"write {_fraction(lam // common, mu // common)}")
+        lowest = f"{lam // common}" if mu == common else f"{lam // common}/{mu // common}"
+        raise Complaint("not in lowest terms", f"write {lowest}")
     if mu % 2 == 0:
         raise Complaint("an even denominator", "mu must be odd, or the pitch curve would cross itself")
     if lam > MOST_LAMBDA:
@@ -126,25 +127,20 @@ def read_ratio(text: str) -> tuple[int, int]:
     return lam, mu
 
 
-def _fraction(lam: int, mu: int) -> str:
-    return str(lam) if mu == 1 else f"{lam}/{mu}"
-
-
 def read_name(text: str) -> str:
-    """Check a name that becomes a folder, on any system; raises Complaint."""
+    """The name itself, safe as the name of a folder on any system; raises Complaint."""
     if not re.fullmatch(_NAME, text) or text.endswith("."):
         raise Complaint("not safe as the name of a folder", f"use {NAME_RULE}")
     if re.fullmatch(_DEVICE, text):
         raise Complaint("reserved for a device by Windows", f"use {NAME_RULE}")
     if text.lower().endswith(RESERVED_SUFFIX):
-        raise Complaint(
-            f"reserved for the folders of failed runs, which end in {RESERVED_SUFFIX}", "choose another ending"
-        )
+        problem = f"reserved for the folders of failed runs, which end in {RESERVED_SUFFIX}"
+        raise Complaint(problem, "choose another ending")
     return text
 
 
 def read_paragraph(text: str) -> str:
-    """Read a note as one paragraph, line breaks as spaces; raises Complaint."""
+    """Note as one paragraph, line breaks as spaces; raises Complaint for a long one and for control characters."""
     words = " ".join(text.split())
     if len(words) > MOST_TEXT:
         raise Complaint(f"longer than {MOST_TEXT} characters", "shorten it")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import yaml
 
-from camgeo.schema.errors import RecipeError, RecipeErrors, shown
+from camgeo.schema.errors import RecipeError, RecipeErrors, quote
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ Node: TypeAlias = Scalar | Sequence | Mapping
 
 @dataclass(frozen=True)
 class Source:
-    """A recipe's file: its name for errors, its text, and the tree."""
+    """Text of a recipe with its lines and its tree; `file` is its name in errors."""
 
     file: str
     text: str
@@ -86,7 +86,7 @@ class Source:
 
     @staticmethod
     def of(text: str, file: str) -> Source:
-        """Read a text, as `read_source` reads bytes."""
+        """Source of a text; raises RecipeErrors as `read_source`."""
         return read_source(text.encode("utf-8", "surrogatepass"), file)
 
     @cached_property
@@ -99,7 +99,7 @@ class Source:
         return self.starts[mark[0] - 1] + mark[1] - 1
 
     def last_line(self, key: Node, value: Node) -> int:
-        """Number of the last line of an entry of a mapping in lines, blank ones behind it left out."""
+        """Number of the last line, from 1, of an entry of a mapping in block style, without blank lines behind it."""
         line, column = value.mark if is_empty(value) else value.end
         last = line - (column == 1)  # a block of text ends where the next line begins
         while last > key.mark[0] and not self.lines[last - 1].strip():
@@ -138,7 +138,7 @@ class _BadEscapeError(yaml.YAMLError):
 
 
 def read_source(data: bytes, file: str) -> Source:
-    """Read YAML into a tree.
+    """Text and tree of a recipe in YAML.
 
     Raises RecipeErrors for bytes that are not UTF-8, characters that YAML forbids, faulty syntax, several documents,
     directives, and anything above the bounds of this module.
@@ -154,20 +154,20 @@ def read_source(data: bytes, file: str) -> Source:
 
 
 def join(path: str, key: str | int) -> str:
-    """Make the path of an entry: `cam.motion[1]`; unusual keys are quoted and shortened."""
+    """Path of an entry: `cam.motion[1]`; unusual keys are quoted and shortened."""
     if isinstance(key, int):
         return f"{path}[{key}]"
-    name = key if re.fullmatch(_PLAIN_KEY, key) else shown(key)
+    name = key if re.fullmatch(_PLAIN_KEY, key) else quote(key)
     return f"{path}.{name}" if path else name
 
 
 def is_within(path: str, outer: str) -> bool:
-    """Tell whether a path is another or lies below it."""
+    """Whether a path is `outer` or lies below it."""
     return path == outer or path.startswith((f"{outer}.", f"{outer}["))
 
 
 def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
-    """Give every scalar of a tree with its path; one that aliases share comes once for each."""
+    """Every scalar of a tree with its path; a scalar that aliases share comes once for each path."""
     if isinstance(node, Scalar):
         yield path, node
     elif isinstance(node, Sequence):
@@ -179,12 +179,12 @@ def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
 
 
 def is_empty(node: Node) -> bool:
-    """Tell whether nothing was given: YAML's null, however it is written."""
+    """Whether a node is YAML's null, however it is written."""
     return isinstance(node, Scalar) and node.plain and node.text in ("", "~", "null", "Null", "NULL")
 
 
 def keys(node: Mapping) -> dict[str, Scalar]:
-    """Give each key that is a text, by that text; the first where it stands twice."""
+    """Keys of a mapping that are texts, by their text; the first of two alike."""
     first: dict[str, Scalar] = {}
     for key, _ in node.entries:
         if isinstance(key, Scalar):
@@ -201,15 +201,15 @@ def entries(node: Mapping) -> dict[str, Node]:
     return first
 
 
-def written(node: Scalar) -> str:
-    """Show a scalar in an error: a number bare, a text quoted."""
-    return node.text if re.fullmatch(_BARE, node.text) else shown(node.text)
+def scalar_text(node: Scalar) -> str:
+    """Scalar for an error: a number bare, a text quoted."""
+    return node.text if re.fullmatch(_BARE, node.text) else quote(node.text)
 
 
-def described(node: Node) -> str:
-    """Show any node in an error."""
+def describe(node: Node) -> str:
+    """Node for an error: its scalar, or `a list of 3`."""
     if isinstance(node, Scalar):
-        return "nothing" if is_empty(node) else written(node)
+        return "nothing" if is_empty(node) else scalar_text(node)
     count = len(node.entries if isinstance(node, Mapping) else node.items)
     return f"a {'mapping' if isinstance(node, Mapping) else 'list'} of {count}"
 
@@ -222,9 +222,11 @@ def _decode(data: bytes, file: str) -> str:
         raise _fault(file, place, "not UTF-8", f"byte 0x{data[error.start]:02x}", "save the file as UTF-8") from None
     text = text.removeprefix("\ufeff")
     printable = text.replace("\n", "").isprintable()  # no such character is; the pattern takes long to compile
-    if not printable and (found := re.search(_FORBIDDEN, text)):
-        value = f"U+{ord(found[0]):04X}"
-        raise _fault(file, _place(text, found.start()), "a character that cannot stand in a recipe", value, "delete it")
+    if not printable and (forbidden := re.search(_FORBIDDEN, text)):
+        value = f"U+{ord(forbidden[0]):04X}"
+        raise _fault(
+            file, _place(text, forbidden.start()), "a character that cannot stand in a recipe", value, "delete it"
+        )
     return text
 
 
@@ -361,7 +363,7 @@ class _Tree:
         if self.aliases > MAX_ALIASES:
             raise _fault(self.file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")
         if event.anchor not in self.anchors:
-            value = shown(f"*{event.anchor}")
+            value = quote(f"*{event.anchor}")
             raise _fault(self.file, mark, "an alias without its anchor", value, _syntax_remedy("alias"))
         node = self.anchors[event.anchor]
         self.nodes += node.size

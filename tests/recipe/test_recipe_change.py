@@ -10,7 +10,7 @@ import pytest
 
 import camgeo
 from camgeo.recipe.loading import load, load_text
-from camgeo.schema.change import Value, changed, written
+from camgeo.schema.change import Value, set_value, yaml_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import read_source, scalars
 
@@ -63,9 +63,9 @@ def test_a_field_that_is_not_there_is_added(path: str, value: str | float, line:
 
 
 def test_a_field_without_a_value_gets_one() -> None:
-    text = changed(read_source(b"about:\ncam: 3", "r"), "about", "x")
+    text = set_value(read_source(b"about:\ncam: 3", "r"), "about", "x")
     assert text == "about: x\ncam: 3"
-    assert changed(read_source(text.encode(), "r"), "part.bore", 3) == "about: x\ncam: 3\npart: {bore: 3}\n"
+    assert set_value(read_source(text.encode(), "r"), "part.bore", 3) == "about: x\ncam: 3\npart: {bore: 3}\n"
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_what_cannot_be_is_refused_by_its_path(path: str, value: object, message
 def test_what_an_alias_shares_is_left_alone() -> None:
     source = read_source(b"part: {bore: &b 12, wall: *b}\n", "r")
     with pytest.raises(RecipeErrors, match="an alias shares this place"):
-        changed(source, "part.bore", 13)
+        set_value(source, "part.bore", 13)
 
 
 def test_any_scalar_of_the_shipped_recipes_can_be_replaced() -> None:
@@ -101,7 +101,7 @@ def test_any_scalar_of_the_shipped_recipes_can_be_replaced() -> None:
         source = read_source(path.read_bytes(), str(path))
         found = dict(scalars(source.root))
         for at in dice.sample(sorted(found), 4):
-            new = read_source(changed(source, at, "x y: #1").encode(), "new")
+            new = read_source(set_value(source, at, "x y: #1").encode(), "new")
             assert {k: v.text for k, v in scalars(new.root)} == {k: v.text for k, v in found.items()} | {at: "x y: #1"}
             assert [n.count("#") for n in new.lines].count(0) <= [o.count("#") for o in source.lines].count(0)
 
@@ -120,19 +120,19 @@ def test_a_mapping_is_written_so_that_it_reads_back() -> None:
         "part": {"bore": np.int64(1), "thickness": "1/4"},
         "export": {"files": ["dxf", {"stl": {"tolerance": 1e-05}}], "tolerance": "1/1000"},
     }
-    text = written(values, "recipe")
+    text = yaml_text(values, "recipe")
     recipe = load_text(text, "recipe")
     assert (recipe.about, recipe.part.bore, recipe.export.files[1].tolerance) == ("on", 25.4, 25.4e-5)
-    assert written({"a": {"b": [1, 2.5, True, None], "c": {}}}, "r") == "a:\n  b: [1, 2.5, true, null]\n  c: {}\n"
+    assert yaml_text({"a": {"b": [1, 2.5, True, None], "c": {}}}, "r") == "a:\n  b: [1, 2.5, true, null]\n  c: {}\n"
 
 
 def test_a_mapping_that_holds_itself_is_refused() -> None:
     loop: dict[str, object] = {}
     loop["a"] = loop
     with pytest.raises(RecipeErrors, match="nested more than"):
-        written(loop, "recipe")
+        yaml_text(loop, "recipe")
     with pytest.raises(RecipeErrors, match="a key is a text"):
-        written({1: 2}, "recipe")  # type: ignore[dict-item]
+        yaml_text({1: 2}, "recipe")  # type: ignore[dict-item]
 
 
 def test_arrays_of_numpy_are_lists() -> None:

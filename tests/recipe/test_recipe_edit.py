@@ -14,7 +14,7 @@ from support.cases import few
 from support.places import SHIPPED
 
 from camgeo.recipe.loading import load_text
-from camgeo.schema.edit import spelled, with_values, without
+from camgeo.schema.edit import number_text, remove_section, with_values
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.scalars import read_number
 from camgeo.schema.yaml_source import Scalar, read_source, scalars
@@ -106,7 +106,7 @@ def test_line_ends_stay(ends: str) -> None:
     text = TEXT.replace("\n", ends)
     changed = with_values(text, {"linkage.dyads[0].links[1]": 6, "linkage.coupler": 71})
     assert changed == TEXT.replace("|-\n      5\n", "6\n").replace(": 70", ": 71").replace("\n", ends)
-    assert without(text, "sweep") == without(TEXT, "sweep").replace("\n", ends)
+    assert remove_section(text, "sweep") == remove_section(TEXT, "sweep").replace("\n", ends)
 
 
 def test_json_is_yaml() -> None:
@@ -133,7 +133,7 @@ def test_every_number_of_a_shipped_recipe_can_be_replaced(path: Path) -> None:
         assert values(changed) == {**before, name: f"{i + 0.5}"}
         assert re.findall("#.*", changed) == re.findall("#.*", text)
     every = {name: -float(i) - 1e-9 for i, name in enumerate(numbers)}
-    assert values(with_values(text, every)) == before | {name: spelled(value) for name, value in every.items()}
+    assert values(with_values(text, every)) == before | {name: number_text(value) for name, value in every.items()}
     same = {name: float(before[name]) for name in numbers}
     found, again = load_text(text, path), load_text(with_values(text, same), path)
     assert found == again
@@ -141,7 +141,7 @@ def test_every_number_of_a_shipped_recipe_can_be_replaced(path: Path) -> None:
 
 @given(st.floats(allow_nan=False, allow_infinity=False).filter(lambda x: x == 0 or abs(x) > 1e-30))
 def test_numbers_read_back_exactly(x: float) -> None:
-    assert read_number(spelled(x)) == x
+    assert read_number(number_text(x)) == x
     text = with_values("cam: {a: 1, b: 2}", {"cam.a": x})
     assert read_number(values(text)["cam.a"]) == x
 
@@ -150,7 +150,7 @@ def test_numbers_read_back_exactly(x: float) -> None:
     ("x", "written"), [(1, "1"), (10.0, "10"), (-0.5, "-0.5"), (1e22, "1e+22"), (0.1 + 0.2, "0.30000000000000004")]
 )
 def test_numbers_are_spelled_briefly(x: float, written: str) -> None:
-    assert spelled(x) == written
+    assert number_text(x) == written
 
 
 @pytest.mark.parametrize("x", [math.inf, -math.inf, math.nan])
@@ -177,13 +177,13 @@ def test_a_number_that_an_alias_shares_is_refused() -> None:
 
 def test_a_section_goes_with_the_comments_in_it() -> None:
     start, end = TEXT.index("sweep:"), TEXT.index("\n# about verify")
-    assert without(TEXT, "sweep") == TEXT[:start] + TEXT[end:]
-    assert without(TEXT, "name") == TEXT.replace("name: x\n", "")
-    assert without(TEXT, "verify") == TEXT.replace("verify: {angles: 500}\n", "")
+    assert remove_section(TEXT, "sweep") == TEXT[:start] + TEXT[end:]
+    assert remove_section(TEXT, "name") == TEXT.replace("name: x\n", "")
+    assert remove_section(TEXT, "verify") == TEXT.replace("verify: {angles: 500}\n", "")
     start, end = TEXT.index("linkage:"), TEXT.index("\n# about the search")
-    assert without(TEXT, "linkage") == TEXT[:start] + TEXT[end:]
-    assert without(TEXT, "cam").splitlines() == [line for line in TEXT.splitlines() if '"cam"' not in line]
-    assert without(TEXT, "dwell") == TEXT
+    assert remove_section(TEXT, "linkage") == TEXT[:start] + TEXT[end:]
+    assert remove_section(TEXT, "cam").splitlines() == [line for line in TEXT.splitlines() if '"cam"' not in line]
+    assert remove_section(TEXT, "dwell") == TEXT
 
 
 @pytest.mark.parametrize(
@@ -211,14 +211,14 @@ def test_a_section_goes_with_the_comments_in_it() -> None:
     ],
 )
 def test_a_section_however_it_is_written(text: str, expected: str) -> None:
-    assert without(text, "sweep") == expected
+    assert remove_section(text, "sweep") == expected
 
 
 def test_a_section_that_others_lean_on_is_not_cut() -> None:
     with pytest.raises(RecipeErrors, match="an alias without its anchor"):
-        without("sweep: {a: &a 5}\nb: *a\n", "sweep")
+        remove_section("sweep: {a: &a 5}\nb: *a\n", "sweep")
     with pytest.raises(RecipeErrors) as caught:
-        without("sweep: {a: 5}\n", "sweep")
+        remove_section("sweep: {a: 5}\n", "sweep")
     assert str(caught.value) == (
         "recipe:1:1: sweep: cannot be taken out of the text without harm; let it stand as a block of lines of its own"
     )
@@ -226,7 +226,7 @@ def test_a_section_that_others_lean_on_is_not_cut() -> None:
 
 def test_what_is_no_yaml_is_refused() -> None:
     with pytest.raises(RecipeErrors, match="YAML cannot be read"):
-        without("a: [", "sweep")
+        remove_section("a: [", "sweep")
     with pytest.raises(RecipeErrors, match="YAML cannot be read"):
         with_values("a: [", {"a": 1})
 
@@ -240,7 +240,7 @@ def test_every_section_of_a_shipped_recipe_can_go(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     before = values(text)
     for section in {name.split(".")[0] for name in before}:
-        left = without(text, section)
+        left = remove_section(text, section)
         assert values(left) == {name: value for name, value in before.items() if name.split(".")[0] != section}
 
 

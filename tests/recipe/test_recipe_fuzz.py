@@ -24,7 +24,7 @@ from camgeo.recipe.loading import read
 from camgeo.recipe.starter import starter
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
-from camgeo.schema.edit import without
+from camgeo.schema.edit import remove_section
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import _Loader
 
@@ -74,7 +74,7 @@ def edited(recipe: Recipe) -> None:
     for name in recipe.uses:
         if name in recipe.marks:
             try:
-                left = reading(without(recipe.text, name).encode())
+                left = reading(remove_section(recipe.text, name).encode())
             except RecipeErrors:  # an alias, or YAML that cannot be cut
                 continue
             assert isinstance(left, RecipeErrors) or left == recipe.without(name)

@@ -22,7 +22,7 @@ from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
-from camgeo.schema.yaml_source import Mapping, Scalar, described, entries, join, keys
+from camgeo.schema.yaml_source import Mapping, Scalar, describe, entries, join, keys
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _read_by_word(
 ) -> dict[str, float | None] | None:
     """Read a mapping from words of this cam's dimensions to values, None for `free` where that is a value."""
     if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
     there = words_of(_traits(reader))
     values: dict[str, float | None] = {}

@@ -12,7 +12,7 @@ from camgeo.recipe.linkage import TURNING
 from camgeo.recipe.track import is_groove
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.yaml_source import Mapping, Sequence, described, join
+from camgeo.schema.yaml_source import Mapping, Sequence, describe, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
     rows = []
     for i, item in enumerate(reader.items(field, node, path, _PAIR)):
         if not isinstance(item, Sequence) or len(item.items) != _PAIR:
-            reader.fault(item.mark, join(path, i), "not a length with its force", described(item), "give [40, 250]")
+            reader.fault(item.mark, join(path, i), "not a length with its force", describe(item), "give [40, 250]")
             return None
         pairs = enumerate(zip(parts, item.items, strict=True))
         rows.append(tuple(reader.field(part, one, f"{join(path, i)}[{k}]") for k, (part, one) in pairs))

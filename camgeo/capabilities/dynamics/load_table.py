@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.motions.lift_table import SHEET, TABLE, read_rows
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.quantity import parted
+from camgeo.schema.quantity import split_unit
 from camgeo.schema.yaml_source import Mapping, Scalar, join
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
@@ -67,7 +67,7 @@ LOADS = Table(
 
 def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTable | None:
     """Read a formula, a number with its unit, or a mapping with a table."""
-    if isinstance(node, Scalar) and parted(node.text)[1]:
+    if isinstance(node, Scalar) and split_unit(node.text)[1]:
         number = replace(field, form=None, at_least=-MOST_LOAD, at_most=MOST_LOAD)
         value: float | None = reader.readers[Kind.NUMBER](reader, number, node, path)
         return None if value is None else repr(value)

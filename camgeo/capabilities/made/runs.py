@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.motions.lift_table import read_path
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, length, mapping
 from camgeo.schema.scalars import MOST_TEXT
-from camgeo.schema.yaml_source import Mapping, Sequence, described, join
+from camgeo.schema.yaml_source import Mapping, Sequence, describe, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFil
         units, align = UNITS.get(values.get("units", "")), ALIGN[values.get("align", "none")]
         return PointFile(values["file"], units, align, probe.get("radius"), probe.get("face"), probe.get("error"))
     if isinstance(node, Sequence):
-        reader.fault(node.mark, path, "not the path of a file", described(node), reader.wanted(field))
+        reader.fault(node.mark, path, "not the path of a file", describe(node), reader.wanted(field))
         return None
     name = read_path(reader, field, node, path)
     return None if name is None else PointFile(name)

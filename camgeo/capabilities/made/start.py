@@ -24,7 +24,7 @@ from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.recipe import load_text
-from camgeo.schema.change import changed, exchanged
+from camgeo.schema.change import replace_entry, set_value
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries
 from camgeo.synthesis.design import designed
@@ -126,14 +126,14 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
 
 
 def _with(source: Source, path: str, value: Value) -> Source:
-    return Source.of(changed(source, path, value), source.file)
+    return Source.of(set_value(source, path, value), source.file)
 
 
 def _with_motion(source: Source, keys: ByMotion, key: str, value: Value) -> Source:
     """Give a motion by a key, in the place of what stands for one."""
     for other in (keys.motion, *keys.instead):
         if other != key and other in _cam_keys(source):
-            return Source.of(exchanged(source, f"cam.{other}", key, value), source.file)
+            return Source.of(replace_entry(source, f"cam.{other}", key, value), source.file)
     return _with(source, f"cam.{key}", value)
 
 

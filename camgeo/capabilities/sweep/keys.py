@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES, Figure
 from camgeo.recipe.limits import Limit, build_limits, limits_form
-from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import Field, Form, Kind, Table, field_at
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, is_empty, join, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries, is_empty, join, scalars
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Value
     Whether a number stands at that path is checked in `check_sweep`, once the whole recipe has been read.
     """
     if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
     nodes = entries(node)
     if not nodes:
@@ -134,7 +134,7 @@ def _read_numbers(reader: Reader, node: Node, path: str, unit: Kind) -> Values |
         values = [reader.field(number, item, join(path, i)) for i, item in enumerate(items)]
         return {"values": tuple(values)} if values and None not in values else None
     if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a range", described(node), reader.wanted(range_or_list))
+        reader.fault(node.mark, path, "not a range", describe(node), reader.wanted(range_or_list))
         return None
     axis = reader.table(_range_table(unit), node, path)
     return axis if {"from", "to"} <= axis.keys() else None
@@ -207,7 +207,7 @@ def _check_words(axis: Values, reader: Reader) -> None:
         reader.fault_at(axis["at"], f"another {path[:-5]} has other keys", None, "give it a recipe of its own")
     for i, word in enumerate(words):
         if word in words[:i]:
-            reader.fault_at(f"{axis['at']}[{i}]", "listed twice", shown(word), "leave one of the two out")
+            reader.fault_at(f"{axis['at']}[{i}]", "listed twice", quote(word), "leave one of the two out")
 
 
 def _check_figures(sweep: Values, reader: Reader) -> None:
@@ -243,7 +243,7 @@ def _report_absent(axis: Values, numbers: list[str], reader: Reader) -> None:
         reader.fault_at(place, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
     else:
         remedy = suggestion(path, numbers) or f"give the path of a number{such}"
-        reader.fault_at(place, "unknown field", shown(path), remedy)
+        reader.fault_at(place, "unknown field", quote(path), remedy)
 
 
 def _is_absent(path: str, reader: Reader) -> bool:

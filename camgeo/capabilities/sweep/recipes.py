@@ -10,8 +10,8 @@ import numpy as np
 
 from camgeo.capabilities.sweep.pictures import Curve
 from camgeo.capabilities.sweep.single_designs import mechanism_in, text_with
-from camgeo.schema.change import changed
-from camgeo.schema.edit import without
+from camgeo.schema.change import set_value
+from camgeo.schema.edit import remove_section
 from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, Source, scalars
 from kin.numeric.records import dataclass, replace
@@ -53,11 +53,11 @@ def recipe_text(task: Task, best: Best) -> str:
     """
     text = text_with(task.recipe, best.values)
     for section in ("sweep", "name", "about"):
-        text = without(text, section)
+        text = remove_section(text, section)
     for path in task.recipe.tables:
         source = Source.of(text, str(task.recipe.path))  # as the best design's recipe is in another folder
         file = dict(scalars(source.root))[path].text
-        text = changed(source, path, (task.recipe.path.parent / file).resolve().as_posix())
+        text = set_value(source, path, (task.recipe.path.parent / file).resolve().as_posix())
     name = f"{task.recipe.name}-best-{best.place}"
     return _with_entries(text, {"name": name, "about": _about(task, best)})
 

@@ -17,7 +17,7 @@ from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
-from camgeo.schema.errors import RecipeErrors, shown
+from camgeo.schema.errors import RecipeErrors, quote
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.yaml_source import join
 from kin.numeric.records import dataclass, replace
@@ -186,7 +186,7 @@ def _variants(recipe: Recipe, sweep: Sweep) -> tuple[Recipe, ...]:
             except RecipeErrors as errors:
                 first = errors.errors[0]
                 problem = f"with it {first.path}: {first.problem}"
-                raise recipe.error(place, problem, shown(word), first.remedy) from errors
+                raise recipe.error(place, problem, quote(word), first.remedy) from errors
     return tuple(variants)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.valve.train import Valve
 from camgeo.motions.lift_table import MAX_BYTES, TABLE, Origin
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
-from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.scalars import Complaint
 from camgeo.schema.yaml_source import Mapping, join
@@ -76,7 +76,7 @@ def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
 
     text = origin.text
     if text is None:
-        data = bytes_of(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table")
+        data = read_bytes(Path(reader.source.file).parent / origin.name, MAX_BYTES, "table")
         text = data.decode("utf-8-sig", "replace")
     try:
         table = read_rows(text)
