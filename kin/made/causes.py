@@ -45,8 +45,11 @@ class Cause(NamedTuple):
     waves: int | None = None
 
 
-def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> list[Cause]:
-    """Causes of the deviations of one part's surfaces, whose smooth curves are given, the greatest first."""
+def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: float = 0.0) -> list[Cause]:
+    """Causes of the deviations of one part's surfaces, whose smooth curves are given, the greatest first.
+
+    `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
+    """
     columns = np.concatenate([np.column_stack([one.columns("gxy"), np.ones(len(one.e))]) for one in deviations])
     e = np.concatenate([one.e for one in deviations])
     spans = sum(curve.spans for curve in curves)
@@ -58,6 +61,8 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> list[C
     chosen = columns[:, told]
     x = least_squares(chosen, e)
     left = e - chosen @ x
+    if 0 in told:
+        x[told.index(0)] += turned
     variance = float(left @ left) / max(spans - len(told), 1)  # of a mean over a span, times the points in it
     covariance = variance * np.linalg.inv(chosen.T @ chosen)
     sds = np.sqrt(np.diag(covariance))

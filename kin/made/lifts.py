@@ -12,20 +12,22 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kin.contour.arcs import dot, left, unit
+from kin.contour.arcs import dot, left, turned, unit
 from kin.follower.follower import follower_of
 from kin.law.contacts import Flat, Translating
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.made.metal import Metal
 from kin.made.motion import RAISED
-from kin.made.points import SurfacePoints, UnlikePointsError
+from kin.made.points import MIRRORED, UNLIKE, SurfacePoints, UnlikePointsError
+from kin.made.shaft_alike import LOOKS, NEAR, SMALL, row
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
+from kin.read.points import CRANK
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from kin.follower.base import Follower
     from kin.law.contacts import Side, Touch
@@ -33,17 +35,19 @@ if TYPE_CHECKING:
 
 
 COARSE_TURNS = 720  # angles at which the zero of the shaft angle is looked for
+FEW = 2000  # readings that do for that
 STEPS = 12
 STILL = 1e-12  # rad
-UNLIKE = 0.05  # of the stroke: readings that are off by more on average are of something else
-ALIKE = 0.1  # of that, which a turn has to bring it down to
+BETWEEN = 0.75  # of a turn: angles over less may be halved by mistake, over more than a turn by as much the crank's
+ODD = 0.1  # of UNLIKE: from which on readings may run in the other sense, or at degrees of another shaft
+ALIKE = 0.1  # of what they are off by: to which a turn has to bring readings down
 
 
 class Readings(NamedTuple):
     """Lifts (n,), mm or rad, at shaft angles (n,), rad.
 
     They are of a follower with one contact, on metal on a side of its contour; `touch` is that of the probe, None for
-    the follower's own.
+    the follower's own. `halved` says that a heading has the angles in crank degrees.
     """
 
     follower: Follower
@@ -51,6 +55,7 @@ class Readings(NamedTuple):
     shaft: Array
     lift: Array
     touch: Touch | None = None
+    halved: bool = False
 
     @property
     def exact(self) -> Exact:
@@ -66,6 +71,22 @@ class Readings(NamedTuple):
 
         return position
 
+    @property
+    def stroke(self) -> float:
+        """What the exact cam moves the probe by, mm or rad."""
+        return float(np.ptp(self.exact(equal_steps(COARSE_TURNS))[0]))
+
+    def few(self) -> Readings:
+        """Some of them, evenly chosen: at most FEW."""
+        chosen = np.linspace(0, len(self.lift) - 1, min(FEW, len(self.lift))).astype(np.intp)
+        return self._replace(shaft=self.shaft[chosen], lift=self.lift[chosen])
+
+    def off(self, late: float = 0.0) -> Array:
+        """Readings (n,) less those of the exact cam that is late by an angle, rad, and less their mean; mm or rad."""
+        off = self.lift - self.exact(self.shaft - late)[0]
+        centred: Array = off - off.mean()
+        return centred
+
 
 class Exact(Protocol):
     """Position of a probe on the exact contour, or on one that is larger all round."""
@@ -75,10 +96,10 @@ class Exact(Protocol):
 
 
 class Lifts(NamedTuple):
-    """Lifts as points, the turn that was taken out of their angles, rad, and the constant of their readings."""
+    """Lifts as points of metal as it stands, unless aligned; by how much they are late, rad; and their constant."""
 
     points: SurfacePoints
-    turn: float
+    late: float
     zero: float
 
 
@@ -91,25 +112,26 @@ def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
     return follower_of([replace(contact.away_from(side), touch=touch)], still, side)
 
 
-def points_of_lifts(readings: Readings, *, aligned: bool = False) -> Lifts:
-    """Make points of lifts; `aligned` lets the zero of the shaft angle be found.
+def points_of_lifts(readings: Readings, *, aligned: bool = False, alone: bool = False) -> Lifts:
+    """Make points of lifts, as they stand, or `aligned`: with the angle taken out by which they are late.
 
-    Raises UnlikePointsError for readings that are far off, saying what they look like, and where the contact would
-    leave the probe's face.
+    Raises UnlikePointsError where the contact would leave the probe's face, and for readings that are far off, saying
+    what they look like; those of a cam that is known to be turned `alone` may be so however it is turned.
     """
-    follower, side, shaft, lift, touch = readings
+    follower, side, shaft, lift, touch, _ = readings
+    late = lateness([readings])
+    _demand_alike(readings, late if aligned or alone else 0.0, aligned=aligned)
     exact = readings.exact
-    turn = turn_of([readings]) if aligned else 0.0
-    expected, places = exact(shaft + turn)
+    expected, places = exact(shaft - late)
     zero = float((lift - expected).mean())
-    off = lift - expected - zero
-    _demand_alike(readings, off, aligned=aligned)
-    gain = (exact(shaft + turn, RAISED)[0] - exact(shaft + turn, -RAISED)[0]) / (2.0 * RAISED)
+    gain = (exact(shaft - late, RAISED)[0] - exact(shaft - late, -RAISED)[0]) / (2.0 * RAISED)
     frame = follower.envelope.frames(places)
     if touch is not None:
-        _demand_on_face(probe_of(follower, side, touch), frame.points, shaft + turn)
-    metal = frame.points + (side * off / gain)[:, None] * frame.normals
-    return Lifts(SurfacePoints(follower, side, metal), turn, zero)
+        _demand_on_face(probe_of(follower, side, touch), frame.points, shaft - late)
+    metal = frame.points + (side * (lift - expected - zero) / gain)[:, None] * frame.normals
+    if not aligned:
+        metal = turned(metal, np.array(late))
+    return Lifts(SurfacePoints(follower, side, metal), late, zero)
 
 
 def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
@@ -126,56 +148,133 @@ def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
         )
 
 
-def turn_of(readings: Sequence[Readings]) -> float:
-    """Angle, rad, to add to the shaft angles of all readings, by least squares; the zero of each one's lift is free."""
+def lateness(readings: Sequence[Readings]) -> float:
+    """Angle, rad, by which all readings are late, from -pi to pi, by least squares; each one's zero of lift is free."""
     every = equal_steps(COARSE_TURNS)
-    each = [(one.exact, one.shaft, one.lift) for one in readings]
-    tables = [exact(every)[0] for exact, _, _ in each]
+    few = [one.few() for one in readings]
+    tables = [one.exact(every)[0] for one in few]
+    variances = [max(float(np.var(table)), np.finfo(float).tiny) for table in tables]
 
-    def scatter(turn: float) -> float:
+    def scatter(late: float) -> float:
         return sum(
-            len(lift) * float(np.var(lift - np.interp(np.mod(shaft + turn, TURN), every, table, period=TURN)))
-            for table, (_, shaft, lift) in zip(tables, each, strict=True)
+            float(np.var(one.lift - np.interp(np.mod(one.shaft - late, TURN), every, table, period=TURN))) / variance
+            for one, table, variance in zip(few, tables, variances, strict=True)
         )
 
-    turn = min(every.tolist(), key=scatter)
+    late = min(every.tolist(), key=scatter)
+    return math.remainder(_settled(readings, _settled(few, late, variances), variances), TURN)
+
+
+def _settled(readings: Sequence[Readings], late: float, variances: Sequence[float]) -> float:
+    """The lateness of least squares near one, rad: Gauss and Newton. Each cam counts by its share of its variance."""
     h = TURN / COARSE_TURNS / 8.0
     for _ in range(STEPS):
         square, product = 0.0, 0.0
-        for exact, shaft, lift in each:
-            low, here, high = (exact(shaft + turn + d)[0] for d in (-h, 0.0, h))
-            slope = (high - low) / (2.0 * h)
+        for one, variance in zip(readings, variances, strict=True):
+            before, here, after = (one.exact(one.shaft - late + d)[0] for d in (-h, 0.0, h))
+            slope = (after - before) / (2.0 * h)
             slope -= slope.mean()
-            square, product = square + float(slope @ slope), product + float(slope @ (lift - here))
+            square += float(slope @ slope) / variance
+            product -= float(slope @ (one.lift - here)) / variance
         step = product / square if square > 0.0 else 0.0
-        turn += step
+        late += step
         if abs(step) < STILL:
             break
-    return math.remainder(turn, TURN)
+    return late
 
 
-def _demand_alike(readings: Readings, off: Array, *, aligned: bool) -> None:
-    exact, shaft, lift = readings.exact, readings.shaft, readings.lift
-    stroke = float(np.ptp(exact(equal_steps(COARSE_TURNS))[0]))
-    far = float(np.sqrt(np.mean(off**2)))
+def rows_of_lifts(readings: Sequence[Readings], zeros: Sequence[float]) -> tuple[Array, Array]:
+    """Lifts of several cams over the shaft's angle, each less its mean: as read, and as meant; (m, LOOKS) each.
+
+    Readings are at angles from the `zeros`, rad, at which each one's motion begins.
+    """
+    every = equal_steps(LOOKS)
+    rows = [row(one.shaft + zero, one.lift) for one, zero in zip(readings, zeros, strict=True)]
+    meant = [one.exact(every - zero)[0] for one, zero in zip(readings, zeros, strict=True)]
+    measured, nominal = np.stack(rows), np.stack(meant)
+    return measured - measured.mean(axis=1, keepdims=True), nominal - nominal.mean(axis=1, keepdims=True)
+
+
+def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
+    """What the angles of several cams have to be multiplied by to be those of their cams; None where by nothing."""
+    few = [one.few() for one in readings]
+    longest = max(few, key=lambda one: float(np.ptp(one.shaft)))
+    for other in _factors(longest)[1:]:
+        if _fit(few, other.factor) and not _fit(few, 1.0):
+            return other
+    return None
+
+
+def _fit(readings: Sequence[Readings], factor: float) -> bool:
+    """Whether readings are those of their cams with angles multiplied, however each is turned."""
+    each = [one._replace(shaft=factor * one.shaft) for one in readings]
+    return all(float(np.std(one.off(lateness([one])))) <= UNLIKE * one.stroke for one in each)
+
+
+def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
+    """Raise UnlikePointsError for readings that are far off the cam that is late by an angle, rad."""
+    few, stroke = readings.few(), readings.stroke
+    far = float(np.std(few.off(late)))
+    if far <= ODD * UNLIKE * stroke:
+        return
+    problem = f"the lifts are off by {far / stroke:.2g} of the stroke on average"
+    looks = [look for other in _factors(few) for look in _turned_looks(few, other, aligned=aligned)]
+    best = min(looks)
+    if best.left <= ALIKE * far and (far > UNLIKE * stroke or not best.turned_alone):
+        raise UnlikePointsError(f"{problem}: they look {best.words}")
     if far <= UNLIKE * stroke:
         return
-    told = f"the lifts are off by {far / stroke:.2g} of the stroke on average"
-    looks: list[tuple[float, str]] = []
-    for sense, words in ((1.0, []), (-1.0, ["run in the other sense"])):
-        turn = turn_of([readings._replace(shaft=sense * shaft)])
-        left = float(np.std(lift - exact(sense * shaft + turn)[0]))
-        degrees = math.degrees(turn)
-        turned = [f"turned by {degrees:.3g} degrees"] if abs(degrees) > 0.05 else []
-        remedy = "let angles grow as the shaft turns in the motion" if sense < 0.0 else "`--align rotation`"
-        looks.append((left, f"{', '.join([*words, *turned])}: {remedy}"))
-    if min(looks)[0] <= ALIKE * far:
-        raise UnlikePointsError(f"{told}: they look {min(looks)[1]}")
-    high = float(np.ptp(lift)) / stroke
+    high = float(np.ptp(few.lift)) / stroke
+    if few.follower.unit == "deg" and NEAR > math.degrees(high) > 1.0 / NEAR:
+        raise UnlikePointsError(f"{problem}: they look like radians read as degrees: head their column lift_rad")
     if not 0.8 < high < 1.25:
         raise UnlikePointsError(
-            f"{told}: their stroke is {high:.4g} times that of the cam: look at their unit, `--units`"
+            f"{problem}: their stroke is {high:.4g} times that of the cam: look at their unit, `--units`"
         )
     raise UnlikePointsError(
-        f"{told}, however they are turned{' besides' * aligned}: they look like those of another cam"
+        f"{problem}, however they are turned{' besides' * aligned}: they look like those of another cam"
     )
+
+
+class _Factor(NamedTuple):
+    """What angles may have to be multiplied by, what they then look, and remedies."""
+
+    factor: float
+    words: list[str]
+    remedies: list[str]
+
+
+class _Look(NamedTuple):
+    """A likeness of readings: how far off they are under it, mm or rad, its words, and whether it is a turn alone."""
+
+    left: float
+    words: str
+    turned_alone: bool
+
+
+def _factors(readings: Readings) -> list[_Factor]:
+    """By what angles may have to be multiplied: by nothing, and where they span as much for that of another shaft."""
+    span = float(np.ptp(readings.shaft))
+    factors = [_Factor(1.0, [], [])]
+    if readings.halved and span < BETWEEN * TURN:
+        factors.append(_Factor(CRANK, ["to be at the camshaft's own angles"], ["head their column cam_deg"]))
+    elif not readings.halved and span > TURN / BETWEEN:
+        factors.append(_Factor(1.0 / CRANK, ["to be at crank degrees"], ["head their column crank_deg"]))
+    return factors
+
+
+def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Iterator[_Look]:
+    """Readings with their angles multiplied and turned in either sense."""
+    for sense in (1.0, -1.0):
+        seen = readings._replace(shaft=sense * other.factor * readings.shaft)
+        late = lateness([seen])
+        words, remedies = [*other.words], [*other.remedies]
+        if sense < 0.0:
+            words.append("run in the other sense")
+            remedies.append("let angles grow as the shaft turns in the motion")
+        if abs(late) > SMALL:
+            words.append(f"turned by {math.degrees(late):.3g} degrees")
+            remedies += [] if aligned else ["`--align rotation`"]
+        left = float(np.std(seen.off(late))) * (MIRRORED if sense < 0.0 else 1.0)
+        alone = sense > 0.0 and other.factor == 1.0
+        yield _Look(left, f"{', '.join(words)}: {', then '.join(remedies)}", turned_alone=alone)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.contour.arcs import turned
 from kin.follower.frame_contact import CENTRED, QUARTER, WAYS, driven
 from kin.made.metal import Metal
 from kin.numeric.angles import TURN
@@ -195,21 +196,26 @@ def derivatives_of(errors: Array, step: float) -> Array:
     return np.stack([errors[:, 2], FIRST @ errors / step, SECOND @ errors / step**2], axis=1)
 
 
-def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array) -> list[Errors]:
-    """Errors of a follower with each of its contacts on the metal; raises ContactError where one finds none."""
-    step, metal = step_of(curve), metal_of(follower, side, curve)
-    errors, places = positions_about(metal, shaft, step)
-    raised, lowered = (metal.raised(height).positions(shaft)[0] for height in (RAISED, -RAISED))
-    breaks = _beside(shaft, follower.motion.breaks, BESIDE * step)
+def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, turned_by: float = 0.0) -> list[Errors]:
+    """Errors of a follower with each of its contacts on metal that is turned by an angle, rad, counter-clockwise.
+
+    Raises ContactError where one finds none.
+    """
+    step, metal, angle = step_of(curve), metal_of(follower, side, curve), shaft - turned_by
+    errors, places = positions_about(metal, angle, step)
+    raised, lowered = (metal.raised(height).positions(angle)[0] for height in (RAISED, -RAISED))
+    breaks = _beside(angle, follower.motion.breaks, BESIDE * step)
     intended = follower.motion.derivatives(shaft, 2)[:3]
+    by_turn = follower.motion.derivatives(angle, 2)[:3] - intended
+    breaks |= _beside(shaft, follower.motion.breaks, BESIDE * step)
     contacts = []
-    for k, rows in enumerate(derivatives_of(errors, step)):
+    for k, rows in enumerate(derivatives_of(errors, step) + by_turn):
         rows[2, breaks] = np.nan
         place = np.unwrap(places[k], axis=0, period=TURN)
         rate = np.abs(FIRST @ place / step)
         gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
         sds = np.stack([np.abs(gain) * rate**q * curve.deviations(place[2], q) for q in range(3)])
-        normals = side * follower.envelope.frames(place[2]).normals
+        normals = turned(side * follower.envelope.frames(place[2]).normals, np.array(turned_by))
         contacts.append(Errors(shaft, rows, sds, gain, intended, (Felt(curve, place[2], gain, normals),)))
     return contacts
 

@@ -34,6 +34,7 @@ STILL = 1e-10  # rad, and share of the size: a step that changes nothing
 AT_ONCE = 100_000  # points whose feet are found at a time: memory
 COARSE_TURNS = 120  # angles at which a turn is looked for
 FEW = 120  # points that do for that
+UNLIKE = 0.05  # of the stroke: lifts that are off by more on average are of something else
 FAR = 0.01  # of the mean radius: points that lie farther from the contour, on average, are of something else
 BETTER = 0.1  # of their distance: what another placing has to bring it down to, to be what they look like
 WIDEST = math.radians(150.0)  # without a point, seen from the shaft: more is no turn

@@ -1,8 +1,9 @@
-"""What the points of a shaft's cams look like, where they lie far from the contours: told by radii over polar angles.
+"""What the points or lifts of a shaft's cams look like, where they lie far off: told by rows over equal angles.
 
 All cams are looked at together, so that a shaft turned as one, mirrored, or with cams that stand for one another is
-told from a cam that alone is turned. Radii over equal steps of the polar angle are correlated; a contour that turns
-back about the shaft has several radii at one angle, of which any is taken: these are looks, and nothing rests on them.
+told from a cam that alone is turned. Rows are radii over the polar angle, or lifts over the shaft angle, and are
+correlated. A contour that turns back about the shaft has several radii at one angle, of which any is taken: these are
+looks, and nothing rests on them.
 """
 
 from __future__ import annotations
@@ -12,114 +13,179 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.made.points import BETTER, FACTORS, FAR, UnlikePointsError
+from kin.made.points import BETTER, FACTORS, FAR, MIRRORED, UNLIKE, UnlikePointsError
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
 
-LOOKS = 1440  # polar angles
+LOOKS = 1440  # angles of a row
 SMALL = math.radians(0.05)  # a turn that is not named
-MIRRORED = "measure it with the upper end up, as the file is drawn, or turn y round"
-TURNED_OVER = "count z from the recipe's end, and turn y round"
 ODD = 0.5  # of what lies far off: from which on a cam may stand off the others
-NEAR = 1.2  # ratio of mean radii within which points may be of these cams
+NEAR = 1.2  # ratio of sizes within which rows may be of these cams
 
 
-class Radii(NamedTuple):
-    """Radii over equal steps of the polar angle, mm: of the points of each cam (m, k), and of every contour (n, k).
+class Words(NamedTuple):
+    """What is said of rows that lie far off: from which share of their size on, how far, and remedies.
 
-    `owner` (m,) is which contour each is of, `names` those of the contours, `other_end` (n,) which contour
-    stands at the place of each where the shaft is counted from its other end.
+    `turned_over` is the remedy of a shaft that is counted from its other end, None where rows do not show that.
+    """
+
+    far: float
+    problem: str
+    unit: str
+    mirrored: str
+    mirrored_remedy: str
+    turned_over: str | None
+
+
+OF_POINTS = Words(
+    FAR,
+    "the points lie {0:.3g} mm off the contours on average",
+    "mm",
+    "mirrored",
+    "measure it with the upper end up, as the file is drawn, or turn y round",
+    "count z from the recipe's end, and turn y round",
+)
+OF_LIFTS = Words(
+    UNLIKE,
+    "the lifts are off by {0:.2g} of their strokes on average",
+    "",
+    "run in the other sense",
+    "let angles grow as the shaft turns in the motion",
+    None,
+)
+
+
+class Rows(NamedTuple):
+    """Rows over LOOKS equal angles, mm or rad: of what was measured of each cam (m, k), and of every cam (n, k).
+
+    `owner` (m,) is which cam each is of, `names` those of the cams, `sizes` (n,) of their rows and `measured_sizes`
+    (m,) of those measured, mm or rad, `other_end` (n,) which cam stands at the place of each where the shaft is counted
+    from its other end.
     """
 
     measured: Array
-    contours: Array
+    nominal: Array
     owner: Indices
     names: Sequence[str]
+    sizes: Array
+    measured_sizes: Array
     other_end: Indices
+    words: Words
 
-    @property
-    def size(self) -> float:
-        """Mean radius of the contours, mm."""
-        return float(self.contours.mean())
+    def off(self, measured: Array, nominal: Array, turns: dict[int, float] | None = None) -> Array:
+        """Root mean square (m,) of the rows' difference, as a share of their sizes, some turned back."""
+        back = measured.copy()
+        every = equal_steps(LOOKS)
+        for rank, turn in (turns or {}).items():
+            back[rank] = np.interp(every + turn, every, measured[rank], period=TURN)
+        off: Array = np.sqrt(np.mean((back - nominal) ** 2, axis=1)) / self.sizes[self.owner]
+        return off
+
+
+def row(angle: Array, value: Array) -> Array:
+    """Values (n,) at angles (n,), rad, in any order, over equal steps of the angle (k,)."""
+    order = np.argsort(np.mod(angle, TURN), kind="stable")
+    interpolated: Array = np.interp(equal_steps(LOOKS), np.mod(angle, TURN)[order], value[order], period=TURN)
+    return interpolated
 
 
 def radii(places: Array) -> Array:
     """Radii (k,) of places (n, 2) in any order over equal steps of the polar angle, mm."""
-    angle = np.mod(np.arctan2(places[:, 1], places[:, 0]), TURN)
-    order = np.argsort(angle, kind="stable")
-    interpolated: Array = np.interp(equal_steps(LOOKS), angle[order], np.hypot(*places[order].T), period=TURN)
-    return interpolated
+    return row(np.arctan2(places[:, 1], places[:, 0]), np.hypot(*places.T))
 
 
-def lone_turns(shaft: Radii, *, aligned: bool) -> dict[int, float]:
+def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
     """Turn, rad, of each cam that alone is turned, by its place among those measured; empty where none is far off.
 
-    `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for points that look like
+    `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for rows that look like
     those of a shaft that is turned, mirrored, in another unit, or has cams for one another.
     """
-    nominal = shaft.contours[shaft.owner]
-    off = _off(shaft.measured, nominal)
+    nominal = rows.nominal[rows.owner]
+    off = rows.off(rows.measured, nominal)
     alone = {
-        rank: _turn(shaft.measured[rank : rank + 1], nominal[rank : rank + 1])
-        for rank in np.flatnonzero(off > ODD * FAR * nominal.mean(axis=1)).tolist()
+        rank: _turn(rows.measured[rank : rank + 1], nominal[rank : rank + 1])
+        for rank in np.flatnonzero(off > ODD * rows.words.far).tolist()
     }
-    if off.max() > FAR * shaft.size:
-        _demand_shaft(shaft, nominal, off, aligned=aligned)
-    return alone if _mean(_off(shaft.measured, nominal, alone)) <= BETTER * _mean(off) else {}
+    if off.max() > rows.words.far:
+        _demand_shaft(rows, nominal, off, aligned=aligned)
+    return alone if _mean(rows.off(rows.measured, nominal, alone)) <= BETTER * _mean(off) else {}
 
 
-def _demand_shaft(shaft: Radii, nominal: Array, off: Array, *, aligned: bool) -> None:
-    """Raise UnlikePointsError for points that lie far off as those of another shaft do."""
-    problem = f"the points lie {_mean(off):.3g} mm off the contours on average"
-    ratio = float(nominal.mean() / shaft.measured.mean())
+def standing_together(rows: Rows) -> Mask:
+    """Cams (m,) that stand in the same turn of the shaft, where these are more than half of them; else all."""
+    return _together(rows, rows.measured, rows.nominal[rows.owner])[1]
+
+
+def _together(rows: Rows, measured: Array, nominal: Array) -> tuple[float, Mask]:
+    """Turn of the shaft, rad, in which most cams stand, and which those are (m,): all where none has most of them."""
+    count = len(measured)
+    turns = [_turn(measured / rows.sizes[rows.owner, None], nominal / rows.sizes[rows.owner, None])]
+    turns += [_turn(measured[[rank]], nominal[[rank]]) for rank in range(count)]
+    standing = [
+        rows.off(measured, nominal, dict.fromkeys(range(count), turn)) <= ODD * rows.words.far for turn in turns
+    ]
+    best = max(range(len(turns)), key=lambda k: int(standing[k].sum()))
+    if 2 * int(standing[best].sum()) <= count:
+        return turns[0], np.ones(count, dtype=bool)
+    return turns[best], standing[best]
+
+
+def _demand_shaft(rows: Rows, nominal: Array, off: Array, *, aligned: bool) -> None:
+    """Raise UnlikePointsError for rows that lie far off as those of another shaft do."""
+    far = _mean(off * rows.sizes[rows.owner]) if rows.words.unit else _mean(off)
+    problem = rows.words.problem.format(far)
+    ratio = float(np.median(rows.sizes[rows.owner] / rows.measured_sizes))
     factor = next((value for value in FACTORS if 1.0 / NEAR < value / ratio < NEAR), None)
     if factor is not None:
         large, word = max(factor, 1.0 / factor), "small" if factor > 1.0 else "large"
         raise UnlikePointsError(f"{problem}: they look {large:.6g} times too {word}: `--units {FACTORS[factor]}`")
-    looks = [*_shaft_looks(shaft, nominal, aligned=aligned), *_swap_looks(shaft, off)]
+    looks = [*_shaft_looks(rows, nominal, aligned=aligned), *_swap_looks(rows, off)]
     explained = [look for look in looks if look.left <= BETTER * _mean(off)]
     if explained:
         raise UnlikePointsError(f"{problem}: {min(explained).words}")
 
 
 class _Look(NamedTuple):
-    """A likeness of points: how far off they are under it, mm on average, and its words."""
+    """A likeness of points: how far off they are under it, on average, and its words."""
 
     left: float
     words: str
 
 
-def _shaft_looks(shaft: Radii, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
-    """The shaft as one turned, mirrored, or measured from its other end."""
-    turned_over = shaft.contours[shaft.other_end[shaft.owner]]
-    for mirrored, contours, looks, remedy in (
-        (False, nominal, "", ""),
-        (True, nominal, "mirrored", MIRRORED),
-        (True, turned_over, "measured from its other end", TURNED_OVER),
-    ):
-        measured = np.roll(shaft.measured[:, ::-1], 1, axis=1) if mirrored else shaft.measured
-        turn = _turn(measured, contours)
-        left = _mean(_off(measured, contours, dict.fromkeys(range(len(measured)), turn)))
+def _shaft_looks(rows: Rows, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
+    """The shaft as one turned, mirrored, or measured from its other end, by the cams that stand together."""
+    words = rows.words
+    candidates = [(False, nominal, "", ""), (True, nominal, words.mirrored, words.mirrored_remedy)]
+    if words.turned_over is not None:
+        other = rows.nominal[rows.other_end[rows.owner]]
+        candidates.append((True, other, "measured from its other end", words.turned_over))
+    for mirrored, contours, looks, remedy in candidates:
+        measured = np.roll(rows.measured[:, ::-1], 1, axis=1) if mirrored else rows.measured
+        turn, together = _together(rows, measured, contours)
         turned = abs(turn) > SMALL
-        words = [*([looks] if looks else []), *([f"turned by {math.degrees(turn):.3g} degrees"] if turned else [])]
+        if not mirrored and not turned:
+            continue
+        left = _mean(rows.off(measured, contours, dict.fromkeys(range(len(measured)), turn))[together])
+        described = [*([looks] if looks else []), *([f"turned by {math.degrees(turn):.3g} degrees"] if turned else [])]
         remedies = [*([remedy] if remedy else []), *(["`--align rotation`"] if turned and not aligned else [])]
-        yield _Look(left, f"the shaft looks {', '.join(words)}: {', then '.join(remedies)}")
+        text = f"the shaft looks {', '.join(described)}: {', then '.join(remedies)}"
+        yield _Look(left * (MIRRORED if mirrored else 1.0), text)
 
 
-def _swap_looks(shaft: Radii, off: Array) -> Iterator[_Look]:
+def _swap_looks(rows: Rows, off: Array) -> Iterator[_Look]:
     """Cams that stand for one another."""
     each = np.stack(
-        [_off(shaft.measured, np.broadcast_to(contour, shaft.measured.shape)) for contour in shaft.contours], axis=1
+        [rows.off(rows.measured, np.broadcast_to(nominal, rows.measured.shape)) for nominal in rows.nominal], axis=1
     )
-    far = off > FAR * shaft.size
-    like = np.where(far, np.argmin(each, axis=1), shaft.owner)
-    pairs = zip(shaft.owner[far].tolist(), like[far].tolist(), strict=True)
-    words = ", ".join(f"those of {shaft.names[own]} look like {shaft.names[other]}" for own, other in pairs)
+    far = off > rows.words.far
+    like = np.where(far, np.argmin(each, axis=1), rows.owner)
+    pairs = zip(rows.owner[far].tolist(), like[far].tolist(), strict=True)
+    words = ", ".join(f"those of {rows.names[own]} look like {rows.names[other]}" for own, other in pairs)
     yield _Look(_mean(each[np.arange(len(like)), like]), f"{words}: look at the column that tells them")
 
 
@@ -127,18 +193,8 @@ def _mean(off: Array) -> float:
     return float(np.sqrt(np.mean(off**2)))
 
 
-def _off(measured: Array, nominal: Array, turns: dict[int, float] | None = None) -> Array:
-    """Root mean square (m,) of the radii's difference, mm, those of some cams turned back."""
-    back = measured.copy()
-    for rank, turn in (turns or {}).items():
-        every = equal_steps(LOOKS)
-        back[rank] = np.interp(every + turn, every, measured[rank], period=TURN)
-    off: Array = np.sqrt(np.mean((back - nominal) ** 2, axis=1))
-    return off
-
-
 def _turn(measured: Array, nominal: Array) -> float:
-    """Turn of all cams as one, rad, from -pi to pi, by the correlation of their radii (m, k)."""
+    """Turn of all cams as one, rad, from -pi to pi, by the correlation of their rows (m, k)."""
     count = measured.shape[1]
     spectrum = (np.fft.rfft(measured) * np.conj(np.fft.rfft(nominal))).sum(axis=0)
     spectrum[0] = 0.0

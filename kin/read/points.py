@@ -2,8 +2,9 @@
 
 A table has rows of x, y and, if there are, z and a normal nx, ny, nz; of a radius and a polar angle; or of a shaft
 angle and a lift. Its heading says which and in which units (`x_mm`, `X [mm]`, `lift_in`); without one, rows of two or
-three numbers are x, y and z, of six with a normal. `kin.read.rows` has how columns are parted. Lines that begin with #,
-;, %, ! or // are comments. DMIS gives points as `FA(label) = FEAT/POINT,CART,x,y,z,i,j,k` (ISO 22093); a `$` at the
+three numbers are x, y and z, of six with a normal. Angles of lifts in crank degrees, by their heading, are halved: the
+camshaft of a four-stroke engine turns half as fast. `kin.read.rows` has how columns are parted. Lines that begin with
+#, ;, %, ! or // are comments. DMIS gives points as `FA(label) = FEAT/POINT,CART,x,y,z,i,j,k` (ISO 22093); a `$` at the
 end continues a line.
 """
 
@@ -29,11 +30,13 @@ if TYPE_CHECKING:
     from kin.read.rows import Rows
 
 Measured: TypeAlias = Literal["places", "lift"]
+TurnsOf: TypeAlias = Literal["crank", "cam", ""]
 SUFFIXES = (".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms")
 MOST_BYTES = 200_000_000
 LEAST_POINTS, MOST_POINTS = 36, 1_000_000
 LARGEST = 1e6  # of a coordinate, in the file's unit
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "inches": 25.4, "thou": 0.0254}
+CRANK = 2.0  # turns of a four-stroke engine's crank for one of its camshaft
 ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "rad": 180.0 / np.pi}
 NAMES = {  # what columns are called by the programs that write them
     "x": "x", "xm": "x", "xact": "x", "xactual": "x", "xmeas": "x",
@@ -42,10 +45,14 @@ NAMES = {  # what columns are called by the programs that write them
     "nx": "nx", "i": "nx", "u": "nx", "ny": "ny", "j": "ny", "v": "ny", "nz": "nz", "k": "nz", "w": "nz",
     "r": "radius", "radius": "radius", "rho": "radius",
     "polar": "angle", "angle": "angle", "theta": "angle", "phi": "angle", "a": "angle", "cam": "angle",
-    "shaft": "angle", "lift": "lift", "s": "lift", "reading": "lift", "displacement": "lift", "swing": "lift",
+    "camshaft": "angle", "shaft": "angle", "crank": "angle", "crankshaft": "angle", "ca": "angle", "lift": "lift",
+    "s": "lift", "reading": "lift", "displacement": "lift", "swing": "lift",
     "surface": "surface", "flank": "surface", "lobe": "lobe",
 }  # fmt: skip
 HEADING = re.compile(r"^(?P<name>.*?)[ _]*(?:[\[(]\s*(?P<inside>[^\])]*)[\])]|_(?P<after>[a-z°]+))?$")
+OF_CRANK, OF_CAM = (
+    re.compile(rf"(?<![a-z])(?:{word})(?![a-z])") for word in ("crank(?:shaft)?|ca", "cam(?:shaft)?|shaft")
+)
 COMMENT = ("#", ";", "%", "!", "//", "$$")
 DMIS = re.compile(r"^FA\s*\(\s*(?P<label>[^)]*)\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*CART\s*,(?P<rest>.*)$", re.IGNORECASE)
 
@@ -58,7 +65,8 @@ class PointTable:
     columns     by name: x, y, z, nx, ny (n,), or angle (degrees) and lift; lengths in the file's unit
     lines       line of each point in the file (n,)
     unit        mm of the file's unit of length where a heading states it, else None
-    degrees     whether lifts are stated to be degrees
+    turns_of    what the heading says that the angles of lifts are of; those of a crank are halved in `columns`
+    degrees     whether lifts are stated to be angles, which are in degrees in `columns`
     labels      surface, or lobe, of each point where the file has such a column; else empty
     """
 
@@ -66,6 +74,7 @@ class PointTable:
     columns: Mapping[str, Array]
     lines: Indices
     unit: float | None = None
+    turns_of: TurnsOf = ""
     degrees: bool = False
     labels: Sequence[str] = ()
 
@@ -234,6 +243,15 @@ def _headed(rows: Rows, path: Path) -> PointTable:
     turned = next((unit for name, _, unit in known if name == "angle" and unit in ANGLES), "deg")
     if "angle" in columns:
         columns["angle"] = columns["angle"] * ANGLES[turned]
+    cell = rows.heading[groups[0]["angle"]].lower() if "angle" in columns else ""
+    turns_of = _turns_of(cell)
+    if measured == "lift":
+        columns["angle"] = columns["angle"] / CRANK if turns_of == "crank" else columns["angle"]
+        swing = next((unit for name, _, unit in known if name == "lift" and unit in ANGLES), "")
+        columns["lift"] = columns["lift"] * ANGLES.get(swing, 1.0)
+    elif turns_of == "crank":
+        remedy = "a polar angle is the part's own: head it polar_deg"
+        raise ReadError("unsupported", f"its radii stand over crank degrees, {short(cell)}; {remedy}", path)
     if "radius" in columns:
         radius, angle = columns.pop("radius"), np.radians(columns.pop("angle"))
         columns |= {"x": radius * np.cos(angle), "y": radius * np.sin(angle)}
@@ -247,7 +265,12 @@ def _headed(rows: Rows, path: Path) -> PointTable:
         there = np.isfinite(np.stack(list(columns.values()))).all(axis=0)
         columns, lines = {name: row[there] for name, row in columns.items()}, lines[there]
         labels = [labels[i] for i in np.flatnonzero(there).tolist()]
-    return PointTable(measured, columns, lines, next(iter(stated), None), swings, labels)
+    return PointTable(measured, columns, lines, next(iter(stated), None), turns_of, swings, labels)
+
+
+def _turns_of(cell: str) -> TurnsOf:
+    """What the angles below a heading's cell are of, by its words."""
+    return "crank" if OF_CRANK.search(cell) else "cam" if OF_CAM.search(cell) else ""
 
 
 def _group(known: list[tuple[str, str, str]], prefix: str, wanted: Sequence[str]) -> dict[str, int]:

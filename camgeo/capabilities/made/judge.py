@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from kin.made.points import Datum, Placing, Profile
     from kin.numeric.arrays import Array
 
+TURNED = math.radians(0.25)  # from which on lifts, and cams of a shaft, are said to be turned
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMade:
@@ -53,6 +55,7 @@ class DiscMade:
     surfaces     each of its surfaces
     profile      of all their points, by the datum
     placing      that was taken out before (`align`)
+    turned       angle, rad, by which it is known to be turned: points are turned back by it, its motion is not
     uncertain    expanded uncertainty of every point's deviation (n,), mm
     smoothed     greatest |e| of the smoothed deviation as the datum places it, mm
     """
@@ -61,6 +64,7 @@ class DiscMade:
     surfaces: tuple[SurfaceMade, ...]
     profile: Profile
     placing: Placing
+    turned: float
     uncertain: Array
     smoothed: float
 
@@ -71,7 +75,7 @@ class PartMade:
 
     motion, play   of the follower: midway where two contacts or surfaces hold it
     output         of a linkage
-    lifts          zero of the readings and turn of their angles, of lifts alone
+    lifts          zero of the readings, and by how much they are late and turned back, of lifts alone
     remarks        sentences
     """
 
@@ -102,26 +106,32 @@ def part_of_points(recipe: Recipe, design: Design, points: Points, call: Call, d
     each = {one.on.surface.name: (one.errors, one.play) for disc in discs for one in disc.surfaces}
     motion, play = follower_motion(design, each)
     remarks = [*points.remarks, *_remarks(recipe, discs, call, points.lifts)]
+    late = (
+        motion.phase[0] if points.lifts is not None and not call.probing.align and call.probing.alone is None else 0.0
+    )
+    if abs(late) > TURNED:
+        remarks.append(f"the lifts look turned by {math.degrees(late):.3g} degrees: `--align rotation`")
     output = _output([disc.part for disc in discs], discs)
     return PartMade(tuple(discs), motion, play, output, points.lifts, tuple(remarks), points.unit)
 
 
 def _disc(recipe: Recipe, points: DiscPoints, call: Call, datum: Datum) -> DiscMade:
     """Smooth the points of a disc, and let the followers run on each surface."""
-    profiled = profile([one.points for one in points.surfaces], datum)
+    standing = [one.points.placed(points.placing) if datum == "part" else one.points for one in points.surfaces]
+    profiled = profile(standing, datum)
     shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
     surfaces = []
     for one in points.surfaces:
         deviations = one.points.deviations
         smooth = fit(deviations.parameter, deviations.e, call.spans)
-        errors = contact_errors(one.surface.gauge, one.surface.side, smooth.curve, shaft)
+        errors = contact_errors(one.surface.gauge, one.surface.side, smooth.curve, shaft, points.turned)
         surfaces.append(SurfaceMade(one, smooth, *paired(one.surface.gauge, errors)))
     smoothed = [
         float(np.abs(fit(one.parameter, one.e, own.fit.curve.spans).curve.rows(one.parameter)[0]).max())
         for one, own in zip(profiled.deviations, surfaces, strict=True)
     ]
     uncertain = _uncertain(surfaces, call)
-    return DiscMade(points.part, tuple(surfaces), profiled, points.placing, uncertain, max(smoothed))
+    return DiscMade(points.part, tuple(surfaces), profiled, points.placing, points.turned, uncertain, max(smoothed))
 
 
 def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.judge.intent import PartIntent
     from kin.law.contacts import Touch
-    from kin.made.lifts import Readings
+    from kin.made.lifts import Lifts, Readings
     from kin.read.points import PointTable
 
 BORE = 0.05  # of its diameter: points so near to it are on the bore
@@ -36,11 +36,13 @@ class DiscPoints:
 
     surfaces   each of its surfaces with its points; empty where no file is of this disc
     placing    that was taken out (`align`)
+    turned     angle, rad, by which it is known to be turned: its points are placed by it too
     """
 
     part: PartIntent
     surfaces: tuple[OnSurface, ...] = ()
     placing: Placing = Placing()
+    turned: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,7 @@ class Points:
     """Points of a part.
 
     every      each disc of the part
-    lifts      zero of the readings, mm or rad, and turn of their angles, rad, of lifts alone
+    lifts      zero of the readings, mm or rad, and by how much they are late and turned back, rad, of lifts alone
     remarks    sentences
     unit       mm in the unit of the files
     """
@@ -85,7 +87,9 @@ def points_of_tables(
     scale, remarks = scale_of(recipe, tables, probing.units)
     if any(table.measured == "lift" for table in tables):
         lifts, placed = _of_lifts(parts, tables, scale, probing)
-        return Points((_disc(recipe, parts[0], placed, replace(probing, align="")),), lifts, tuple(remarks), scale)
+        turned = 0.0 if probing.align else lifts.late
+        whole = _disc(recipe, parts[0], placed, replace(probing, align="", alone=turned))
+        return Points((whole,), (lifts.zero, lifts.late - turned), tuple(remarks), scale)
     if probing.face is not None:
         raise CallError("a face is of an indicator, and these are places: leave it out; a ball has a radius")
     pieces: list[list[tuple[int, PointTable, float]]] = [[] for _ in parts]
@@ -132,18 +136,17 @@ def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], probi
     """Place the points of a disc by the unknowns of `align`, and average those that were measured again."""
     _demand_outside(recipe, surfaces)
     align = probing.align
-    points = [one.points for one in surfaces]
+    placing, turned = Placing(), probing.alone or 0.0
+    points = [one.points.placed(Placing(turned)) for one in surfaces]
     demand_round(points)
-    placing = Placing()
     if align:
         placing = turned_at(points, "g")
         if align != "g":
             placing = settled([one.placed(placing) for one in points], align)
         points = [one.placed(placing) for one in points]
-    known = Placing(probing.alone) if probing.alone else placing
-    demand_alike([one.placed(known) for one in points], aligned=bool(align), shiftable=probing.alone is None)
+    demand_alike(points, aligned=bool(align), shiftable=probing.alone is None)
     placed = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
-    return DiscPoints(part, tuple(placed), placing)
+    return DiscPoints(part, tuple(placed), placing, turned)
 
 
 def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
@@ -160,14 +163,15 @@ def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) 
 
 def _of_lifts(
     parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing
-) -> tuple[tuple[float, float], list[OnSurface]]:
-    """Points of the metal by the lifts of an indicator."""
+) -> tuple[Lifts, list[OnSurface]]:
+    """Lifts of an indicator, and their points on the surface."""
     from kin.made.lifts import points_of_lifts
 
-    lifts = points_of_lifts(readings_of(parts, tables, scale, probing), aligned=bool(probing.align))
+    readings = readings_of(parts, tables, scale, probing)
+    lifts = points_of_lifts(readings, aligned=bool(probing.align), alone=bool(probing.alone))
     files = np.concatenate([np.full(len(table), i) for i, table in enumerate(tables)])
     lines = np.concatenate([table.lines for table in tables])
-    return (lifts.zero, lifts.turn), [OnSurface(parts[0].surfaces[0], lifts.points, files, lines, len(lines))]
+    return lifts, [OnSurface(parts[0].surfaces[0], lifts.points, files, lines, len(lines))]
 
 
 def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing) -> Readings:
@@ -184,6 +188,7 @@ def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale
         raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
     shaft = np.radians(np.concatenate([table.columns["angle"] for table in tables]))
     lift = np.concatenate([table.columns["lift"] for table in tables])
+    halved = any(table.turns_of == "crank" for table in tables)
     swings = surface.gauge.unit == "deg"
     if not swings and any(table.degrees for table in tables):
         raise CallError("its lifts are in degrees, and the follower of this cam does not swing")
@@ -195,7 +200,7 @@ def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale
         touch = Flat(width=probing.face)
     elif probing.ball is not None:
         touch = Roller(probing.ball) if probing.ball else KnifeEdge()
-    return Readings(surface.gauge, surface.side, shaft, lift, touch)
+    return Readings(surface.gauge, surface.side, shaft, lift, touch, halved)
 
 
 def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:

@@ -34,8 +34,8 @@ def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Resu
         raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
     with as_call_errors(paths):
         result = made_part(recipe, design, paths, call)
-    checks, verdicts = checks_of(recipe, result, call)
-    report = section(recipe, paths, result, call, verdicts) | events_section(recipe, design, result, call)
+        checks, verdicts = checks_of(recipe, result, call)
+        report = section(recipe, paths, result, call, verdicts) | events_section(recipe, design, result, call)
     add_figures(report, recipe, design, result)
     if call.out is not None:
         from camgeo.capabilities.made.output import write  # most calls write nothing
@@ -56,10 +56,11 @@ def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock:
     checks, entries = [], []
     for lobe in result.cams:
         cam = lobe.points.cam
-        own, verdicts = checks_of(cam.recipe, lobe.result, call)
+        with as_call_errors(lobe.points.paths, cam.name):
+            own, verdicts = checks_of(cam.recipe, lobe.result, call)
+            events = events_section(cam.recipe, cam.design, lobe.result, call, (cam.events, cam.zero))
+            entries.append(section(cam.recipe, lobe.points.paths, lobe.result, call, verdicts) | events)
         checks += [replace(check, surface=cam.name) for check in own]
-        events = events_section(cam.recipe, cam.design, lobe.result, call, (cam.events, cam.zero))
-        entries.append(section(cam.recipe, lobe.points.paths, lobe.result, call, verdicts) | events)
         add_figures(entries[-1], cam.recipe, cam.design, lobe.result)
     report = shaft_section(recipe, paths, result, entries)
     if call.out is not None:

@@ -140,7 +140,8 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
     """Causes of the deviations as the points stand, the greatest first; directions as the file is drawn."""
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
     rows = []
-    for cause in causes([one.on.points.deviations for one in disc.surfaces], [one.fit.curve for one in disc.surfaces]):
+    deviations, curves = [one.on.points.deviations for one in disc.surfaces], [one.fit.curve for one in disc.surfaces]
+    for cause in causes(deviations, curves, disc.turned):
         turned, mirrored = cause.names == ("turned",), cause.names in {("turned",), ("shifted along y",)}
         scale = (math.degrees(1.0) if turned else 1.0 / recipe.mm) * (sign if mirrored else 1.0)
         row: dict[str, Any] = {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import expanded, part_of_points
+from camgeo.capabilities.made.judge import TURNED, expanded, part_of_points
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
 from camgeo.capabilities.made.reading import label_of, places_of, sorted_out, tables_of
@@ -23,19 +23,20 @@ from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
 from kin.contour.arcs import turned
 from kin.made.motion import Influence
-from kin.made.points import FACTORS, turned_at
-from kin.made.shaft_alike import LOOKS, Radii, lone_turns, radii
+from kin.made.points import FACTORS, UnlikePointsError, turned_at
+from kin.made.shaft_alike import LOOKS, OF_LIFTS, OF_POINTS, Rows, lone_turns, radii, standing_together
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
-from kin.read.points import LEAST_POINTS
+from kin.read.points import CRANK, LEAST_POINTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from camgeo.capabilities.made.judge import PartMade
-    from camgeo.capabilities.made.reading import Call
+    from camgeo.capabilities.made.reading import Call, Probing
     from camgeo.registry.capability import ShaftCam
+    from kin.made.lifts import Readings
     from kin.made.motion import Errors
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
@@ -44,7 +45,6 @@ MOST_NAMES = 8  # named in a message
 SHIFTED = "shifted along the shaft: count z from the recipe's zero, {0:+.6g} {1}"
 TURNED_OVER = "measured from the other end: z is {0:.6g} {1} less the column, and y turned round"
 TWO = 2
-TURNED = math.radians(0.25)  # from which on a cam is said to be turned, where that is certain
 CERTAIN = 4.0  # times the uncertainty
 WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of what is written
 
@@ -65,6 +65,14 @@ class CamPoints:
     def tables(self) -> tuple[PointTable, ...]:
         """Their rows."""
         return tuple(table for _, table in self.files)
+
+    def halved(self) -> CamPoints:
+        """The lifts with angles half as great."""
+        files = (
+            (path, replace(table, columns={**table.columns, "angle": table.columns["angle"] / CRANK}))
+            for path, table in self.files
+        )
+        return replace(self, files=tuple(files))
 
     def turned(self, angle: float) -> CamPoints:
         """The points with the metal turned by an angle, rad, counter-clockwise as drawn for `cw`."""
@@ -119,15 +127,24 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> S
         raise CallError("some files have lifts and others places: give them in calls of their own")
     scale, _ = scale_of(cams[0].recipe, tables, call.probing.units)
     lifts = tables[0].measured == "lift"
-    measured = [
-        points.turned(-points.cam.zero if lifts else -points.cam.at) for points in _by_cam(cams, paths, tables, scale)
-    ]
+    measured, halved = _by_cam(cams, paths, tables, scale), ""
+    if lifts:
+        measured, halved = _at_cam_degrees(measured, scale, call.probing)
+    measured = [points.turned(-points.cam.zero if lifts else -points.cam.at) for points in measured]
+
+    def rows() -> Rows:
+        probing = call.probing
+        return _lift_rows(measured, scale, probing) if lifts else _radii(cams, measured, scale, probing)
+
     late = None
     if call.probing.align:
         with as_call_errors(paths):
-            late = _shaft_turn(measured, scale, call)
+            together = standing_together(rows())
+            late = _shaft_turn([measured[rank] for rank in np.flatnonzero(together).tolist()], scale, call)
         measured = [points.turned(-late) for points in measured]
-    alone = {} if lifts else _lone_turns(cams, measured, scale, call)
+    with as_call_errors(paths):
+        turns = lone_turns(rows(), aligned=late is not None)
+    alone = {measured[rank].cam.name: turn for rank, turn in turns.items()}
     results = [
         _judge_cam(
             points, replace(call, probing=replace(call.probing, align="", alone=alone.get(points.cam.name, 0.0)))
@@ -141,6 +158,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> S
         tuple(cam.name for cam in cams if cam.name not in names),
         late,
         (
+            *([halved] if halved else []),
             *_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names]),
             *_lone_remarks(measured, phases),
         ),
@@ -279,14 +297,9 @@ def _shaft_turn(measured: Sequence[CamPoints], scale: float, call: Call) -> floa
     """Angle, rad, by which the shaft as one stands later than meant, by least squares over all its points."""
     probing = call.probing
     if measured[0].tables[0].measured == "lift":
-        from kin.made.lifts import turn_of
+        from kin.made.lifts import lateness
 
-        return -turn_of(
-            [
-                readings_of(intents(points.cam.recipe, points.cam.design), points.tables, scale, probing)
-                for points in measured
-            ]
-        )
+        return lateness([_readings(points, scale, probing) for points in measured])
     surfaces = []
     for points in measured:
         (part,) = intents(points.cam.recipe, points.cam.design)
@@ -295,32 +308,78 @@ def _shaft_turn(measured: Sequence[CamPoints], scale: float, call: Call) -> floa
     return turned_at(surfaces).turn
 
 
-def _lone_turns(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, call: Call) -> dict[str, float]:
-    """Turn, rad, of each cam that stands off the others; raises CallError for what looks like no such shaft."""
+def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, probing: Probing) -> Rows:
+    """Radii of the points of each cam, and of every cam's contour."""
     contours = []
     for cam in cams:
         (surface,) = intents(cam.recipe, cam.design)[0].surfaces
         contours.append(radii(turned(surface.gauge.envelope.points(equal_steps(LOOKS)), np.array(cam.at))))
-    everywhere = [
-        np.concatenate(
-            [places_of(table, scale, mirrored=points.cam.recipe.rotation == "ccw")[0] for table in points.tables]
-        )
-        for points in measured
-    ]
-    names = [cam.name for cam in cams]
-    owner = np.array([names.index(points.cam.name) for points in measured], dtype=np.intp)
+    rows = []
+    for points in measured:
+        mirrored = points.cam.recipe.rotation == "ccw"
+        places = np.concatenate([places_of(table, scale, mirrored=mirrored)[0] for table in points.tables])
+        rows.append(radii(turned(places, np.array(points.cam.at))) - (probing.ball or 0.0))
+    own, nominal = np.stack(rows), np.stack(contours)
     order = np.argsort([cam.low for cam in cams])
     other_end = np.empty_like(order)
     other_end[order] = order[::-1]
-    own_radii = np.stack(
-        [radii(turned(places, np.array(points.cam.at))) for places, points in zip(everywhere, measured, strict=True)]
+    return Rows(
+        own,
+        nominal,
+        _ranks(cams, measured),
+        [cam.name for cam in cams],
+        nominal.mean(axis=1),
+        own.mean(axis=1),
+        other_end,
+        OF_POINTS,
     )
-    with as_call_errors(list(dict.fromkeys(path for points in measured for path in points.paths))):
-        alone = lone_turns(
-            Radii(own_radii - (call.probing.ball or 0.0), np.stack(contours), owner, names, other_end),
-            aligned=bool(call.probing.align),
-        )
-    return {measured[rank].cam.name: turn for rank, turn in alone.items()}
+
+
+def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) -> Rows:
+    """Lifts of each cam that was measured over the shaft's angle, as read and as meant."""
+    from kin.made.lifts import rows_of_lifts
+
+    readings = [_readings(points, scale, probing) for points in measured]
+    names = [points.cam.name for points in measured]
+    own, meant = rows_of_lifts(readings, [points.cam.zero for points in measured])
+    return Rows(
+        own,
+        meant,
+        np.arange(len(measured)),
+        names,
+        np.ptp(meant, axis=1),
+        np.ptp(own, axis=1),
+        np.arange(len(measured)),
+        OF_LIFTS,
+    )
+
+
+def _readings(points: CamPoints, scale: float, probing: Probing) -> Readings:
+    return readings_of(intents(points.cam.recipe, points.cam.design), points.tables, scale, probing)
+
+
+def _at_cam_degrees(measured: Sequence[CamPoints], scale: float, probing: Probing) -> tuple[list[CamPoints], str]:
+    """Lifts of an engine over two turns whose heading names no shaft: halved where they fit only so, with a remark.
+
+    Raises CallError for other lifts that are at the angles of another shaft than their heading says.
+    """
+    from kin.made.lifts import of_other_shaft
+
+    paths = list(dict.fromkeys(path for points in measured for path in points.paths))
+    with as_call_errors(paths):
+        other = of_other_shaft([_readings(points, scale, probing) for points in measured])
+        if other is None:
+            return list(measured), ""
+        named = any(table.turns_of for points in measured for table in points.tables)
+        if named or all(points.cam.events is None for points in measured):
+            raise UnlikePointsError(f"the lifts look {other.words[0]}: {other.remedies[0]}")
+    remark = "angles over two turns are taken as those of the engine's crank and halved; head their column crank_deg"
+    return [points.halved() for points in measured], remark
+
+
+def _ranks(cams: Sequence[ShaftCam], measured: Sequence[CamPoints]) -> Indices:
+    names = [cam.name for cam in cams]
+    return np.array([names.index(points.cam.name) for points in measured], dtype=np.intp)
 
 
 # --- phases -----------------------------------------------------------------------------------------------------------
@@ -349,9 +408,10 @@ def _on_shaft(part: Influence, at: float) -> Influence:
 
 
 def _lone_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> list[str]:
-    """Cams that stand off the others by far more than is uncertain: of two alone, off the recipe."""
+    """Cams that stand off the others by far more than is uncertain: of two alone, off the recipe; and all as one."""
     middle = float(np.median([phase.late for phase in phases])) if len(phases) > TWO else 0.0
-    return [
+    as_one = abs(middle) > max(TURNED, CERTAIN * max(phase.uncertainty for phase in phases))
+    return [f"the shaft looks turned by {math.degrees(middle):.3g} degrees: `--align rotation`"] * as_one + [
         f"{points.cam.name} looks turned by {math.degrees(phase.late - middle):.3g} degrees against the others"
         for points, phase in zip(measured, phases, strict=True)
         if abs(phase.late - middle) > max(TURNED, CERTAIN * phase.uncertainty)

@@ -143,10 +143,10 @@ def test_lifts_of_an_indicator(tmp_path):
     assert made["lifts"]["zero"] == pytest.approx(-30.0 + mean, abs=1e-5)
     assert made["motion"]["error"]["max"] == pytest.approx(0.02 - mean, abs=2e-4)
     write(surface.gauge.intended(shaft + np.radians(12.3)) - 30.0)
-    with pytest.raises(camgeo.CallError, match=r"turned by 12\.3 degrees: `--align rotation`"):
+    with pytest.raises(camgeo.CallError, match=r"turned by -12\.3 degrees: `--align rotation`"):
         camgeo.verify(recipe, file)
     made = camgeo.verify(recipe, file, align="rotation")["made"]
-    assert made["lifts"]["turned_deg"] == pytest.approx(12.3, abs=1e-4)
+    assert made["lifts"]["turned_deg"] == pytest.approx(-12.3, abs=1e-4)
     assert abs(made["motion"]["error"]["max"]) < 1e-4
     write(surface.gauge.intended(-shaft))
     with pytest.raises(camgeo.CallError, match="run in the other sense"):

@@ -114,6 +114,77 @@ def test_lifts_of_all_lobes_turn_as_one(tmp_path):
     assert made["missing"] == ["arm"]
 
 
+def lift_table(recipe, file, late=0.0, *, alone=(0.0, 0.0, 0.0), step=1.0, factor=1.0, heading="angle_deg"):
+    """Lifts of all lobes over the shaft's angle, multiplied by a factor; shaft and lobes are late by degrees."""
+    angle, motion, rows = np.arange(0.0, 360.0, step), camgeo.design(recipe).motion, []
+    for rank, own in enumerate(alone):
+        lift = motion(np.radians(angle - late - own))[rank] * (math.degrees(1.0) if NAMES[rank] == "arm" else 1.0)
+        rows += [f"{rank + 1},{factor * a},{s:.9f}" for a, s in zip(angle, lift, strict=True)]
+    file.write_text("\n".join([f"lobe,{heading},lift", *rows]), "utf-8")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("late", "alone"),
+    [
+        (12.3, (0.0, 0.0, 0.0)),
+        (180.0, (0.0, 0.0, 0.0)),
+        (-90.0, (0.0, 30.0, 0.0)),
+        (50.0, (0.0, 0.0, -100.0)),
+    ],
+)
+def test_lifts_from_any_zero_are_told_and_judged_as_one(late, alone, tmp_path, capsys):
+    """One zero for all tables: the shaft is turned as one, and a lobe that stands off the others is told as that."""
+    recipe = camshaft(tmp_path, limits=LIMITS)
+    file = lift_table(recipe, tmp_path / "lift.csv", late, alone=alone)
+    assert main(["verify", str(recipe), str(file)]) == 2
+    assert f"the shaft looks turned by {late:.3g} degrees: `--align rotation`" in capsys.readouterr().err
+    made = camgeo.verify(recipe, file, align="rotation", probe_error=0.001)["made"]
+    assert math.remainder(made["turned_late_deg"] - late, 360.0) == pytest.approx(0.0, abs=1e-6)
+    for lobe, own in zip(made["lobes"], alone, strict=True):
+        assert lobe["phase"]["late_deg"] == pytest.approx(own, abs=1e-6)
+        assert lobe["motion"]["without_phase"] < 1e-6
+        assert made["verdicts"][f"made-motion, {lobe['name']}"] == ("failed" if own else "ok")
+        assert (f"{lobe['name']} looks turned by {own:.3g} degrees against the others" in made["remarks"]) == bool(own)
+
+
+def test_lifts_of_a_shaft_that_turns_the_other_way_or_of_other_lobes(tmp_path):
+    recipe = camshaft(tmp_path)
+    file = lift_table(recipe, tmp_path / "lift.csv", 20.0, factor=-1.0)
+    with pytest.raises(CallError, match=r"the shaft looks run in the other sense, turned by 20 degrees: let angles"):
+        camgeo.verify(recipe, file)
+    text = lift_table(recipe, file).read_text("utf-8")
+    file.write_text(re.sub(r"(?m)^[12],", lambda row: {"1,": "2,", "2,": "1,"}[row[0]], text), "utf-8")
+    with pytest.raises(CallError, match="those of flat look like roller, those of roller look like flat: look at the"):
+        camgeo.verify(recipe, file)
+    file.write_text(re.sub(r"(?m)^3.*\n?", "", lift_table(recipe, file).read_text("utf-8")), "utf-8")
+    with pytest.raises(CallError, match=r"they look 25.4 times too large: `--units mm`"):
+        camgeo.verify(recipe, file, units="inch")
+
+
+@pytest.mark.parametrize("engine", [True, False])
+def test_crank_degrees_of_an_engine(engine, tmp_path, capsys):
+    """Angles over two turns that nothing names are the crank's where the recipe has an engine; else a heading says."""
+    recipe = camshaft(tmp_path)
+    if engine:
+        text = recipe.read_text("utf-8").replace("  lobes:", "  engine: {order: [1], separation: 110}\n  lobes:")
+        recipe.write_text(text, "utf-8")
+    file = lift_table(recipe, tmp_path / "lift.csv", factor=2.0)
+    halved = "angles over two turns are taken as those of the engine's crank and halved; head their column crank_deg"
+    if engine:
+        assert halved in camgeo.verify(recipe, file)["made"]["remarks"]
+    else:
+        assert main(["verify", str(recipe), str(file)]) == 2
+        assert "the lifts look to be at crank degrees: head their column crank_deg\n" in capsys.readouterr().err
+    file = lift_table(recipe, file, heading="crank_deg")
+    with pytest.raises(CallError, match="the lifts look to be at the camshaft's own angles: head their column cam_deg"):
+        camgeo.verify(recipe, file)
+    for heading, factor in (("crank_deg", 2.0), ("cam_deg", 1.0)):
+        made = camgeo.verify(recipe, lift_table(recipe, file, factor=factor, heading=heading))["made"]
+        assert all(abs(lobe["phase"]["late_deg"]) < 1e-6 for lobe in made["lobes"])
+        assert halved not in made["remarks"]
+
+
 @pytest.mark.parametrize("label", ["number", "name", "2.0"])
 def test_lobes_by_a_column(label, tmp_path):
     recipe = camshaft(tmp_path)
