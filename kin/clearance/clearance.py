@@ -138,17 +138,17 @@ def clearances(
     for pair in left_out:
         if len(pair) != 2 or not pair <= set(names):
             raise ValueError(f"unknown pair of bodies: {' and '.join(sorted(pair))}")
-    found = []
-    for one, other in combinations(movers, 2):
-        if {one.name, other.name} in left_out:
+    verdicts = []
+    for nearer, other in combinations(movers, 2):
+        if {nearer.name, other.name} in left_out:
             continue
-        search = _Search(one, other, accuracy)
-        for first, second in product(one.slabs, other.slabs):
+        search = _Search(nearer, other, accuracy)
+        for first, second in product(nearer.slabs, other.slabs):
             if max(first.low, second.low) - min(first.high, second.high) < axial - TOUCHING:
                 search.run((first.region, second.region))
         if search.evaluations:
-            found.append(search.clearance())
-    return found
+            verdicts.append(search.clearance())
+    return verdicts
 
 
 class _Cells(NamedTuple):
@@ -241,34 +241,34 @@ class _Search:
         if cells.pairs is None:
             return self._first_look(cells, meeting)
         pairs, half, fastest = cells.pairs, cells.half, meeting.fastest
-        seen = see(meeting, pairs, 0.25 * self.accuracy)
-        self._take(cells.phi, seen)
-        size = np.abs(seen.value) + seen.doubt
-        reachable = seen.gap <= (size + 2.0 * half * fastest)[pairs.cell]
-        pairs, gap = pairs.take(reachable), seen.gap[reachable]
-        rate, speed = rates(meeting, pairs, seen.value - seen.doubt > half * fastest)
+        views = see(meeting, pairs, 0.25 * self.accuracy)
+        self._take(cells.phi, views)
+        size = np.abs(views.value) + views.doubt
+        reachable = views.gap <= (size + 2.0 * half * fastest)[pairs.cell]
+        pairs, gap = pairs.take(reachable), views.gap[reachable]
+        rate, speed = rates(meeting, pairs, views.value - views.doubt > half * fastest)
         heads = np.searchsorted(pairs.cell, np.arange(len(half)))
         bound = np.minimum(fastest, np.maximum.reduceat(speed, heads))
         for _ in range(2):
             # a pair is in play only if both it and D can have come so near; fewer pairs in play bound D's rate lower
             in_play = gap <= (size + half * bound)[pairs.cell] + half[pairs.cell] * speed
             bound = np.minimum(bound, np.maximum.reduceat(np.where(in_play, rate, 0.0), heads))
-        lower = np.maximum(cells.lower, seen.value - seen.doubt - half * bound)
+        lower = np.maximum(cells.lower, views.value - views.doubt - half * bound)
         left = cells._replace(lower=lower, pairs=pairs.take(in_play))
         return [left.within(self._open(lower)).halved()]
 
     def _first_look(self, cells: _Cells, meeting: Encounter) -> list[_Cells]:
         """Find D among all pairs of features; what the greatest speed of all leaves open, with the pairs in play."""
         nowhere = np.full(len(cells.phi), np.nan)
-        seen = see(meeting, meeting.near(nowhere, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
-        self._take(cells.phi, seen)
-        lower = np.maximum(cells.lower, seen.value - seen.doubt - cells.half * meeting.fastest)
+        views = see(meeting, meeting.near(nowhere, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
+        self._take(cells.phi, views)
+        lower = np.maximum(cells.lower, views.value - views.doubt - cells.half * meeting.fastest)
         open_ = self._open(lower)
         left = cells._replace(lower=lower).within(open_)
         if not open_.any():
             return []
         meeting = self._meeting(left)
-        size = (np.abs(seen.value) + seen.doubt)[open_]
+        size = (np.abs(views.value) + views.doubt)[open_]
         return [left._replace(pairs=meeting.near(size, left.half))]
 
     def _take(self, phi: Array, samples: GapSamples) -> None:

@@ -174,13 +174,13 @@ class Encounter:
         rim = (np.arange(len(a)) < self.first.boundary)[:, None] & (np.arange(len(b)) < self.second.boundary)
         places = _placed(b, self.motion)
         margin = 2.0 * half * self.fastest
-        found = []
+        pairs = []
         for cell, (place, bound) in enumerate(zip(places, size, strict=True)):
             gap = np.hypot(a[:, None, 0] - place[:, 0], a[:, None, 1] - place[:, 1])
             limit = gap[rim].min() if np.isnan(bound) else bound
             i, j = np.nonzero(gap - reach <= limit + margin[cell])
-            found.append(Pairs(np.full(len(i), cell), i, j))
-        return Pairs(*(np.concatenate(rows) for rows in zip(*found, strict=True)))
+            pairs.append(Pairs(np.full(len(i), cell), i, j))
+        return Pairs(*(np.concatenate(rows) for rows in zip(*pairs, strict=True)))
 
 
 def fastest(body: Region, motion: Relative) -> Array:
@@ -222,16 +222,16 @@ def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = Fal
     apart_at_most, gap = _by_discs(meeting, pairs)
     least = np.minimum.reduceat(np.where(rim, apart_at_most, np.inf), heads)
     close = np.flatnonzero(rim & (gap <= least[cell]))
-    found = distances(meeting, pairs.take(close))
-    gap[close] = found.distance
+    measured = distances(meeting, pairs.take(close))
+    gap[close] = measured.distance
     value = np.minimum.reduceat(np.where(rim, gap, np.inf), heads)
-    best = np.flatnonzero(found.distance == value[cell[close]])
+    best = np.flatnonzero(measured.distance == value[cell[close]])
     best = best[np.searchsorted(cell[close[best]], every)]
     nearest = pairs.take(close[best])
-    place = 0.5 * (found.first[best] + found.second[best])
+    place = 0.5 * (measured.first[best] + measured.second[best])
     # Of two regions whose boundaries do not meet, the nearest points tell whether one reaches into the other.
-    there = turned(found.first[best] - motion.place, -motion.angle)
-    apart = (first.side(nearest.first, found.second[best]) > 0.0) & (second.side(nearest.second, there) > 0.0)
+    there = turned(measured.first[best] - motion.place, -motion.angle)
+    apart = (first.side(nearest.first, measured.second[best]) > 0.0) & (second.side(nearest.second, there) > 0.0)
     overlap = np.flatnonzero((value == 0.0) | ~apart)
     doubt = np.zeros(len(value))
     if len(overlap):
@@ -307,23 +307,23 @@ def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
     `apart` (m,) says that D > 0 all over an interval.
     """
     cell, i, j = pairs
-    one, other, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back
+    first, other, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back
     spin = motion.spin[cell]
     body = turned(other.middle[j], motion.angle[cell]) + motion.place[cell]
-    home = turned(one.middle[i], back.angle[cell]) + back.place[cell]
-    of_first, of_second = (one.normal[i], one.fan[i]), (other.normal[j], other.fan[j])
-    on_first, on_second = spin * one.reach[i], spin * other.reach[j]
+    home = turned(first.middle[i], back.angle[cell]) + back.place[cell]
+    of_first, of_second = (first.normal[i], first.fan[i]), (other.normal[j], other.fan[j])
+    on_first, on_second = spin * first.reach[i], spin * other.reach[j]
     passing, passed = motion.along(cell, body), back.along(cell, home)
     # normals of the one or the other; the velocity at its centre, and at points of the one or the other
     through = np.minimum(
-        _projected(*of_first, *motion.at(cell, one.centre[i])) + _swung(spin, one.off[i]),
+        _projected(*of_first, *motion.at(cell, first.centre[i])) + _swung(spin, first.off[i]),
         _projected(*of_second, *back.at(cell, other.centre[j])) + _swung(spin, other.off[j]),
     )
     at_second = (
         np.minimum(_projected(*of_first, *passing), _projected(*of_second, *back.at(cell, other.middle[j]))) + on_second
     )
     at_first = (
-        np.minimum(_projected(*of_second, *passed), _projected(*of_first, *motion.at(cell, one.middle[i]))) + on_first
+        np.minimum(_projected(*of_second, *passed), _projected(*of_first, *motion.at(cell, first.middle[i]))) + on_first
     )
     # of two that overlap the deepest point may be of either
     both = np.where(apart[cell], np.minimum(at_first, at_second), np.maximum(at_first, at_second))

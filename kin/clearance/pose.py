@@ -152,12 +152,12 @@ class Sampled:
         count = np.clip(np.floor(high + 1e-9).astype(np.intp) - begin + 1, 1, self.steps)
         level = np.floor(np.log2(count)).astype(np.intp)
         begin = begin % self.steps
-        found = np.empty((len(low), 3))
+        bends = np.empty((len(low), 3))
         for k in range(len(self._bends)):
             at = np.flatnonzero(level == k)
             table = self._bends[k]
-            found[at] = np.maximum(table[begin[at]], table[begin[at] + count[at] - 2**k])
-        return found
+            bends[at] = np.maximum(table[begin[at]], table[begin[at] + count[at] - 2**k])
+        return bends
 
     def over(self, phi: Array, half: Array) -> Course:
         """Give the course over intervals: rates differ from that of the middle by half times the greatest bend."""

@@ -35,8 +35,8 @@ def swept_box(mover: Mover, accuracy: float = 0.05) -> Box:
             pose = mover.motion.over(phi, 0.0 * phi).pose
             along = pose[:, 0] * np.cos(direction) + pose[:, 1] * np.sin(direction)
             own = [slab.outer.support(direction - pose[:, 2]).q for slab in mover.slabs]
-            found: Array = along + np.max(own, axis=0)
-            return found
+            farthest: Array = along + np.max(own, axis=0)
+            return farthest
 
         sides.append(_greatest(mover, reach, accuracy))
     right, top, left, bottom = sides
@@ -47,13 +47,13 @@ def _greatest(mover: Mover, reach: Callable[[Array], Array], accuracy: float) ->
     """Upper bound of a reach of the body over the turn, mm, by no more than the accuracy too large."""
     half = math.pi / CELLS
     phi: Array = np.linspace(half, 2.0 * math.pi - half, CELLS)
-    found, bound = -math.inf, -math.inf
+    greatest, bound = -math.inf, -math.inf
     while len(phi):
         width = np.full(len(phi), half)
         value = reach(phi)
-        found = max(found, float(value.max()))
+        greatest = max(greatest, float(value.max()))
         upper = value + half * _speed(mover, phi, width)
-        open_ = upper > found + accuracy
+        open_ = upper > greatest + accuracy
         bound = max(bound, float(upper[~open_].max(initial=-math.inf)))
         if np.count_nonzero(open_) > MOST:
             return max(bound, float(upper.max()))

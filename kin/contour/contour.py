@@ -153,13 +153,13 @@ class Contour(Pieces):
         best = reach.argmax(axis=1)
         rows = np.arange(theta.size)
         vertex = near[rows, best]
-        found = Support(reach[rows, best], self.vertices[vertex], vertex * len(self) // len(self.vertices))
+        support = Support(reach[rows, best], self.vertices[vertex], vertex * len(self) // len(self.vertices))
         ranges = self.normal_ranges
         if ranges.piece.size and theta.size:
             order = np.argsort(reduced, kind="stable")
             for tried, at in paired(ranges, reduced[order]):
-                self._raise(found, ranges.piece[tried], order[at], reduced, u)
-        return found
+                self._raise(support, ranges.piece[tried], order[at], reduced, u)
+        return support
 
     def _raise(self, support: Support, tried: Indices, numbers: Indices, theta: Array, u: Array) -> None:
         """Let pieces `tried` compete at the angles number `numbers`; write into `support` where they reach farther."""
@@ -226,8 +226,8 @@ class Contour(Pieces):
             middle = (low + high) / 2.0
             same = self.support(middle).piece == piece
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        found: Array = np.mod(np.concatenate([low, at]), TURN)
-        return found
+        angles: Array = np.mod(np.concatenate([low, at]), TURN)
+        return angles
 
     @cached_property
     def area(self) -> float:

@@ -51,36 +51,36 @@ def crossings(contour: Contour) -> Crossings:
         return nothing
     chain, owner = contour.as_arcs()
     before = np.concatenate([[0.0], np.cumsum(chain.length)])
-    found = []
+    crossings = []
     levels = boxes(chain)
     for i, j in overlapping(levels, levels, mirrored=True):
         shared = common_points(chain, chain, i, j)
         one, other = i[shared.pair], j[shared.pair]
         apart = before[other] + shared.second - before[one] - shared.first
         loop = np.minimum(apart, before[-1] - apart) > SHORTEST_LOOP
-        found.append((shared.point[loop], np.stack([owner[one[loop]], owner[other[loop]]], axis=1)))
-        if sum(len(p) for p, _ in found) > ENOUGH:
+        crossings.append((shared.point[loop], np.stack([owner[one[loop]], owner[other[loop]]], axis=1)))
+        if sum(len(p) for p, _ in crossings) > ENOUGH:
             break
-    return distinct(found)
+    return distinct(crossings)
 
 
 def meetings(contour: Contour, other: Contour) -> Crossings:
     """Points that two contours have in common, to within a nanometre, with the piece of either."""
     first, first_owner = contour.as_arcs()
     second, second_owner = other.as_arcs()
-    found = []
+    meetings = []
     for i, j in overlapping(boxes(first), boxes(second), mirrored=False):
         shared = common_points(first, second, i, j)
-        found.append((shared.point, np.stack([first_owner[i[shared.pair]], second_owner[j[shared.pair]]], axis=1)))
-        if sum(len(p) for p, _ in found) > ENOUGH:
+        meetings.append((shared.point, np.stack([first_owner[i[shared.pair]], second_owner[j[shared.pair]]], axis=1)))
+        if sum(len(p) for p, _ in meetings) > ENOUGH:
             break
-    return distinct(found)
+    return distinct(meetings)
 
 
 def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
     """A place that two of the contours have in common, mm; None if all keep apart."""
     boxes = np.array([contour.box for contour in contours]).reshape(-1, 4)
-    for k, one in enumerate(contours[:-1]):
+    for k, outline in enumerate(contours[:-1]):
         x_min, y_min, x_max, y_max = boxes[k]
         later = boxes[k + 1 :]
         near = (later[:, 0] <= x_max + TOUCHING) & (later[:, 2] >= x_min - TOUCHING)
@@ -88,13 +88,13 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
         others = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
         if not others:
             continue
-        rough, off = one.rough
+        rough, off = outline.rough
         _, away = nearest(rough, np.array([other.start[0] for other in others]))
         for other, distance in zip(others, away, strict=True):
             x_min, y_min, x_max, y_max = other.box
             if distance - off > np.hypot(x_max - x_min, y_max - y_min):
                 continue  # no point of the other is so far from its first
-            common = meetings(one, other).point
+            common = meetings(outline, other).point
             if len(common):
                 return float(common[0, 0]), float(common[0, 1])
     return None

@@ -42,7 +42,7 @@ def placement(contour: Contour, exact: Array, tolerance: float) -> str:
     if float(cross(exact, np.roll(exact, -1, axis=0)).sum()) < 0.0:
         exact = exact[::-1]
     large = np.sqrt(contour.area / _area(exact))
-    factor = min(FACTORS, key=lambda one: abs(np.log(large / one)))
+    factor = min(FACTORS, key=lambda unit: abs(np.log(large / unit)))
     if not abs(large / factor - 1.0) <= SAME_SIZE:
         return ""
     same_size = contour.scaled(1.0 / factor)
@@ -78,7 +78,7 @@ def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
     """Turn, rad, shift and offset, mm, of the exact contour that fits, the least turned one; None where none does."""
     chain, _ = contour.as_arcs()
     normal = _normals(exact)
-    found = []
+    fits = []
     for start in _starts(contour.sample(LOOKS), exact):
         for columns in (3, 4):  # without an offset, with one
             placed, off = start.copy(), np.inf
@@ -93,15 +93,15 @@ def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
                 if float(np.abs(step).max()) < 1e-9:
                     break
             if off <= NEAR * tolerance:
-                found.append(placed)
+                fits.append(placed)
                 break
-    return min(found, key=lambda one: abs(np.angle(np.exp(1j * one[0])))) if found else None
+    return min(fits, key=lambda fit: abs(np.angle(np.exp(1j * fit[0])))) if fits else None
 
 
 def _starts(points: Array, exact: Array) -> list[Array]:
     """Placements to begin with, of the turns at which the distances about the middles of both areas agree best."""
     middles = [_middle(points), _middle(exact)]
-    there, here = (_radii(one - middle) for one, middle in zip((points, exact), middles, strict=True))
+    there, here = (_radii(outline - middle) for outline, middle in zip((points, exact), middles, strict=True))
     fit = np.fft.irfft(np.fft.rfft(there - there.mean()) * np.conj(np.fft.rfft(here - here.mean())), POINTS)
     peaks = np.flatnonzero((fit >= np.roll(fit, 1)) & (fit >= np.roll(fit, -1)))
     best = peaks[np.argsort(-fit[peaks], kind="stable")][:STARTS]
@@ -114,8 +114,8 @@ def _radii(points: Array) -> Array:
     angle = np.mod(np.arctan2(points[:, 1], points[:, 0]), TURN)
     order = np.argsort(angle, kind="stable")
     at = np.arange(POINTS) * TURN / POINTS
-    found: Array = np.interp(at, angle[order], np.hypot(*points[order].T), period=TURN)
-    return found
+    radii: Array = np.interp(at, angle[order], np.hypot(*points[order].T), period=TURN)
+    return radii
 
 
 def _area(points: Array) -> float:

@@ -290,9 +290,9 @@ def farthest(arcs: Arcs, point: Array) -> Array:
     size = np.hypot(gap[:, 0], gap[:, 1])
     aim = centre + gap * (1.0 / (np.abs(inner.curvature) * np.where(size > 0.0, size, 1.0)))[:, None]
     foot = inner.points(nearest_on(inner, aim)[0])
-    found: Array = ends.copy()
-    found[bent] = np.maximum(ends[bent], np.hypot(*(foot - point[bent]).T))
-    return found
+    reach: Array = ends.copy()
+    reach[bent] = np.maximum(ends[bent], np.hypot(*(foot - point[bent]).T))
+    return reach
 
 
 def moved(arcs: Arcs, place: Array, angle: Array) -> Arcs:

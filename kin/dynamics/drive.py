@@ -153,10 +153,9 @@ def drives(
     knots = np.concatenate([part[0] for part in done])
     order = np.argsort(knots)
     knots = np.append(knots[order], TURN)
-    found = [np.concatenate([part[1][i] for part in done], axis=1)[:, order] for i in range(len(motions))]
-    return [
-        Drive(knots, s, ds, dds, _jumps(knots, ds, motion)) for motion, (s, ds, dds) in zip(motions, found, strict=True)
-    ]
+    values = [np.concatenate([part[1][i] for part in done], axis=1)[:, order] for i in range(len(motions))]
+    pairs = zip(motions, values, strict=True)
+    return [Drive(knots, s, ds, dds, _jumps(knots, ds, motion)) for motion, (s, ds, dds) in pairs]
 
 
 def _jumps(knots: Array, velocity: Array, motion: Excitation) -> Array:

@@ -98,16 +98,16 @@ class Pressed:
 
     def at(self, time: Array) -> Array:
         """See `Span`."""
-        one, other = self._free.oscillator.basis(time - self._free.since)
+        cosine, other = self._free.oscillator.basis(time - self._free.since)
         first, second = self._factors
-        found: Array = together(self._series[None], time / self._half - 1.0)[0] + first * one + second * other
-        return found
+        value: Array = together(self._series[None], time / self._half - 1.0)[0] + first * cosine + second * other
+        return value
 
     def once(self, time: float) -> float:
         """See `Span`."""
-        one, other = self._free.oscillator.basis_at(time - self._free.since)
+        cosine, other = self._free.oscillator.basis_at(time - self._free.since)
         first, second = self._factors
-        return value(self._plain, time / self._half - 1.0) + first * one + second * other
+        return value(self._plain, time / self._half - 1.0) + first * cosine + second * other
 
 
 def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Array]:
@@ -153,8 +153,8 @@ def dips(level: Array) -> NDArray[np.intp]:
         return np.empty(0, dtype=np.intp)
     middle, before, after = level[1:-1], level[:-2], level[2:]
     rise = np.maximum(before, after) - middle
-    found: NDArray[np.intp] = 1 + np.flatnonzero((middle <= before) & (middle <= after) & (middle < rise))
-    return found
+    places: NDArray[np.intp] = 1 + np.flatnonzero((middle <= before) & (middle <= after) & (middle < rise))
+    return places
 
 
 def _dip(span: Span, low: float, high: float, work: Work) -> float | None:

@@ -218,10 +218,10 @@ class _Course:
         here = self.found[contact]
         window, alone = _FIRST_WINDOW, _ALONE
         while True:
-            found = self._along(contact, place, time, current, log)
-            if isinstance(found, tuple):
-                return found
-            current, place, time = found, place + 1, 0.0
+            landing = self._along(contact, place, time, current, log)
+            if isinstance(landing, tuple):
+                return landing
+            current, place, time = landing, place + 1, 0.0
             if alone and place < len(here):
                 alone -= 1
                 current = current - np.array([0.0, here.drive.jumps[place]])
@@ -267,8 +267,8 @@ class _Course:
             self.work.take(len(at))
             level = span.at(at)
             hit = first(span, at, level, self.work)
-            seen = ContactSamples(np.full(len(at), place), at, level, here.drive.knots)
-            log.see(contact, seen, lambda _: span, None if hit is None else (place, hit))
+            samples = ContactSamples(np.full(len(at), place), at, level, here.drive.knots)
+            log.see(contact, samples, lambda _: span, None if hit is None else (place, hit))
             if hit is not None:
                 return FREE, place, hit, here.moved(place, free, hit)
         return here.moved(place, free, end)
@@ -281,7 +281,7 @@ class _Course:
         if contact == FREE:
             return self._far(starts, at, log)
         level = self.forces[contact].at(starts, at)
-        seen = ContactSamples(at.stretch, at.time, level, here.drive.knots)
+        samples = ContactSamples(at.stretch, at.time, level, here.drive.knots)
 
         def span_of(stretch: int) -> Pressed:
             return self._pressed(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
@@ -291,10 +291,10 @@ class _Course:
             inside = at.stretch == stretch
             hit = first(span_of(stretch), at.time[inside], level[inside], self.work)
             if hit is not None:
-                log.see(contact, seen, span_of, (stretch, hit))
+                log.see(contact, samples, span_of, (stretch, hit))
                 state = here.moved(stretch, here.free(stretch, 0.0, starts[:, stretch]), hit)
                 return FREE, stretch, hit, state
-        log.see(contact, seen, span_of)
+        log.see(contact, samples, span_of)
         return None
 
     def _far(self, starts: Array, samples: Samples, log: Log) -> _Event | None:
@@ -325,16 +325,16 @@ class _Course:
         here, oscillator = self.found[FREE], self.found[FREE].oscillator
         if not oscillator.square:
             return self._driven_bends
-        found: Array = self._driven_bends + oscillator.square * oscillator.bound(starts - here.ends[0].T)
-        return found
+        bends: Array = self._driven_bends + oscillator.square * oscillator.bound(starts - here.ends[0].T)
+        return bends
 
     @cached_property
     def _driven_bends(self) -> Array:
         """What `_bends` are without free motion."""
         here = self.found[FREE]
-        found: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
+        bounds: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
         if self.gap is not None:
             bends = np.abs(self.gap[:, 1] @ DERIVATIVE.T).sum(axis=1) / self.lower.half
             middle = here.drive.knots[:-1] + here.half
-            found = found + bends[np.searchsorted(self.lower.knots, middle, side="right") - 1]
-        return found
+            bounds = bounds + bends[np.searchsorted(self.lower.knots, middle, side="right") - 1]
+        return bounds

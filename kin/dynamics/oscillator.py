@@ -108,9 +108,9 @@ class Oscillator:
 
     def propagator(self, time: Array) -> Propagator:
         """Move states on by times (n,), 0 or above."""
-        one, other = self.basis(time)
+        cosine, other = self.basis(time)
         p, q = self.weights
-        return Propagator(one + p * other, other, -self.square * other, one - q * other)
+        return Propagator(cosine + p * other, other, -self.square * other, cosine - q * other)
 
     def moved(self, states: Array, time: Array) -> Array:
         """States (2, n) of the free motion after times (n,), from states (2, n)."""
@@ -184,9 +184,9 @@ class Free:
 
     def after(self, time: float) -> tuple[float, float]:
         """State at a time."""
-        one, other = self.oscillator.basis_at(time - self.since)
+        cosine, other = self.oscillator.basis_at(time - self.since)
         (a, b), (c, d) = self.summed(1.0, 0.0), self.summed(0.0, 1.0)
-        return a * one + b * other, c * one + d * other
+        return a * cosine + b * other, c * cosine + d * other
 
 
 def _sine_of_half_turns(x: float) -> float:

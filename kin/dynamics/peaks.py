@@ -58,8 +58,8 @@ class ResponseFigure:
         response = self.response
         free_z, free_v = response.rung(starts, samples)
         x = samples.time / response.half[samples.stretch] - 1.0
-        found: Array = evaluated(self.series, samples.stretch, x) + self.z * free_z + self.v * free_v
-        return found
+        value: Array = evaluated(self.series, samples.stretch, x) + self.z * free_z + self.v * free_v
+        return value
 
     def peaks(self, starts: Array, stretches: Indices) -> Peaks:
         """Extremes over the given stretches, ends included, from the states at their starts.
@@ -84,13 +84,13 @@ class ResponseFigure:
         best = max(float((sign * values).max()) for _, values in parts)
         spread = best + max(float((-sign * values).max()) for _, values in parts)
         least = best - _NEAR * spread
-        found: list[tuple[float, int, float]] = []
+        peaks: list[tuple[float, int, float]] = []
         brackets: list[tuple[int, float, float]] = []
         for at, values in parts:
             near = np.flatnonzero(sign * values >= least)
             top = int(near[np.argmax(sign * values[near])]) if len(near) else -1
             if top >= 0:
-                found.append((float(values[top]), int(at.stretch[top]), float(at.time[top])))
+                peaks.append((float(values[top]), int(at.stretch[top]), float(at.time[top])))
             before, after = beside(at.stretch, near)
             peak = (sign * values[near] >= sign * values[before]) & (sign * values[near] >= sign * values[after])
             near, before, after = near[peak], before[peak], after[peak]
@@ -100,8 +100,8 @@ class ResponseFigure:
         if brackets:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
             tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign)
-            found += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
-        value, which, time = max(found, key=lambda one: sign * one[0])
+            peaks += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
+        value, which, time = max(peaks, key=lambda candidate: sign * candidate[0])
         return value, float(self.response.drive.knots[which]) + time
 
 

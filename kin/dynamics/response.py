@@ -65,11 +65,11 @@ class Forcing:
 
     def series(self, drive: Drive) -> Array:
         """Chebyshev coefficients of g (m, DEGREE + 1)."""
-        found: Array = -drive.acceleration
+        series: Array = -drive.acceleration
         if self.kappa:
-            found = found - self.kappa * drive.position
-        found[:, 0] -= self.constant
-        return found
+            series = series - self.kappa * drive.position
+        series[:, 0] -= self.constant
+        return series
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,13 +121,13 @@ class Response:
         at_start, at_end, matrix = (part[first : first + count].tolist() for part in self._steps)
         jumps = self.drive.jumps[first : first + count].tolist()
         z, v = float(state[0]), float(state[1])
-        found = []
+        states = []
         for (p0, v0), (p1, v1), (zz, zv, vz, vv), jump in zip(at_start, at_end, matrix, jumps, strict=True):
             v -= jump
-            found.append((z, v))
+            states.append((z, v))
             z, v = z - p0, v - v0
             z, v = p1 + zz * z + zv * v, v1 + vz * z + vv * v
-        return np.array(found).T.reshape(2, -1), np.array([z, v])
+        return np.array(states).T.reshape(2, -1), np.array([z, v])
 
     def free(self, stretch: int, time: float, state: Array) -> Free:
         """The free motion on a stretch from the state (2,) at a time since its start."""
@@ -173,10 +173,10 @@ class Response:
         """
         size = _SILENT * (np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0))
         alive = self.slow[stretches] & (bound > size)
-        found = np.where(alive, np.inf, 0.0)
+        times = np.where(alive, np.inf, 0.0)
         if self.oscillator.fading > 0.0:
-            found[alive] = np.log(bound[alive] / size) / self.oscillator.fading
-        return found
+            times[alive] = np.log(bound[alive] / size) / self.oscillator.fading
+        return times
 
     @property
     def step(self) -> float:

@@ -140,8 +140,8 @@ class _Search:
         if part.width < _CLOSE and low.least > 0.0:
             if high.least < 0.0:
                 room = 0.5 * _RESOLUTION
-                found = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, room=room)
-                return [rpm for rpm in (found * (1.0 - _RESOLUTION), found) if low.rpm < rpm < high.rpm] or [middle]
+                speeds = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, room=room)
+                return [rpm for rpm in (speeds * (1.0 - _RESOLUTION), speeds) if low.rpm < rpm < high.rpm] or [middle]
             share = 0.9 * math.sqrt(high.least / part.between)
             return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.least < low.least else middle]
         if part.width > 0.5 and high.swings:
@@ -172,8 +172,8 @@ def _floats_below(train: Train, drive: Drive, holds: float, floats: float) -> fl
         while floats > _STRIDE * low:
             middle = math.sqrt(low * floats)
             tried = (rpm for rpm in _resonances(train, middle) if low < rpm < floats)
-            found = next((rpm for rpm in tried if Look(train, drive, rpm, work).least < 0.0), None)
-            low, floats = (middle, floats) if found is None else (low, found)
+            floating = next((rpm for rpm in tried if Look(train, drive, rpm, work).least < 0.0), None)
+            low, floats = (middle, floats) if floating is None else (low, floating)
     except SpentError:
         return floats
     return floats
@@ -200,8 +200,8 @@ def _rigid(train: Train, drive: Drive) -> float | None:
     falling = bend < 0.0
     if not falling.any():
         return None
-    held = np.maximum(train.preload + train.rate * position[falling], 0.0)
-    return float(np.sqrt((held / (-train.mass * bend[falling])).min())) * 60.0 / TURN
+    spring = np.maximum(train.preload + train.rate * position[falling], 0.0)
+    return float(np.sqrt((spring / (-train.mass * bend[falling])).min())) * 60.0 / TURN
 
 
 def _last(train: Train) -> float:
@@ -214,8 +214,8 @@ def _safe(train: Train, drive: Drive) -> float:
     zeta = train.damping_ratio
     bend = float(np.abs(drive.acceleration).sum(axis=1).max())
     kicks = float(np.abs(drive.jumps).sum())
-    held = train.preload + train.rate * min(0.0, float(drive.position.sum(axis=1).min()))
-    if held <= 0.0:
+    spring = train.preload + train.rate * min(0.0, float(drive.position.sum(axis=1).min()))
+    if spring <= 0.0:
         raise DynamicsError("the preload spring is slack over a part of the turn")
 
     def driven(rpm: float) -> float:
@@ -228,5 +228,5 @@ def _safe(train: Train, drive: Drive) -> float:
     low, high = 1e-9, train.natural * 60.0
     for _ in range(_BISECTIONS):  # `low` is safe after any number of them
         middle = math.sqrt(low * high)
-        low, high = (middle, high) if driven(middle) < held else (low, middle)
+        low, high = (middle, high) if driven(middle) < spring else (low, middle)
     return low

@@ -52,19 +52,19 @@ class Look:
     def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:
         self.train, self.rpm, self.work = train, rpm, work
         self._running = running = train.at(rpm)
-        self.found = found = running.response(drive)
-        work.take(_EACH * len(found))
-        self.oscillator: Oscillator = found.oscillator
+        self.found = response = running.response(drive)
+        work.take(_EACH * len(response))
+        self.oscillator: Oscillator = response.oscillator
         self.b = train.ratio(rpm)  # natural frequency in turns of the shaft
-        self._figure = running.force(found)
+        self._figure = running.force(response)
         self.swings = train.damping_ratio < _BLUNT
         self.fading = self.oscillator.fading if self.swings else 0.5 * self.oscillator.fading
         self.gain = self._gain()
-        q, rate, remainder = self._followed(running.forcing.series(found.drive))
-        slow = found.slow[:, None]
-        self._q, self._rate = np.where(slow, found.p, q), np.where(slow, found.v, rate)
+        q, rate, remainder = self._followed(running.forcing.series(response.drive))
+        slow = response.slow[:, None]
+        self._q, self._rate = np.where(slow, response.p, q), np.where(slow, response.v, rate)
         each = self._size(np.array([[0.0], [1.0]]))[0]
-        self.inner = np.where(found.slow, 0.0, 2.0 * found.half * remainder * each)
+        self.inner = np.where(response.slow, 0.0, 2.0 * response.half * remainder * each)
 
     def _followed(self, g: Array) -> tuple[Array, Array, Array]:
         """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of what q leaves of g.
@@ -97,9 +97,9 @@ class Look:
         longest = max(longest, 1.0 / rate)
         # z' = -r^2 S z0 + S' v0
         drag = self.train.damping * self._running.speed / self.gain
-        found: Array = np.abs(z) + longest * np.abs(v + rate * z)
-        found += drag * (oscillator.square * longest * np.abs(z) + 1.25 * np.abs(v))
-        return found
+        size: Array = np.abs(z) + longest * np.abs(v + rate * z)
+        size += drag * (oscillator.square * longest * np.abs(z) + 1.25 * np.abs(v))
+        return size
 
     def _gain(self) -> float:
         """Stiffness against free motion: |k + c lambda| where it swings."""
@@ -114,14 +114,14 @@ class Look:
         end = np.roll(np.stack([self._q.sum(axis=1), self._rate.sum(axis=1)]), 1, axis=1)
         leap = end - start
         leap[1] -= self.found.drive.jumps
-        found: Array = self._size(leap) + self.inner
-        return found
+        bounds: Array = self._size(leap) + self.inner
+        return bounds
 
     @cached_property
     def _series(self) -> Array:
         """Series of the force that goes with q."""
-        found: Array = -self.train.stiffness * self._q - self.train.damping * self._running.speed * self._rate
-        return found
+        series: Array = -self.train.stiffness * self._q - self.train.damping * self._running.speed * self._rate
+        return series
 
     @cached_property
     def inertial(self) -> float:
@@ -147,13 +147,13 @@ class Look:
         size = 0.0
         for kick, share in zip(kicks, fade, strict=True):
             size = (size + kick) * share
-        found = []
+        sums = []
         for kick, share in zip(kicks, fade, strict=True):
             # the kick of a turn before goes out as this one comes in
             size += kick * (1.0 - left)
-            found.append(size + kick * left)
+            sums.append(size + kick * left)
             size *= share
-        return np.array(found), left
+        return np.array(sums), left
 
     @cached_property
     def turn(self) -> Array:
@@ -177,8 +177,8 @@ class Look:
         h is of the sizes `rung` (m,) at the starts, the force that goes with q at least `driven` (m, 32).
         """
         fade = np.exp(-self.fading * 2.0 * self.found.half[:, None] * np.arange(PARTS) / PARTS)
-        found: Array = driven - self.gain * (rung[:, None] * fade + self.inner[:, None])
-        return found
+        least: Array = driven - self.gain * (rung[:, None] * fade + self.inner[:, None])
+        return least
 
     @cached_property
     def surely(self) -> float:

@@ -184,13 +184,13 @@ def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, 
     too many to look at.
     """
     running = train.at(rpm)
-    found = running.response(drive)
-    state = periodic(running, found)
-    starts = found.starts(state, 0, len(found))
-    _demand_countable(running, found, starts)
-    force = running.force(found).peaks(starts, np.arange(len(found)))
-    residual = tuple(_residual(running, found, starts, begin, end) for begin, end in rests)
-    return Steady(force, residual, (float(state[0]), float(state[1])), found)
+    response = running.response(drive)
+    state = periodic(running, response)
+    starts = response.starts(state, 0, len(response))
+    _demand_countable(running, response, starts)
+    force = running.force(response).peaks(starts, np.arange(len(response)))
+    residual = tuple(_residual(running, response, starts, begin, end) for begin, end in rests)
+    return Steady(force, residual, (float(state[0]), float(state[1])), response)
 
 
 def _demand_countable(running: Running, response: Response, starts: Array) -> None:

@@ -191,11 +191,11 @@ def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
     sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + slack
     best = np.full(len(phi), -np.inf)
-    for found in guide.crossings(pieces, phi, slack):
-        s = dot(found, along)
-        point = pieces.start + found
+    for crossing in guide.crossings(pieces, phi, slack):
+        s = dot(crossing, along)
+        point = pieces.start + crossing
         with np.errstate(invalid="ignore"):
-            on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, found)) <= sagitta)
+            on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, crossing)) <= sagitta)
             on_side = guide.on_side(phi, point, slack)
         height = guide.away * np.hypot(point[:, 0], point[:, 1])
         best = np.where(on_piece & on_side & (height > best), height, best)

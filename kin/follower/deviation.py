@@ -84,14 +84,14 @@ def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
     at_start = _along(feet, pieces.tangent, pieces.curvature)
     at_end = _along(end_feet, end_tangents, pieces.curvature)
     fine = resolution(np.append(pieces.start, [[envelope.extent, 0.0]], axis=0))
-    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=fine)
-    bare, bare_at = _bare(chain, envelope, max(found.greatest, -found.least))
+    extremes_of_lift = extremes(zero, pieces.length, at_start, at_end, inside, resolution=fine)
+    bare, bare_at = _bare(chain, envelope, max(extremes_of_lift.greatest, -extremes_of_lift.least))
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(
-        outside=found.greatest,
-        outside_at=_parameter(pieces, envelope, found.greatest_index, found.greatest_at),
-        inside=-found.least,
-        inside_at=_parameter(pieces, envelope, found.least_index, found.least_at),
+        outside=extremes_of_lift.greatest,
+        outside_at=_parameter(pieces, envelope, extremes_of_lift.greatest_index, extremes_of_lift.greatest_at),
+        inside=-extremes_of_lift.least,
+        inside_at=_parameter(pieces, envelope, extremes_of_lift.least_index, extremes_of_lift.least_at),
         bare=bare,
         bare_at=bare_at,
         rounds=round(float(advance.sum()) / (2.0 * np.pi)),

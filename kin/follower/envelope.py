@@ -368,7 +368,7 @@ class RollerEnvelope:
         first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
         feet = self._climb(points, tau[first]), self._climb(points, tau[second])
         # Across a fold of the pitch curve the far side is seen from without: the nearer foot counts, not the higher.
-        near = [-np.abs(one.excess - self.radius) for one in feet]
+        near = [-np.abs(foot.excess - self.radius) for foot in feet]
         return better(*feet, *near)
 
     def _climb(self, points: Array, tau: Array) -> Feet:

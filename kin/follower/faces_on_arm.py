@@ -166,7 +166,7 @@ class _OnArm(Moved):
     @cached_property
     def faces(self) -> tuple[ArmFace, ...]:
         """The face of each contact."""
-        return tuple(ArmFace.of(one) for one in self.contacts)
+        return tuple(ArmFace.of(contact) for contact in self.contacts)
 
     @property
     @abstractmethod
@@ -215,22 +215,24 @@ class _OnArm(Moved):
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
         """See `Follower`."""
         direction = np.arctan2(normals[:, 1], normals[:, 0])
-        found = []
-        for face, one, level in zip(self.faces, self.contacts, self.levels, strict=True):
+        touches = []
+        for face, contact, level in zip(self.faces, self.contacts, self.levels, strict=True):
             w = (dot(points, normals) - face.out) / face.pivot
             with np.errstate(invalid="ignore"):
                 swing = face.side * np.arccos(w)
-            found.append((direction + swing, one.sense * (level - one.zero) - one.sense * face.side * swing))
-        return found
+            touches.append(
+                (direction + swing, contact.sense * (level - contact.zero) - contact.sense * face.side * swing)
+            )
+        return touches
 
     def _rows(self, bearing: Bearing, i: int, phi: Array, middle: Array | None = None) -> Array:
         """Position and two derivatives by phi, (3, n), with face i resting; `middle` as in `ArmFace.touch`."""
-        face, one = self.faces[i], self.contacts[i]
+        face, contact = self.faces[i], self.contacts[i]
         rows = face.touch(bearing, phi, middle)
         rows[0] -= phi
         rows[1] -= 1.0
-        position: Array = one.sense * face.side * rows
-        position[0] += one.sense * (self.levels[i] - one.zero)
+        position: Array = contact.sense * face.side * rows
+        position[0] += contact.sense * (self.levels[i] - contact.zero)
         return position
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
@@ -277,9 +279,9 @@ class _OnArm(Moved):
             return a - b
 
         every, low, high = np.arange(len(middle)), nodes[:-1], nodes[1:]
-        found = extremes(low, high, play(low, every), play(high, every), play, resolution=RESOLUTION_ANGLE)
-        least, most = (float(np.degrees(value)) for value in (found.least, found.greatest))
-        return Play(least, degrees(found.least_at), most, degrees(found.greatest_at), "deg")
+        ends = extremes(low, high, play(low, every), play(high, every), play, resolution=RESOLUTION_ANGLE)
+        least, most = (float(np.degrees(value)) for value in (ends.least, ends.greatest))
+        return Play(least, degrees(ends.least_at), most, degrees(ends.greatest_at), "deg")
 
     @cached_property
     def _touched(self) -> tuple[Array, Array]:
@@ -369,7 +371,7 @@ class FlatPair(OfTransmission, _OnArm):
     @property
     def levels(self) -> tuple[float, ...]:
         """How far each face stands from the middle of the two."""
-        return tuple(one.apart for one in self.contacts)
+        return tuple(contact.apart for contact in self.contacts)
 
     @property
     def resolution(self) -> float:

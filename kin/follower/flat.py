@@ -115,7 +115,7 @@ class FlatFace(Follower):
     def drives(self, contour: Contour) -> list[OfFace]:
         """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)
-        return [OfFace(bearing, self.tilt + one.turned, self._share) for one in self.contacts]
+        return [OfFace(bearing, self.tilt + contact.turned, self._share) for contact in self.contacts]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
         """See `Follower`: the angle is that at which the face stands askew, whatever the contour is."""
@@ -135,7 +135,7 @@ class FlatFace(Follower):
         """See `Follower`."""
         direction = np.arctan2(normals[:, 1], normals[:, 0])
         own = dot(points, normals) / self._share
-        return [(direction - self.tilt - one.turned, one.position(own)) for one in self.contacts]
+        return [(direction - self.tilt - contact.turned, contact.position(own)) for contact in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
@@ -200,12 +200,12 @@ class Yoke(FlatFace):
         return 2.0 * tolerance
 
     def _play(self, bearing: Bearing) -> Play:
-        found = bearing.breadth_extremes(resolution(bearing.contour.vertices))
+        breadths = bearing.breadth_extremes(resolution(bearing.contour.vertices))
         return Play(
-            self.breadth - found.greatest,
-            degrees(found.greatest_at),
-            self.breadth - found.least,
-            degrees(found.least_at),
+            self.breadth - breadths.greatest,
+            degrees(breadths.greatest_at),
+            self.breadth - breadths.least,
+            degrees(breadths.least_at),
             "mm",
         )
 

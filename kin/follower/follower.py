@@ -45,34 +45,37 @@ def follower_of(
         _demand(arm and len(others) == 1 and _share_arm(first, others[0]), "a transmission has two contacts on one arm")
         if not flat:
             return DoubleRoller(tuple(contacts), side, law)
-        _demand(all(one.datum == 0.5 * math.pi for one in contacts), "the faces of a pair count from across the line")
-        return FlatPair(tuple(replace(one, datum=one.apart) for one in contacts), law)
+        _demand(
+            all(contact.datum == 0.5 * math.pi for contact in contacts),
+            "the faces of a pair count from across the line",
+        )
+        return FlatPair(tuple(replace(contact, datum=contact.apart) for contact in contacts), law)
     alone = not others and side > 0 and not (flat and arm)
     pushes = first.sense == 1 and first.turned == 0.0
     _demand(alone or pushes, "contact 1 pushes the follower out, where the shaft stands")
     _demand(not (isinstance(first.touch, Flat) and arm and first.touch.tilt), "a face on an arm stands along it")
     if flat and not arm:
-        first, *others = (_through_shaft(one) for one in contacts)
+        first, *others = (_through_shaft(contact) for contact in contacts)
         datum = datum and _through_shaft(datum)
     zero = (datum or first).zero
-    held = tuple(one.raised(zero).away_from(side) for one in (first, *others))
+    placed = tuple(contact.raised(zero).away_from(side) for contact in (first, *others))
     raised = law.raised(zero)
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
         if flat:
-            return Yoke(held, Lift(raised))
+            return Yoke(placed, Lift(raised))
         from kin.follower.roller import RollerYoke
 
-        return RollerYoke(held, side, raised)
+        return RollerYoke(placed, side, raised)
     if not flat:
         from kin.follower.roller import Roller
 
-        return Roller(held, side, raised)
+        return Roller(placed, side, raised)
     if arm:
         from kin.follower.faces_on_arm import SwingingFace
 
-        return SwingingFace(held, raised)
-    return FlatFace(held, Lift(raised))
+        return SwingingFace(placed, raised)
+    return FlatFace(placed, Lift(raised))
 
 
 def unled(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
@@ -91,10 +94,12 @@ def followers_of(
     `sides` are those on which the metal of each surface lies. Raises ValueError as `follower_of` does, and for a
     contact that touches none of them or a surface that nothing touches.
     """
-    _demand({one.surface for one in contacts} == set(sides), "each touches one of the surfaces, and each is touched")
+    _demand(
+        {contact.surface for contact in contacts} == set(sides), "each touches one of the surfaces, and each is touched"
+    )
     first = contacts[0] if len(sides) > 1 else None
     return {
-        name: follower_of([one for one in contacts if one.surface == name], law, side, first)
+        name: follower_of([contact for contact in contacts if contact.surface == name], law, side, first)
         for name, side in sides.items()
     }
 
@@ -106,8 +111,12 @@ def _demand(holds: bool, rule: str) -> None:
 
 def _share_arm(first: Contact[Guide, Touch], second: Contact[Guide, Touch]) -> bool:
     """Whether contacts trail and lead one pivot alike; the trailing one keeps the swing below."""
-    guides = [replace(one.guide, side=1) for one in (first, second) if isinstance(one.guide, Oscillating)]
-    sides = [(one.guide.side, one.sense, one.turned) for one in (first, second) if isinstance(one.guide, Oscillating)]
+    guides = [replace(contact.guide, side=1) for contact in (first, second) if isinstance(contact.guide, Oscillating)]
+    sides = [
+        (contact.guide.side, contact.sense, contact.turned)
+        for contact in (first, second)
+        if isinstance(contact.guide, Oscillating)
+    ]
     return guides[:1] == guides[1:] and first.touch == second.touch and sides == [(1, -1, 0.0), (-1, 1, 0.0)]
 
 

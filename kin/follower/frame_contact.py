@@ -151,7 +151,7 @@ class Resting:
 
     def rows(self, theta: Array, interval: Indices) -> Array:
         """Shaft angle and output at theta (n,) in intervals (n,), with two derivatives by theta: (2, 3, n)."""
-        return np.stack([of.within(interval, theta, 2) for of in (self.turned, self.over_relative)])
+        return np.stack([function.within(interval, theta, 2) for function in (self.turned, self.over_relative)])
 
 
 def _by_shaft(rows: Array) -> Array:

@@ -66,8 +66,8 @@ class _Span(NamedTuple):
 def longest_dwell(output: Output, band: float) -> Dwell:
     """Find the longest window over which an output stays within the band; it begins in one period from 0."""
     spans = _spans(output, band)
-    found = [_within(output, span, band) for span in spans] or [_anywhere(output, band)]
-    best = max(found, key=lambda dwell: round(dwell.length, ALIKE))
+    dwells = [_within(output, span, band) for span in spans] or [_anywhere(output, band)]
+    best = max(dwells, key=lambda dwell: round(dwell.length, ALIKE))
     return Dwell(best.start % output.period, best.length, best.least, best.greatest)
 
 

@@ -76,8 +76,8 @@ def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
     `slope` and `sag` are those of `GuidedPitch.rates`.
     """
     swing = tolerance / slope
-    found: Array = swing + 0.5 * sag / slope * swing**2
-    return found
+    leeway: Array = swing + 0.5 * sag / slope * swing**2
+    return leeway
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,11 +69,11 @@ class Steepness:
         last = np.searchsorted(self._tiled, end, side="right") - 1
         cells = np.where(wide, count, np.minimum(last - first + 1, count))
         level = np.log2(cells).astype(np.intp)
-        found: Array = np.maximum(self._table[level, :, first], self._table[level, :, first + cells - 2**level]).T
+        steepest: Array = np.maximum(self._table[level, :, first], self._table[level, :, first + cells - 2**level]).T
         for order in (1, 2):
             at = np.append(0, np.cumsum(np.tile(self.breaks == order, 3)))
-            found[order:, wide & bool(at[-1]) | (at[last + 1] > at[first + 1])] = np.inf
-        return found
+            steepest[order:, wide & bool(at[-1]) | (at[last + 1] > at[first + 1])] = np.inf
+        return steepest
 
 
 def steepness_of_law(law: Piecewise) -> Steepness:

@@ -136,12 +136,12 @@ def bearing_of(contour: Contour) -> Bearing:
     middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
     if contour.is_convex and not _overlap(contour):
         return _of_convex(contour, breaks, middle)
-    found = contour.support(middle)
+    support = contour.support(middle)
     ranges = contour.normal_ranges
     low, width = np.zeros(len(contour)), np.full(len(contour), -1.0)
     low[ranges.piece], width[ranges.piece] = ranges.low, ranges.width
-    curved = np.mod(middle - low[found.piece], TURN) <= width[found.piece]
-    return Bearing(contour, breaks, found.point, np.where(curved, found.piece, -1))
+    curved = np.mod(middle - low[support.piece], TURN) <= width[support.piece]
+    return Bearing(contour, breaks, support.point, np.where(curved, support.piece, -1))
 
 
 def _overlap(contour: Contour) -> bool:

@@ -134,9 +134,9 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
             checked = round_check("journal", outline.contour, part.diameter, intent.tolerance)
             rounds.setdefault(part.name, []).append(replace(checked, surface=part.name))
             continue
-        surface, found = _lobe(outline, part, phi, solid.uneven)
-        found.append(_position(solid, intent, part))
-        checks += [replace(check, surface=part.name) for check in found]
+        surface, lobe_checks = _lobe(outline, part, phi, solid.uneven)
+        lobe_checks.append(_position(solid, intent, part))
+        checks += [replace(check, surface=part.name) for check in lobe_checks]
         surfaces.append(surface)
     checks += [_worst(same) for same in rounds.values() if same]
     checks.append(_volume(solid, intent, surfaces))
@@ -215,17 +215,17 @@ def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Chec
     faces = np.array(solid.faces)
     if not faces.size:
         return failed("position", "the solid has no horizontal face", unit="mm", limit=lobe.limits.tolerance)
-    meant = [lobe.low, lobe.high]
+    ends = [lobe.low, lobe.high]
     for (low, z, below), (_, high, above) in pairwise(intent.stretches):
         between = (faces > 0.5 * (low + z)) & (faces < 0.5 * (z + high))
         if lobe in (below, above) and intent.bars[0] not in (below, above) and not between.any():
-            meant.remove(z)
-    nearest = [float(faces[np.abs(faces - z).argmin()]) for z in meant]
-    off = max((abs(face - z) for face, z in zip(nearest, meant, strict=True)), default=0.0)
-    named, right = (" and ".join(length_words(z, ".9g") for z in heights) for heights in (nearest, meant))
+            ends.remove(z)
+    nearest = [float(faces[np.abs(faces - z).argmin()]) for z in ends]
+    off = max((abs(face - z) for face, z in zip(nearest, ends, strict=True)), default=0.0)
+    named, right = (" and ".join(length_words(z, ".9g") for z in heights) for heights in (nearest, ends))
     detail = (
         f"faces at z = {named} {UNIT}, {right} {UNIT} are meant"
-        if meant
+        if ends
         else "it has no face of its own beside its equals"
     )
     checked = at_most("position", off, lobe.limits.tolerance, "mm", detail=detail, slack=SAME)
@@ -234,12 +234,12 @@ def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Chec
 
 def _ends(solid: AnySolid, intent: CamshaftIntent) -> Check:
     """Check both ends of the shaft, and that sections differ nowhere but at the faces that are meant."""
-    shaft, meant = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
+    shaft, heights = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
     off = max(abs(solid.z_min - shaft.low), abs(solid.z_max - shaft.high))
-    stray = [z for z in solid.faces if float(np.abs(meant - z).min()) > intent.tolerance + SAME]
+    stray = [z for z in solid.faces if float(np.abs(heights - z).min()) > intent.tolerance + SAME]
     detail = f"z from {span_words(solid.z_min, solid.z_max)}, {span_words(shaft.low, shaft.high)} is expected"
     faults = [f"a horizontal face at z = {length_words(z, '.9g')} {UNIT}, where none is expected" for z in stray]
-    faults += [fault for _, fault in between_sections(solid, np.unique(meant).tolist(), (), intent.tolerance)]
+    faults += [fault for _, fault in between_sections(solid, np.unique(heights).tolist(), (), intent.tolerance)]
     if faults:
         return failed("thickness", "; ".join([*faults[:MOST_NAMED], detail]), unit="mm", limit=intent.tolerance)
     return less_sure(at_most("thickness", off, intent.tolerance, "mm", detail=detail, slack=SAME), solid.uneven)

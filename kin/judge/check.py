@@ -68,8 +68,8 @@ def less_sure(check: Check, by: float) -> Check:
     if not by or check.value is None or check.limit is None:
         return check
     value = check.value + by
-    told = f"heights differ by up to {amount_words(by, check.unit, '.3g')} through rounding"
-    detail = f"{marked(check.detail)}; {told}" if check.detail else told
+    why = f"heights differ by up to {amount_words(by, check.unit, '.3g')} through rounding"
+    detail = f"{marked(check.detail)}; {why}" if check.detail else why
     return replace(check, ok=check.ok and value <= check.limit, value=value, detail=detail)
 
 

@@ -46,12 +46,12 @@ def judge_closures(
             continue
         pair = by_name[closure.pushes], by_name[closure.stops]
         try:
-            verdict, found = _judged(closure, pair, limits, uneven)
+            verdict, more = _judged(closure, pair, limits, uneven)
         except (ContactError, UnsettledError) as error:
             checks.append(failed(closure.name, str(error), unit=pair[0][0].gauge.unit))
             continue
         verdicts.append(verdict)
-        checks += found
+        checks += more
     return tuple(verdicts), checks
 
 
@@ -93,8 +93,8 @@ def left_over(first: Surface, last: Surface, shaft: Array) -> Array:
     pushed, stopped = (_rests(surface.follower or surface.gauge, contour) for surface, contour in (first, last))
     gauge = first[0].gauge
     scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
-    found: Array = scale * (stopped.rows(shaft)[0] - pushed.rows(shaft)[0])
-    return found
+    play: Array = scale * (stopped.rows(shaft)[0] - pushed.rows(shaft)[0])
+    return play
 
 
 def _rests(follower: Follower, contour: Contour) -> Excitation:
@@ -105,7 +105,7 @@ def _rests(follower: Follower, contour: Contour) -> Excitation:
 
 def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:
     """How far one drive is beyond the other over the turn, mm or degrees: least and greatest."""
-    found = extremes_between(pushed, stopped, gauge.si * size if gauge.unit == "mm" else 1.0)
+    ends = extremes_between(pushed, stopped, gauge.si * size if gauge.unit == "mm" else 1.0)
     scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
-    least, most = (scale * found.least, degrees(found.least_at)), (scale * found.greatest, degrees(found.greatest_at))
+    least, most = (scale * ends.least, degrees(ends.least_at)), (scale * ends.greatest, degrees(ends.greatest_at))
     return Play(*least, *most, gauge.unit)

@@ -176,15 +176,15 @@ def at_the_floor(cuts: list[Cut], tolerance: float) -> list[Cut]:
 
 def _about_one_contour(cuts: list[Cut], radius: float) -> list[list[Cut]]:
     """Cuts about the same contour together, in order; two paths about one are nearer to each other than the radius."""
-    found: list[tuple[Arcs, list[Cut]]] = []
+    outlines: list[tuple[Arcs, list[Cut]]] = []
     for cut in reversed(cuts):
         place = np.array([cut.loop[0].start[:2]])
-        mine = next((group for chain, group in found if float(nearest(chain, place)[1][0]) < radius), None)
+        mine = next((group for chain, group in outlines if float(nearest(chain, place)[1][0]) < radius), None)
         if mine is None:
-            found.append((cut.path, [cut]))
+            outlines.append((cut.path, [cut]))
         else:
             mine.insert(0, cut)
-    return [group for _, group in reversed(found)]
+    return [group for _, group in reversed(outlines)]
 
 
 def rounds(loop: Arcs, middle: Array) -> int:

@@ -92,8 +92,8 @@ def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
     try:
         edge = parallel(loop, table.radius, fine)
     except TightError as error:
-        told = f"the wheel of radius {table.radius:.6g} mm leaves no single contour: {error}"
-        raise ReadError("open", told, path) from error
+        message = f"the wheel of radius {table.radius:.6g} mm leaves no single contour: {error}"
+        raise ReadError("open", message, path) from error
     short = np.abs(loop.length * (1.0 - loop.curvature * table.radius)) <= fine
     off += fine if short.any() else 0.0
     centres = table.distance[:, None] * _unit(table.angles)
@@ -196,16 +196,16 @@ def _head_faults(table: _Table, grinding: Grinding) -> tuple[str, ...]:
             (CENTRE, "centre at lift 0", grinding.zero, "at lift 0 its centre is {} from the shaft"),
         ]
     faults = []
-    for pattern, name, meant, example in wanted:
+    for pattern, name, expected, example in wanted:
         unit = "mm" if table.units == 1.0 else "inch"
-        length = f"{meant / table.units:.12g} {unit}"
+        length = f"{expected / table.units:.12g} {unit}"
         stated = _lengths(table.head, pattern)
         if not stated:
             faults.append(f"no line states the {name}, such as `# {example.format(length)}`")
         faults += [
             f"the {name} is stated as {value / table.units:.9g} {unit}, {length} is expected"
             for value in stated
-            if not abs(value - meant) <= STATED * meant
+            if not abs(value - expected) <= STATED * expected
         ]
     return tuple(faults)
 
@@ -237,8 +237,8 @@ def _joins(angles: Array, distance: Array, path: Path) -> tuple[Arcs, float]:
     away = np.abs(np.where(np.isfinite(radius), centre, np.inf))
     if not (away < COARSE * radius).all():
         row = int(np.argmin(away < COARSE * radius))
-        told = f"the wheel moves too fast for its step about {math.degrees(angles[row]):.6g} degrees"
-        raise ReadError("range", told, path)
+        message = f"the wheel moves too fast for its step about {math.degrees(angles[row]):.6g} degrees"
+        raise ReadError("range", message, path)
     return loop, float((step**3 * bend(away, away / radius)).max()) / (72.0 * math.sqrt(3.0))
 
 

@@ -95,19 +95,19 @@ class Lean(NamedTuple):
 
 def heights(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[tuple[float, Layer]]:
     """Heights at which a solid is looked at, the plain disc's first, with their layers."""
-    found = []
+    samples = []
     main = max((layer for layer in layers if layer.outline is None and layer.inset == (0.0, 0.0)), key=_height)
     for layer in (main, *(other for other in layers if other is not main)):
         shares: tuple[float, ...] = (0.5,) if layer.inset == (0.0, 0.0) else AT_CHAMFER
-        inside = [one for one in cross_holes if layer.outline is not None and layer.low < one.z < layer.high]
+        inside = [hole for hole in cross_holes if layer.outline is not None and layer.low < hole.z < layer.high]
         if inside:
-            one = inside[0]
-            found += [(one.z + share * 0.5 * one.diameter, layer) for share in ACROSS]
-            below, above = one.z - 0.5 * one.diameter, one.z + 0.5 * one.diameter
-            found += [(0.5 * (layer.low + below), layer), (0.5 * (above + layer.high), layer)]
+            hole = inside[0]
+            samples += [(hole.z + share * 0.5 * hole.diameter, layer) for share in ACROSS]
+            below, above = hole.z - 0.5 * hole.diameter, hole.z + 0.5 * hole.diameter
+            samples += [(0.5 * (layer.low + below), layer), (0.5 * (above + layer.high), layer)]
         else:
-            found += [(layer.low + share * _height(layer), layer) for share in shares]
-    return found
+            samples += [(layer.low + share * _height(layer), layer) for share in shares]
+    return samples
 
 
 def _height(layer: Layer) -> float:
@@ -117,36 +117,36 @@ def _height(layer: Layer) -> float:
 def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
     """Heights of the horizontal faces, each with the check that reports it: thickness, hub or mark."""
     rising = sorted(layers, key=lambda layer: layer.low)
-    found = []
+    levels = []
     for below, above in zip([None, *rising], [*rising, None], strict=True):
-        one = below or above
-        if one is None:
+        present = below or above
+        if present is None:
             continue
-        z = one.high if one is below else one.low
+        z = present.high if present is below else present.low
         if below is None or above is None:
-            found.append((one.outline.kind if one.outline is not None else "thickness", z))
+            levels.append((present.outline.kind if present.outline is not None else "thickness", z))
         elif below.outline != above.outline or below.inset[1] != above.inset[0]:
-            found.append(("thickness", z))
+            levels.append(("thickness", z))
         elif below.holes != above.holes:
-            found.append(("mark", z))
-    return found
+            levels.append(("mark", z))
+    return levels
 
 
 def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lean]:
     """Where walls are meant to be anything but upright."""
-    found = []
-    for one in cross_holes:
+    rows = []
+    for hole in cross_holes:
         outline = next(
-            layer.outline for layer in layers if layer.outline is not None and layer.low < one.z < layer.high
+            layer.outline for layer in layers if layer.outline is not None and layer.low < hole.z < layer.high
         )
         reach = float(np.hypot(*outline.contour.vertices.T).max())
-        found.append(Lean("set-screw", one.z - 0.5 * one.diameter, one.z + 0.5 * one.diameter, reach))
+        rows.append(Lean("set-screw", hole.z - 0.5 * hole.diameter, hole.z + 0.5 * hole.diameter, reach))
     for layer in sorted(layers, key=lambda layer: layer.low):
         if layer.inset != (0.0, 0.0):
-            low = found.pop().low if found and found[-1].high == layer.low else layer.low
+            low = rows.pop().low if rows and rows[-1].high == layer.low else layer.low
             inward = (layer.inset[1] - layer.inset[0]) / _height(layer)
-            found.append(Lean("chamfer", low, layer.high, inward=inward))
-    return found
+            rows.append(Lean("chamfer", low, layer.high, inward=inward))
+    return rows
 
 
 def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySolid:
@@ -193,14 +193,14 @@ def between_sections(
     meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
     from one height to another is known by two sections between them.
     """
-    places, found = np.array(levels), np.array(solid.faces)
-    told, slack = [], tolerance + SAME
+    places, faces = np.array(levels), np.array(solid.faces)
+    faults, slack = [], tolerance + SAME
     for z in levels:
-        here = found[(np.abs(found[:, None] - places).min(axis=1) == np.abs(found - z)) & (np.abs(found - z) <= slack)]
+        here = faces[(np.abs(faces[:, None] - places).min(axis=1) == np.abs(faces - z)) & (np.abs(faces - z) <= slack)]
         if here.size and float(np.ptp(here)) > SAME:
             both = " and ".join(length_words(z, ".9g") for z in (here.min(), here.max()))
             fault = f"faces at z = {both} {UNIT}, where one is expected"
-            told.append(("thickness", fault))
+            faults.append(("thickness", fault))
     rows = solid.leaning
     for lean in leaning:
         rows = rows[~lean.means(rows, slack)]
@@ -209,8 +209,8 @@ def between_sections(
         near = (lean.kind for lean in leaning if bottom < lean.high + slack and lean.low - slack < top)
         both = f"{length_words(low, '.9g')} and {length_words(high, '.9g')} {UNIT}"
         fault = f"walls lean between z = {both}, where none should"
-        told.append((next(near, "thickness"), fault))
-    return told
+        faults.append((next(near, "thickness"), fault))
+    return faults
 
 
 def _together(rows: Array, low: float, high: float, slack: float) -> tuple[float, float]:
@@ -235,8 +235,8 @@ def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: floa
         )
         total += (solid - sum(hole.contour.area for hole in layer.holes)) * _height(layer)
         if layer.outline is not None:
-            inside = [one for one in cross_holes if layer.low < one.z < layer.high]
-            total -= sum(_bored(one, layer.outline, layer.holes[0]) for one in inside)
+            inside = [cross_hole for cross_hole in cross_holes if layer.low < cross_hole.z < layer.high]
+            total -= sum(_bored(cross_hole, layer.outline, layer.holes[0]) for cross_hole in inside)
     return float(total)
 
 
@@ -249,7 +249,8 @@ def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimet
         total += (length * slant + sum(hole.contour.length for hole in layer.holes)) * _height(layer)
         if layer.outline is not None:
             reach = 0.5 * (layer.outline.contour.box.x_max - layer.outline.contour.box.x_min)
-            total += sum(np.pi * one.diameter * reach for one in cross_holes if layer.low < one.z < layer.high)
+            inside = [cross_hole for cross_hole in cross_holes if layer.low < cross_hole.z < layer.high]
+            total += sum(np.pi * cross_hole.diameter * reach for cross_hole in inside)
     return float(total)
 
 
@@ -337,12 +338,12 @@ def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
     centre = middle + left_of * (1.0 - bulge * bulge) / (4.0 * bulge)
     radius = float(np.hypot(*(start - centre)))
     half = np.sqrt(radius**2 - (y - centre[1]) ** 2)
-    found = []
+    places = []
     for x in (centre[0] - half, centre[0] + half):
         place = np.stack([x, y], axis=-1)
         beside = cross(chord[None, :], place - start) * np.sign(bulge) <= 1e-12 * radius**2
-        found.append(np.where(np.isfinite(x) & beside, x, -np.inf))
-    return found
+        places.append(np.where(np.isfinite(x) & beside, x, -np.inf))
+    return places
 
 
 def _bored(cross: CrossHole, outline: Hole, hole: Hole) -> float:

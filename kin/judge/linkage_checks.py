@@ -33,28 +33,28 @@ def judge_linkage(
     uneven: float,
 ) -> tuple[LinkageVerdict | None, list[Check]]:
     """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell."""
-    mechanism, asked = linkage.mechanism, linkage.dwell
-    at_least = None if asked is None or asked.at_least is None else float(np.degrees(asked.at_least))
+    mechanism, dwell = linkage.mechanism, linkage.dwell
+    at_least = None if dwell is None or dwell.at_least is None else float(np.degrees(dwell.at_least))
     try:
         off = _output_less_sure(mechanism, uneven)
-        found = judge_frame(
+        verdict = judge_frame(
             contour,
             mechanism,
             phi,
             limits.tolerance,
             swing=linkage.swing,
-            band=None if asked is None else _band_less_sure(asked, mechanism, off),
-            over="shaft" if asked is None else asked.over,
+            band=None if dwell is None else _band_less_sure(dwell, mechanism, off),
+            over="shaft" if dwell is None else dwell.over,
             overlap=linkage.overlap,
         )
         if uneven:
-            found = replace(
-                found,
-                error=found.error.less_sure(off),
-                centred=found.centred.less_sure(off),
-                play_across=found.play_across.less_sure(2.0 * uneven),
-                play_along=found.play_along.less_sure(2.0 * uneven),
-                dwells=tuple(replace(one, band=one.band + 2.0 * off) for one in found.dwells),
+            verdict = replace(
+                verdict,
+                error=verdict.error.less_sure(off),
+                centred=verdict.centred.less_sure(off),
+                play_across=verdict.play_across.less_sure(2.0 * uneven),
+                play_along=verdict.play_along.less_sure(2.0 * uneven),
+                dwells=tuple(replace(one, band=one.band + 2.0 * off) for one in verdict.dwells),
             )
     except (FrameError, BindingError) as problem:
         what = str(problem) if isinstance(problem, FrameError) else f"the intended mechanism: {problem}"
@@ -64,10 +64,10 @@ def judge_linkage(
         return None, checks
     checks = []
     if limits.output is not None or not trimmed:
-        checks.append(_output_check(found, limits, slack))
+        checks.append(_output_check(verdict, limits, slack))
     if at_least is not None:
-        checks.append(_dwell_check(found.dwells[0], mechanism.unit, at_least))
-    return found, checks
+        checks.append(_dwell_check(verdict.dwells[0], mechanism.unit, at_least))
+    return verdict, checks
 
 
 def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:

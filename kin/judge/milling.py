@@ -70,7 +70,7 @@ def _is_outline(edge: Edge, milling: Milling) -> bool:
 
 def _cutter_check(program: Program, milling: Milling) -> Check:
     """Check the cutter that the program names on top, if it does."""
-    named = [float(found[1]) for text in program.comments if (found := _CUTTER.match(text))]
+    named = [float(tool[1]) for text in program.comments if (tool := _CUTTER.match(text))]
     if not named:
         return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
     diameter = named[0] * program.units_mm
@@ -132,9 +132,9 @@ def _depth_check(features: list[Feature], milling: Milling, tolerance: float) ->
     for cuts, depth, _ in features:
         cut = min(cuts, key=lambda cut: cut.z) if milling.pocket == depth else cuts[-1]
         if abs(cut.z + depth) > tolerance:
-            meant = f"the groove is to be {length_words(depth)} {UNIT} deep" if milling.pocket == depth else ""
+            expected = f"the groove is to be {length_words(depth)} {UNIT} deep" if milling.pocket == depth else ""
             what = f"the last pass, from line {cut.loop[0].line}, is at z = {length_words(cut.z)} {UNIT}, "
-            what += meant or f"the part {length_words(depth)} {UNIT} thick"
+            what += expected or f"the part {length_words(depth)} {UNIT} thick"
             return failed("depth", what, unit="mm", limit=milling.depth_of_cut)
         reached: dict[Key, tuple[Arcs, float]] = {}
         along: dict[tuple[Key, Key], bool] = {}
@@ -190,13 +190,13 @@ def _direction_check(features: list[Feature], milling: Milling) -> Check:
 
     In a pocket the paths along its edges count; of one that makes both, the metal within.
     """
-    bad, seen = [], set[int]()
+    bad, directions = [], set[int]()
     for cuts, _, edges in features:
         for edge in edges:
             for cut in cuts:
-                if (len(edges) > 1 and cut.key != edge.cut.key) or cut.loop[0].line in seen:
+                if (len(edges) > 1 and cut.key != edge.cut.key) or cut.loop[0].line in directions:
                     continue
-                seen.add(cut.loop[0].line)
+                directions.add(cut.loop[0].line)
                 clockwise = cut.area < 0.0
                 if clockwise != (milling.climb == (edge.side > 0)):
                     bad.append(f"the path from line {cut.loop[0].line} runs the wrong way round")
@@ -225,13 +225,13 @@ def _gouge_check(features: list[Feature], milling: Milling, tolerance: float) ->
     worst, detail = -np.inf, ""
     for cuts, edge in ((feature.cuts, edge) for feature in features for edge in feature.edges):
         chain = edge.contour.as_arcs()[0]
-        seen = {trace(move) for move in edge.cut.loop}  # of these the edge itself is made
+        known = {trace(move) for move in edge.cut.loop}  # of these the edge itself is made
         for cut in cuts:
             for moves in (cut.entry, cut.loop, cut.exit):
-                fresh = [move for move in moves if trace(move) not in seen]
+                fresh = [move for move in moves if trace(move) not in known]
                 if not fresh:
                     continue
-                seen |= {trace(move) for move in fresh}
+                known |= {trace(move) for move in fresh}
                 near, place = least_distance(arcs_of(fresh), chain, float(edge.side), milling.radius, tolerance)
                 if milling.radius - near > worst:
                     worst = milling.radius - near

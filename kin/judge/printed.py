@@ -42,10 +42,10 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
     low, high = min(slab.low for slab in slabs), max(slab.high for slab in slabs)
     z = mesh.points[:, 2]
     off = max(abs(float(z.min()) - low), abs(float(z.max()) - high))
-    told = f"{name}: z from {span_words(z.min(), z.max())}, {span_words(low, high)} is expected"
+    detail = f"{name}: z from {span_words(z.min(), z.max())}, {span_words(low, high)} is expected"
     checks = [
         at_most("watertight", sum(faults), 0, "faults", detail=name),
-        at_most("thickness", off, tolerance, "mm", detail=told, slack=ROUNDING),
+        at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING),
     ]
     if checks[0].ok and checks[1].ok:
         checks.append(_outline(name, mesh, slabs, tolerance, path))
@@ -65,8 +65,8 @@ def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, pat
             try:
                 off = _off(mesh, height, there, path)
             except ReadError as error:
-                told = f"{name}: {error.message}"
-                return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=told)
+                detail = f"{name}: {error.message}"
+                return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=detail)
             if off > worst:
                 worst, where = off, f" at z = {length_words(height)} {UNIT}"
     return at_most("outline", worst, tolerance, "mm", detail=f"{name}{where}", slack=ROUNDING)
@@ -90,12 +90,12 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
             off = max(off, float(np.min([contour.distance(points) for contour in drawn], axis=0).max()))
     if len(slabs) == 1:
         edges = (slabs[0].outer, *slabs[0].holes)
-        meant = abs(slabs[0].outer.area) - sum(abs(hole.area) for hole in slabs[0].holes)
-        off = max(off, abs(sum(contour.area for contour in drawn) - meant) / sum(edge.length for edge in edges))
+        area = abs(slabs[0].outer.area) - sum(abs(hole.area) for hole in slabs[0].holes)
+        off = max(off, abs(sum(contour.area for contour in drawn) - area) / sum(edge.length for edge in edges))
     return off
 
 
 def _signed(slabs: Sequence[Slab], points: Array) -> Array:
     """Distance (n,) of points (n, 2) from the union of slabs, negative inside it; below 0 it is only a bound."""
-    found: Array = np.min([slab.region.signed(points) for slab in slabs], axis=0)
-    return found
+    distances: Array = np.min([slab.region.signed(points) for slab in slabs], axis=0)
+    return distances

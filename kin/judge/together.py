@@ -47,7 +47,10 @@ def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limit
             verdicts.append(verify_together(path, shaft, angles, limits))
         else:
             verdicts.append(verify(path, shaft.parts[disc], angles, limits, units))
-    read = [DiscsRead(file.path.name, one.surfaces, one.uneven) for file, one in zip(files, verdicts, strict=True)]
+    read = [
+        DiscsRead(file.path.name, verdict.surfaces, verdict.uneven)
+        for file, verdict in zip(files, verdicts, strict=True)
+    ]
     closures, checks = left_between(read, shaft, limits)
     last = verdicts[-1]
     verdicts[-1] = replace(last, checks=(*last.checks, *checks), closures=(*last.closures, *closures))
@@ -59,9 +62,8 @@ def left_between(
 ) -> tuple[tuple[ClosureVerdict, ...], tuple[Check, ...]]:
     """Judge what is left between surfaces of discs that were read from files: closures, and checks on the last file."""
     intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
-    surfaces = [
-        (intents[found.name], found.contour) for file in files for found in file.surfaces if found.contour is not None
-    ]
+    verdicts = [verdict for file in files for verdict in file.surfaces]
+    surfaces = [(intents[verdict.name], verdict.contour) for verdict in verdicts if verdict.contour is not None]
     closures, checks = judge_closures(surfaces, shaft.closures, limits, max(file.uneven for file in files))
     others = ", ".join(file.file for file in files[:-1])
     if others:

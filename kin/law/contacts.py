@@ -214,7 +214,7 @@ class Arrangement:
         """
         stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > self.discs
         swings, plate = two and not stem, two and stem and flat
-        held = {
+        sides = {
             "swings": swings,
             "plate": plate,
             "guided": not (swings or plate),
@@ -226,4 +226,4 @@ class Arrangement:
             "face": flat and not swings,
             "stem-face": stem and flat and not two,
         }
-        return frozenset(name for name, holds in held.items() if holds)
+        return frozenset(name for name, holds in sides.items() if holds)

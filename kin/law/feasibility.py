@@ -64,10 +64,10 @@ def _demand_possible(law: Transmission, knots: Sequence[float], functions: Seque
     for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
         if isinstance(function, Constant) and abs(function.value) < limit:
             continue
-        found = undecided(function, begin, end, {0: (-limit, limit), 1: steep})
-        if found is None:
+        doubts = undecided(function, begin, end, {0: (-limit, limit), 1: steep})
+        if doubts is None:
             continue
-        if found[0] == 1:
+        if doubts[0] == 1:
             raise too_steep(law, field)
         at, swing = highest(law.psi, [1.0] * len(law.lean), 0)
         raise too_wide(law, at, swing, field)
@@ -136,8 +136,8 @@ def demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
     ends = np.flatnonzero(((x == 0) | (x == 1)) & (np.abs(distance) > JOIN * arm))
     low, high = int(np.argmin(distance)), int(np.argmax(distance))
     if len(ends):
-        at, found = x[ends[0]], distance[ends[0]]
-        raise IntentError(f"the leaf must begin and end in the shaft; |OQ| is {found:.9g} mm at x = {at:.6g}", field)
+        at, gap = x[ends[0]], distance[ends[0]]
+        raise IntentError(f"the leaf must begin and end in the shaft; |OQ| is {gap:.9g} mm at x = {at:.6g}", field)
     if distance[low] < -JOIN * arm:
         raise IntentError(f"|OQ| is a distance; it is {distance[low]:.9g} mm at x = {x[low]:.6g}", field)
     if distance[high] >= most:

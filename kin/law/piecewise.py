@@ -299,7 +299,7 @@ class Piecewise:
     @cached_property
     def _groups(self) -> tuple[Indices, tuple[_Group | _Alike | _Round, ...]]:
         """For each stretch its group, and the groups: stretches of a kind, or one function moved in several ways."""
-        found: dict[Stretch | tuple[str, int], list[int]] = {}
+        by_stretch: dict[Stretch | tuple[str, int], list[int]] = {}
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
         for i, function in enumerate(self.functions):
@@ -308,9 +308,9 @@ class Piecewise:
                 arcs.append(i)
             else:
                 bare = _bare(function)
-                found.setdefault(bare.kind if isinstance(bare, Alike) else bare, []).append(i)
+                by_stretch.setdefault(bare.kind if isinstance(bare, Alike) else bare, []).append(i)
         groups: list[_Group | _Alike | _Round] = []
-        for number, members in enumerate(found.values()):
+        for number, members in enumerate(by_stretch.values()):
             owner[members] = number
             stretches = [self.functions[i] for i in members]
             first, ways = _bare(stretches[0]), _ways(stretches, members, owner.size)
@@ -363,8 +363,8 @@ class Piecewise:
                 part = groups[number](kind(*(row[:, here] for row in rows)), index[here])
             except DomainError as error:
                 raise DomainError(error.operation, here[error.indices]) from None
-            for row, found in zip(out, _rows(part), strict=True):
-                row[:, here] = found
+            for row, values in zip(out, _rows(part), strict=True):
+                row[:, here] = values
         return kind(*out)
 
 

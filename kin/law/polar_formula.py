@@ -42,8 +42,8 @@ def from_delta_formula(lam: int, mu: int, arm: float, formula: Formula, scale: f
     places, pieces = _pieces(formula, 2 * delta, field)
     _demand_odd(formula, places, delta, field)
     _demand_within(places, pieces, (scale, square, "|D|", "l^2", "mm^2"), field)
-    found = [FromExpression(piece, scale / square, 0.0, is_distance=False) for piece in pieces]
-    return _polar((lam, mu, arm), found, places, field)
+    leaves = [FromExpression(piece, scale / square, 0.0, is_distance=False) for piece in pieces]
+    return _polar((lam, mu, arm), leaves, places, field)
 
 
 def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1.0) -> Transmission:
@@ -57,8 +57,8 @@ def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1
     places, pieces = _pieces(formula, delta, field)
     _demand_within(places, pieces, (scale, 2 * arm, "r", "2 l", "mm"), field)
     alpha = math.pi * mu / lam
-    found = [FromExpression(piece, scale / (2 * arm), alpha, is_distance=True) for piece in pieces]
-    first, last = (float(f(Jet.variable(at, 0)).c[0, 0]) for f, at in ((found[0], 0.0), (found[-1], delta)))
+    leaves = [FromExpression(piece, scale / (2 * arm), alpha, is_distance=True) for piece in pieces]
+    first, last = (float(f(Jet.variable(at, 0)).c[0, 0]) for f, at in ((leaves[0], 0.0), (leaves[-1], delta)))
     if abs(first + last) > JOIN:
         mean = 2 * arm * math.cos(alpha / 2) / scale
         raise IntentError(
@@ -67,7 +67,7 @@ def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1
             "the same does",
             field,
         )
-    return _polar((lam, mu, arm), found, places, field)
+    return _polar((lam, mu, arm), leaves, places, field)
 
 
 def _pieces(formula: Formula, end: float, field: str) -> tuple[list[float], list[Expression]]:
@@ -131,9 +131,9 @@ def _polar(
     alpha, delta = math.pi * mu / lam, math.pi / lam
     whole = places[-1] > 1.5 * delta
     if whole and len(stretches) == 1 and _runs_on(stretches[0], 2 * delta):
-        one = [_at_rest(stretches[0], 0.0)]
-        over = Piecewise(np.array(places), tuple(one), 2 * delta, smooth_seam=True)
-        return checked(Transmission(lam, mu, arm, over, (0.5,), alpha / 2), [0.0, delta], one, field)
+        motion = [_at_rest(stretches[0], 0.0)]
+        over = Piecewise(np.array(places), tuple(motion), 2 * delta, smooth_seam=True)
+        return checked(Transmission(lam, mu, arm, over, (0.5,), alpha / 2), [0.0, delta], motion, field)
     count = sum(place < delta * (1 - _CLEAR) for place in places)
     knots = [*places[:count], delta]
     functions: list[Stretch] = [_at_rest(f, low) for f, low in zip(stretches[:count], knots, strict=False)]

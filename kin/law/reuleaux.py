@@ -40,16 +40,16 @@ def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
             f"{sides} sides take {sides - FREE} angles, the last three of them follow; here are {len(chosen)}",
             "reuleaux.angles",
         )
-    found = _last_three(chosen)
-    if min(*chosen, *found, math.inf) >= LEAST:
-        return (*chosen, *found)
+    corrected = _last_three(chosen)
+    if min(*chosen, *corrected, math.inf) >= LEAST:
+        return (*chosen, *corrected)
     equal = math.pi / sides
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (low + high)
-        tried = [equal + share * (one - equal) for one in chosen]
+        tried = [equal + share * (angle - equal) for angle in chosen]
         low, high = (share, high) if min(*tried, *_last_three(tried)) >= LEAST else (low, share)
-    near = [round(math.degrees(equal + low * 0.99 * (one - equal)), _DIGITS) for one in chosen]
+    near = [round(math.degrees(equal + low * 0.99 * (angle - equal)), _DIGITS) for angle in chosen]
     total = math.degrees(sum(chosen))
     why = (
         f"they add up to {total:.6g} degrees, and all {sides} to 180"
@@ -58,7 +58,7 @@ def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
     )
     raise IntentError(
         f"no Reuleaux polygon of {sides} sides has these angles: {why}; "
-        f"[{', '.join(f'{one:.6g}' for one in near)}] would do",
+        f"[{', '.join(f'{angle:.6g}' for angle in near)}] would do",
         "reuleaux.angles",
     )
 
@@ -84,10 +84,10 @@ def corners(angles: Sequence[float]) -> list[complex]:
     `angles` (n,), rad, are those at the points; the directions over which the first one bears lie evenly about +x.
     """
     direction, place = -0.5 * angles[0], 0.0 + 0.0j
-    found = [place]
+    places = [place]
     for i, angle in enumerate(angles[:-1], 1):
         direction += angle
         place += (-1) ** i * cmath.rect(1.0, direction)
-        found.append(place)
-    mean = sum(angle * one for angle, one in zip(angles, found, strict=True)) / math.pi
-    return [one - mean for one in found]
+        places.append(place)
+    mean = sum(angle * corner for angle, corner in zip(angles, places, strict=True)) / math.pi
+    return [corner - mean for corner in places]

@@ -73,13 +73,13 @@ class FromDelta:
         k, a = np.array(terms).T
         n = t.mid.shape[1]
         half = Ball(np.tile(t.mid[0], k.size), np.tile(t.rad[0], k.size)) * np.repeat(k / 2, n)
-        found = []
+        factors = []
         for sign, wave in zip((-sense, sense), interval.sin_cos(half), strict=True):
             each = wave**2 * np.repeat(2 * a, n)
             least = summed(BallJet(each.mid[None], each.rad[None]), n) + rest
             later = (value * sign).rows[1:]
-            found.append(BallJet(np.vstack([least.mid, later.mid]), np.vstack([least.rad, later.rad])))
-        return found[0], found[1]
+            factors.append(BallJet(np.vstack([least.mid, later.mid]), np.vstack([least.rad, later.rad])))
+        return factors[0], factors[1]
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ def steepness(terms: Sequence[tuple[int, float, float]]) -> Harmonics:
     slope = wave * 1j * np.arange(-top, top + 1)
     total = 4 * np.convolve(wave, wave) + np.convolve(slope, slope)
     upper = total[2 * top + 1 :]
-    found = [(k, 2 * float(c.real), -2 * float(c.imag)) for k, c in enumerate(upper, start=1)]
-    return Harmonics(float(total[2 * top].real), tuple(term for term in found if term[1] or term[2]))
+    harmonics = [(k, 2 * float(c.real), -2 * float(c.imag)) for k, c in enumerate(upper, start=1)]
+    return Harmonics(float(total[2 * top].real), tuple(term for term in harmonics if term[1] or term[2]))
 
 
 @dataclass(frozen=True)

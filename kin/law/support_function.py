@@ -308,7 +308,7 @@ def lift_reuleaux(
         from kin.law.reuleaux import closed_angles, corners
 
         own = closed_angles(sides, angles)
-        centres = [(size * one.real, size * one.imag) for one in corners(own)]
+        centres = [(size * corner.real, size * corner.imag) for corner in corners(own)]
         centres += centres
         knots = list(accumulate((*own, *own[:-1]), initial=-0.5 * own[0]))
     else:

@@ -73,8 +73,8 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
         for j in series:
             if j < 1 or j % 2 == 0:
                 raise IntentError(f"D(t + delta) = -D(t) allows odd harmonics only, not {j}", f"delta.{name}")
-    found = [(j * lam, float(cos.get(j, 0.0)), float(sin.get(j, 0.0))) for j in sorted({*cos, *sin})]
-    terms = tuple(term for term in found if term[1] or term[2])
+    harmonics = [(j * lam, float(cos.get(j, 0.0)), float(sin.get(j, 0.0))) for j in sorted({*cos, *sin})]
+    terms = tuple(term for term in harmonics if term[1] or term[2])
     period, offset, square = 2 * math.pi / lam, math.pi * mu / lam / 2, arm * arm
     knots = np.array([0.0, period])
     if not terms:
@@ -90,8 +90,8 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
             raise too_wide(law, at, math.asin(reached / square), "delta")
         degrees = math.degrees(at + offset - math.pi / 4) % 360
         close = f", {square - reached:.3g} below it, which rounding does not tell apart" if reached < square else ""
-        said = f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}{close}"
-        raise IntentError(said, "delta", degrees)
+        message = f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}{close}"
+        raise IntentError(message, "delta", degrees)
     limit = 4 * square * square * (1 - 1e-14)  # the series' own rounding left out
     if undecided(steepness(terms), 0.0, period, {0: (-math.inf, limit)}) is not None:
         raise too_steep(law, "delta")
@@ -155,8 +155,8 @@ def from_arc(
     if side == "convex" and rest * _ABOVE < chord:  # with the middle of the arc 2 l from the shaft it is l for mu = 1
         short = (chord**2 + rest**2) / (2 * rest)
         if radius <= short * _ABOVE:
-            told = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm"
-            raise IntentError(f"{told}: its middle would lie 2 l or farther from the shaft", "arc.radius")
+            message = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm"
+            raise IntentError(f"{message}: its middle would lie 2 l or farther from the shaft", "arc.radius")
     if not (math.isfinite(radius) and (radius >= least if side == "convex" else radius > least)):
         raise IntentError(
             f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm"

@@ -110,10 +110,10 @@ class Transmission:
         arcs[~self.steady] = math.nan
         if self.arc is not None:
             x, y, radius = self.arc
-            given = np.flatnonzero(stretches == 0)
-            turn = np.round((at[given] - self.psi.knots[0]) / (2 * self.delta)) * (2 * self.delta)
+            ends = np.flatnonzero(stretches == 0)
+            turn = np.round((at[ends] - self.psi.knots[0]) / (2 * self.delta)) * (2 * self.delta)
             c, s = np.cos(turn), np.sin(turn)
-            arcs[given] = np.column_stack((x * c - y * s, x * s + y * c, np.full(len(given), radius)))
+            arcs[ends] = np.column_stack((x * c - y * s, x * s + y * c, np.full(len(ends), radius)))
         return arcs
 
     def _stretches(self) -> NDArray[np.intp]:
@@ -260,5 +260,5 @@ class _Lead:
         """Give the angle, psi being the law's at tau, which lies at these places of the law."""
         if self.weights is not None:
             return tau + (places.weigh(psi, self.weights) + self.offset)
-        found = tau + psi * self.weight if self.weight else tau
-        return found + self.offset if self.offset else found
+        angle = tau + psi * self.weight if self.weight else tau
+        return angle + self.offset if self.offset else angle

@@ -69,15 +69,15 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
     nearest_yet = coefficients
     for _ in range(_STEPS):
         try:
-            found = search.extremes(coefficients)
+            extremes = search.extremes(coefficients)
         except UnsettledError:
             break
-        reference = search.reference(found)
+        reference = search.reference(extremes)
         least = max(least, search.least(reference))
-        if not found.greatest < best.greatest:
+        if not extremes.greatest < best.greatest:
             break
-        best, nearest_yet = found, coefficients
-        if found.greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least) or not search.least(reference):
+        best, nearest_yet = extremes, coefficients
+        if extremes.greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least) or not search.least(reference):
             break
         coefficients = coefficients + search.levelled(reference, reference.error, search.rows(coefficients, reference))
     if not best.greatest <= max(_NOTHING, (1 + _CLOSE) * least):
@@ -86,11 +86,11 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
             f"the nearest series up to harmonic {harmonics} was not found, as the law is steep; {other} may do",
             "delta.harmonics",
         )
-    coefficients, greatest, found = nearest_yet, best.greatest, best
+    coefficients, greatest, extremes = nearest_yet, best.greatest, best
     half = len(coefficients) // 2
-    worst = int(np.argmax(np.abs(found.error)))
+    worst = int(np.argmax(np.abs(extremes.error)))
     series = [dict(zip(search.odd.tolist(), part.tolist(), strict=True)) for part in np.split(coefficients, [half])]
-    return Nearest(series[0], series[1], greatest, min(least, greatest), float(found.tau[worst]))
+    return Nearest(series[0], series[1], greatest, min(least, greatest), float(extremes.tau[worst]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,8 +271,8 @@ class _Search:
             level = self.least(reference)
             if not level or np.abs(error).max() <= (1 + 1e-3) * level:
                 break
-            taken = reference.tau.astype(np.intp)
-            change = self.levelled(reference, places.error[taken], rows[taken])
+            kept = reference.tau.astype(np.intp)
+            change = self.levelled(reference, places.error[kept], rows[kept])
             error = places.error + rows @ change
         return change
 

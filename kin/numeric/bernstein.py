@@ -59,9 +59,9 @@ def binomials(k: int) -> tuple[float, ...]:
 def shares(j: int, k: int) -> Array:
     """What products of two coefficients count for in those of a product of degrees j and k, (j+1, k+1)."""
     i, m = np.arange(j + 1)[:, None], np.arange(k + 1)
-    found: Array = np.outer(binomials(j), binomials(k)) / np.array(binomials(j + k))[i + m]
-    found.flags.writeable = False
-    return found
+    shares: Array = np.outer(binomials(j), binomials(k)) / np.array(binomials(j + k))[i + m]
+    shares.flags.writeable = False
+    return shares
 
 
 def bernstein_product(f: Array, g: Array) -> Array:
@@ -142,7 +142,7 @@ def roots(coefficients: Array) -> list[float]:
     The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
     decided at once, more are halved.
     """
-    found: list[float] = []
+    places: list[float] = []
     stack = [(coefficients, 0.0, 1.0)]
     while stack:
         c, a, b = stack.pop()
@@ -151,11 +151,11 @@ def roots(coefficients: Array) -> list[float]:
         if changes == 0:
             continue
         if b - a < NARROWEST or (changes > 1 and b - a < TOUCHING):
-            found.append((a + b) / 2.0)
+            places.append((a + b) / 2.0)
             continue
         left, right = halves(c[None])
         if left[0, -1] == 0.0:
-            found.append((a + b) / 2.0)
+            places.append((a + b) / 2.0)
         stack.append((right[0], (a + b) / 2.0, b))
         stack.append((left[0], a, (a + b) / 2.0))
-    return sorted({t for t in found if END_MARGIN < t < 1.0 - END_MARGIN})
+    return sorted({t for t in places if END_MARGIN < t < 1.0 - END_MARGIN})

@@ -180,9 +180,9 @@ def atan2(y: Number, x: Number) -> Number:
         if not y.order:
             return BallJet.of(Ball(angle.mid[None], angle.rad[None]))
         p, q = y.lower(), x.lower()
-        found = ((q * y.derivative() - p * x.derivative()) / (p**2 + q**2)).integral(angle)
+        angle_jet = ((q * y.derivative() - p * x.derivative()) / (p**2 + q**2)).integral(angle)
         clear = x.rows[0].positive | y.rows[0].positive | y.rows[0].negative
-        return _where(clear, found, _known_to(0, found, angle))
+        return _where(clear, angle_jet, _known_to(0, angle_jet, angle))
     return _as_value(atan2(_as_jet(y), _as_jet(x)), y)
 
 
@@ -196,10 +196,10 @@ def abs_(x: Number) -> Number:
     if isinstance(x, Jet):
         return Jet(x.c * np.where(_side(x.c) < 0, -1.0, 1.0))
     if isinstance(x, BallJet):
-        found = maximum(x, -x)
+        larger = maximum(x, -x)
         value = interval.absolute(x.rows[0])
-        found.mid[0], found.rad[0] = value.mid, value.rad
-        return found
+        larger.mid[0], larger.rad[0] = value.mid, value.rad
+        return larger
     return _as_value(abs_(_as_jet(x)), x)
 
 
@@ -209,9 +209,9 @@ def sign(x: Number) -> Number:
         return x.constant(_side(x.c))
     if isinstance(x, BallJet):
         row = x.rows[0]
-        found = x.constant(np.where(row.positive, 1.0, np.where(row.negative, -1.0, 0.0)))
+        signs = x.constant(np.where(row.positive, 1.0, np.where(row.negative, -1.0, 0.0)))
         either = Ball(np.zeros_like(row.mid), np.ones_like(row.rad))
-        return _where(row.positive | row.negative | x.rows.zero.all(axis=0), found, _known_to(0, found, either))
+        return _where(row.positive | row.negative | x.rows.zero.all(axis=0), signs, _known_to(0, signs, either))
     return _as_value(sign(_as_jet(x)), x)
 
 

@@ -74,14 +74,14 @@ def extremes(
     UnsettledError where that is not reached: f is rougher than it, by rounding.
     """
     most = 8 * len(low) + MOST_OPEN
-    found = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
+    ends = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
     owner = np.arange(len(low))
     for halving in range(MOST_HALVINGS + 1):
         parts = [slice(begin, begin + BLOCK) for begin in range(0, len(low), BLOCK)]
         doubtful = []
         for part in parts:
             block = _Block(low[part], high[part], at_low[:, part], at_high[:, part], owner[part])
-            found, open_ = _scan(found, block, resolution)
+            ends, open_ = _scan(ends, block, resolution)
             doubtful.append(open_)
         open_ = np.concatenate(doubtful) if doubtful else np.zeros(0, dtype=bool)
         if not open_.any():
@@ -96,7 +96,7 @@ def extremes(
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
         at_low, at_high = np.concatenate([at_low, at_middle], axis=1), np.concatenate([at_middle, at_high], axis=1)
         owner = np.concatenate([owner, owner])
-    return found
+    return ends
 
 
 class _Block(NamedTuple):

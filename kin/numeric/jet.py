@@ -276,14 +276,14 @@ Series = TypeVar("Series", Jet, BallJet)
 
 def derivatives_by(f: Series, parameter: Series) -> list[Series]:
     """F and its derivatives by another function of the same variable: series of f's order, one less, and so on to 0."""
-    found = [f]
+    rows = [f]
     if f.order:
         rate = parameter.derivative()
     while f.order:
         f = f.derivative() / rate
         rate = rate.lower()
-        found.append(f)
-    return found
+        rows.append(f)
+    return rows
 
 
 def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:

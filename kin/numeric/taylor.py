@@ -55,8 +55,8 @@ def ball_product(a: Ball, b: Ball) -> Ball:
         left, right = np.empty((2, size, 3, *p.shape[1:]))
         left[:, 0], left[:, 1], left[:, 2] = a.mid, p, a.rad
         right[:, 0], right[:, 1], right[:, 2] = b.mid, b.rad + unit * q, sizes[1]
-        found = product(left, right)
-        mid, rad = found[:, 0], (found[:, 1] + found[:, 2]) * (1 + 4 * unit)
+        product_rows = product(left, right)
+        mid, rad = product_rows[:, 0], (product_rows[:, 1] + product_rows[:, 2]) * (1 + 4 * unit)
         live = np.any(sizes, axis=2)
         if live.any(axis=1).all():
             low, high = live.argmax(axis=1).sum(), 2 * size - 1 - live[:, ::-1].argmax(axis=1).sum()
@@ -113,11 +113,11 @@ def binomials(numerator: float, order: int, denominator: int = 1) -> tuple[float
     """Binomial coefficients of a rational exponent, each the nearest double."""
     from fractions import Fraction
 
-    exponent, value, found = Fraction(numerator) / denominator, Fraction(1), []
+    exponent, value, coefficients = Fraction(numerator) / denominator, Fraction(1), []
     for k in range(order + 1):
-        found.append(float(value))
+        coefficients.append(float(value))
         value = value * (exponent - k) / (k + 1)
-    return tuple(found)
+    return tuple(coefficients)
 
 
 def power_rows(x: Row, exponent: float, order: int) -> Row:
@@ -125,8 +125,8 @@ def power_rows(x: Row, exponent: float, order: int) -> Row:
     if isinstance(x, Ball):
         left, off, factors = _power_columns(exponent, order)
         mid, rad = np.zeros((2, order + 1, *x.mid.shape))
-        found = x**left * factors if off is None else x**left * x**off * factors
-        mid[: len(left)], rad[: len(left)] = found.mid, found.rad
+        powers = x**left * factors if off is None else x**left * x**off * factors
+        mid[: len(left)], rad[: len(left)] = powers.mid, powers.rad
         return Ball(mid, rad)
     rows = []
     if exponent < 0 or exponent == 0.5:

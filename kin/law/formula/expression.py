@@ -252,6 +252,6 @@ class Builder:
         if step.op in _OPERATIONS and all(s.error == 0 for s in steps):
             error_bound = _LIBRARY * abs(value) + (1e-300 if value else 0.0)
         else:
-            found = _apply(step, [balls.constant(_ball_of(s)) for s in steps], balls)
-            error_bound = float(found.rad[0, 0] + abs(value - found.mid[0, 0])) * (1 + 1e-15)
+            constant = _apply(step, [balls.constant(_ball_of(s)) for s in steps], balls)
+            error_bound = float(constant.rad[0, 0] + abs(value - constant.mid[0, 0])) * (1 + 1e-15)
         return self._place(Instruction("constant", (), value, error_bound, step.column))

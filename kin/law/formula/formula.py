@@ -89,11 +89,11 @@ class Formula:
                 knots.append(b)
                 done.append(expression)
                 continue
-            found = branches(expression, places, a, b)
-            at_lower |= found.at_start and a == lower
-            at_upper |= found.at_end and b == upper
-            ends = pairwise((a, *found.inside, b))
-            waiting += [(*end, part) for end, part in zip(ends, found.expressions, strict=True)][::-1]
+            pieces = branches(expression, places, a, b)
+            at_lower |= pieces.at_start and a == lower
+            at_upper |= pieces.at_end and b == upper
+            ends = pairwise((a, *pieces.inside, b))
+            waiting += [(*end, part) for end, part in zip(ends, pieces.expressions, strict=True)][::-1]
             if seen + len(waiting) > _MOST_STRETCHES:
                 message = f"the formula switches too often to be taken apart: more than {_MOST_STRETCHES} stretches"
                 raise FormulaError(message, expression.steps[places[0]].column)

@@ -271,11 +271,11 @@ def _tokens(text: str) -> list[_Token]:
         if match is None:  # every character matches, and so does the end
             raise AssertionError(text)
         kind, at = str(match.lastgroup), match.end()
-        found = match[kind]
+        token = match[kind]
         column = match.start(kind)
-        if kind == "other" or found in _OTHER_SIGNS:
-            hint = _OTHER_SIGNS.get(found, "it has no meaning here")
-            raise FormulaError(f"{found!r} is not understood; {hint}", column)
-        tokens.append(_Token(kind, found, column))
+        if kind == "other" or token in _OTHER_SIGNS:
+            hint = _OTHER_SIGNS.get(token, "it has no meaning here")
+            raise FormulaError(f"{token!r} is not understood; {hint}", column)
+        tokens.append(_Token(kind, token, column))
         if kind == "end":
             return tokens

@@ -69,17 +69,17 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     room = snap(lower, upper)
     changes = tuple(zero for zero in zeros if lower + room < zero < upper - room)
     edges = np.array([lower, *changes, upper])
-    found = []
+    places = []
     for a, b in pairwise(edges.tolist()):
-        seen = set(_sign(g.ball(*2 * (a + (b - a) * _LOOKOUTS,), 0).rows[0]).tolist()) - {0}
-        if len(seen) != 1:
+        values = set(_sign(g.ball(*2 * (a + (b - a) * _LOOKOUTS,), 0).rows[0]).tolist()) - {0}
+        if len(values) != 1:
             raise UnsettledError("stays too close to zero", a + (b - a) / 2)
-        found.append(int(seen.pop()))
-    for place, (before, after) in enumerate(pairwise(found)):
+        places.append(int(values.pop()))
+    for place, (before, after) in enumerate(pairwise(places)):
         if before == after:
             raise UnsettledError("stays too close to zero", changes[place])
     at_start, at_end = any(z <= lower + room for z in zeros), any(z >= upper - room for z in zeros)
-    return Signs(changes, tuple(found), at_start, at_end)
+    return Signs(changes, tuple(places), at_start, at_end)
 
 
 def _sign(row: Ball) -> NDArray[np.int_]:
@@ -95,7 +95,7 @@ def snap(lower: float, upper: float) -> float:
 def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
     """Return all zeros of odd multiplicity; those near the edge of a cell are found in both cells."""
     edges = np.linspace(lower, upper, _FIRST_CELLS + 1)
-    left, right, found = edges[:-1], edges[1:], []
+    left, right, kept = edges[:-1], edges[1:], []
     while len(left):
         if len(left) > _MOST_CELLS:
             reason = "is zero, or close to it, too often"
@@ -107,12 +107,12 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
         ball = g.ball(low, high, 1).rows
         open_ = _sign(ball[0]) == 0
         steady = open_ & (_sign(ball[1]) != 0)
-        found += _simple(g, low[steady], high[steady], lower, upper)
+        kept += _simple(g, low[steady], high[steady], lower, upper)
         open_ &= ~steady
         left, right, low, high = left[open_], right[open_], low[open_], high[open_]
         small = right - left < _SMALL_CELL * (upper - lower)
         zeros, settled = _multiple(g, low[small], high[small], lower, upper)
-        found += zeros
+        kept += zeros
         keep = ~small
         keep[small] = ~settled
         left, right = left[keep], right[keep]
@@ -123,7 +123,7 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
             raise UnsettledError("has no value" if undefined else "stays too close to zero", float(at[0]))
         middle = 0.5 * (left + right)
         left, right = np.concatenate((left, middle)), np.concatenate((middle, right))
-    return found
+    return kept
 
 
 def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) -> list[_Zero]:
@@ -132,14 +132,14 @@ def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) 
         return []
     first, last = _sign(g.ball(low, low, 0).rows[0]), _sign(g.ball(high, high, 0).rows[0])
     cross = first * last < 0
-    found = [
+    zeros = [
         _Zero(float(z), float(a), float(b))
         for z, a, b in zip(_refine(g, 1, low[cross], high[cross]), low[cross], high[cross], strict=True)
     ]
     room = snap(lower, upper)
-    found += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, room)]
-    found += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, room)]
-    return found
+    zeros += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, room)]
+    zeros += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, room)]
+    return zeros
 
 
 def _on_end(g: Expression, m: int, end: float, room: float) -> bool:
@@ -153,7 +153,7 @@ def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
     """Multiple zeros in small cells, the odd ones of them, and the cells that are settled by it."""
-    settled, found, room = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
+    settled, zeros, room = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
     if not len(low):
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
@@ -173,8 +173,8 @@ def _multiple(
         if not _sign(g.ball(zero - room, zero + room, m - 2).rows).any():
             settled[i] = True
             if m % 2:
-                found.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))
-    return found, settled
+                zeros.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))
+    return zeros, settled
 
 
 def _refine(g: Expression, m: int, low: Array, high: Array) -> Array:

@@ -48,14 +48,14 @@ class _Settled:
 def innermost(expression: Expression) -> list[int]:
     """Return the places of the switches whose arguments hold no switch; none if the expression has none at all."""
     holding: set[int] = set()
-    found = []
+    steps = []
     for place, step in enumerate(expression.steps):
         inner = any(i in holding for i in step.args)
         if step.op in _SWITCHES and not inner:
-            found.append(place)
+            steps.append(place)
         if inner or step.op in _SWITCHES:
             holding.add(place)
-    return found
+    return steps
 
 
 def branches(expression: Expression, places: list[int], lower: float, upper: float) -> Branches:
@@ -83,12 +83,12 @@ def _settle(expression: Expression, place: int, lower: float, upper: float) -> _
     try:
         if step.op == "atan2":
             return _settle_angle(expression, step, lower, upper)
-        found = signs(_deciding(expression, step), lower, upper)
+        changes = signs(_deciding(expression, step), lower, upper)
     except UnsettledError as error:
         what = "the difference of the arguments" if step.op in {"min", "max"} else "the argument"
         at = f"{expression.variables[0]} = {error.at:.12g}"
         raise FormulaError(f"{step.op} cannot be settled: {what} {error.reason} near {at}", step.column) from None
-    return _settled(found, lambda sign: _case(step, sign))
+    return _settled(changes, lambda sign: _case(step, sign))
 
 
 def _settled(signs: Signs, build: Callable[[int], Build]) -> _Settled:
@@ -121,13 +121,13 @@ def _settle_angle(expression: Expression, step: Instruction, lower: float, upper
     """Turn by a quarter where y keeps its sign: atan2(y, x) = pi/2 + atan2(-x, y) for y > 0, the cut out of reach."""
     builder, places = _copied(expression, {})
     y, x = (builder.expression(places[i]) for i in step.args)
-    found = signs(y, lower, upper)
+    changes = signs(y, lower, upper)
 
     def plain(builder: Builder, args: tuple[int, ...]) -> int:
         return builder.apply(ANGLE, args, step.column)
 
-    zeros = [*found.changes, *([lower] if found.at_start else []), *([upper] if found.at_end else [])]
-    if 0 in found.signs or not any(_may_be_left(x, zero) for zero in zeros):
+    zeros = [*changes.changes, *([lower] if changes.at_start else []), *([upper] if changes.at_end else [])]
+    if 0 in changes.signs or not any(_may_be_left(x, zero) for zero in zeros):
         return _settled(Signs((), (0,), at_start=False, at_end=False), lambda _: plain)
 
     def turned(sign: int) -> Build:
@@ -140,7 +140,7 @@ def _settle_angle(expression: Expression, step: Instruction, lower: float, upper
 
         return build
 
-    return _settled(found, turned)
+    return _settled(changes, turned)
 
 
 def _may_be_left(x: Expression, angle: float) -> bool:

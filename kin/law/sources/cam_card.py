@@ -494,9 +494,9 @@ def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: f
         return IntentError("no lobe of the family is above these lifts for so long; give fewer durations", field)
     degrees = "; ".join(", ".join(f"{_crank(card, crossing):.2f}" for crossing in card.crossings) for card in near)
     off = max(
-        abs(_crank(card, crossing) - _crank(card, meant))
+        abs(_crank(card, crossing) - _crank(card, stated))
         for card, own in zip(near, sides, strict=True)
-        for crossing, meant in zip(card.crossings, own.crossings, strict=True)
+        for crossing, stated in zip(card.crossings, own.crossings, strict=True)
     )
     return IntentError(
         f"no lobe of the family is above these lifts for so long; the nearest has {degrees} degrees in their order, "

@@ -117,9 +117,9 @@ class Flank:
                     at_0 *= Fraction(other, other - k)
                     at_1 *= Fraction(other - 1, other - k)
             full[k] = (rate - above) * at_0 - rate * at_1
-        held = [i for i, value in enumerate(full) if value]
+        indices = [i for i, value in enumerate(full) if value]
         quotient = [
-            sum((full[i] * comb(m - i + 4, 4) for i in held if i <= m), Fraction(0)) for m in range(powers[-1] - 4)
+            sum((full[i] * comb(m - i + 4, 4) for i in indices if i <= m), Fraction(0)) for m in range(powers[-1] - 4)
         ]
         return Flank(tuple(map(float, quotient))), tuple(float(full[k]) for k in powers)
 

@@ -318,7 +318,7 @@ class _Blocks(NamedTuple):
 def _blocks(count: int, *, periodic: bool) -> _Blocks:
     """Blocks for so many knots; few B-splines are not divided: all are separators."""
     size = count if periodic else count + 3
-    taken = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
+    columns = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
     p = size // _BLOCK if size >= 3 * _BLOCK else 0
     starts = np.arange(p + 1) * size // max(p, 1) if p else np.array([0, size])
     block = np.searchsorted(starts, np.arange(size), side="right") - 1
@@ -327,7 +327,7 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
     parting = left <= 2 if p else left > 0
     number = 2 * block + 2 - left if p else offset
     place = block * b + offset
-    row, column = taken[_ROW].ravel(), taken[_COLUMN].ravel()
+    row, column = columns[_ROW].ravel(), columns[_COLUMN].ravel()
     flat = np.where(
         parting[row],
         p * b * (b + 4) + number[row] * n + number[column],
@@ -341,7 +341,7 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
     empty = np.setdiff1d(np.arange(p * b), place[inner])
     beside = (2 * np.arange(p)[:, None] + np.array([-2, -1, 0, 1])) % max(n, 1)
     return _Blocks(
-        taken,
+        columns,
         used,
         flat[used],
         empty * b + empty % max(b, 1),
@@ -460,10 +460,10 @@ def _held_up(
     if space.period:
         dips = bounds.x[0] + np.mod(dips - bounds.x[0], space.period)
     x, hi, upper = dips.copy(), np.full(len(dips), np.inf), np.zeros(len(dips), dtype=bool)
-    held = np.flatnonzero(nearest.row < 0)
+    lifted = np.flatnonzero(nearest.row < 0)
     moved = np.zeros(len(bounds.x), dtype=bool)
-    if len(held):
-        near = held[np.argmin(np.abs(dips[:, None] - nearest.x[held]), axis=1)]
+    if len(lifted):
+        near = lifted[np.argmin(np.abs(dips[:, None] - nearest.x[lifted]), axis=1)]
         away = np.abs(dips[:, None] - np.where(np.arange(len(nearest.x)) == near[:, None], np.inf, nearest.x))
         beside = np.abs(dips - nearest.x[near]) < share * away.min(axis=1)
         near = near[beside]

@@ -101,16 +101,16 @@ class Motion:
     def rests(self) -> tuple[Rest, ...]:
         """Dwells, exact ones, rising; one that runs over the end of a repeating motion is one."""
         knots = self.motion.knots.tolist()
-        found = [
+        rests = [
             Rest(knots[i], knots[i + 1], f.value)
             for i, f in enumerate(self.motion.functions)
             if isinstance(f, Constant)
         ]
-        over = self.around == 1 and len(found) > 1 and found[0].begin == 0.0 and found[-1].end == knots[-1]
-        if over and abs(found[0].level - found[-1].level) <= _CLOSED * self._size:
-            first, last = found.pop(0), found.pop()
-            found.append(Rest(last.begin, self.total + first.end, last.level))
-        return tuple(found)
+        over = self.around == 1 and len(rests) > 1 and rests[0].begin == 0.0 and rests[-1].end == knots[-1]
+        if over and abs(rests[0].level - rests[-1].level) <= _CLOSED * self._size:
+            first, last = rests.pop(0), rests.pop()
+            rests.append(Rest(last.begin, self.total + first.end, last.level))
+        return tuple(rests)
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -123,14 +123,14 @@ class Motion:
         inside = (knots[:-1, None] + np.diff(knots)[:, None] * _INSIDE).ravel()
         between = self.motion.derivatives(np.append(np.linspace(knots[0], knots[-1], _LOOKS), inside), ORDERS)
         size = np.maximum(size, np.abs(between).max(axis=1))
-        found = []
+        joints = []
         if self.around is not None:
             end = left[:, -1] * self.around
             if self.around < 0:
                 end[0] = right[0, 0]  # S begins anew at the end's own level
-            found.append((0.0, end, right[:, 0]))
-        found += [(float(knots[i]), left[:, i - 1], right[:, i]) for i in range(1, len(knots) - 1)]
-        return joints_of(found, size)
+            joints.append((0.0, end, right[:, 0]))
+        joints += [(float(knots[i]), left[:, i - 1], right[:, i]) for i in range(1, len(knots) - 1)]
+        return joints_of(joints, size)
 
     @cached_property
     def _size(self) -> float:
@@ -144,8 +144,8 @@ class Motion:
             if low:
                 at = math.degrees(joint.at)
                 jump = Joint(joint.at, tuple(low))  # angles are told in degrees, as recipes have them
-                said = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
-                raise IntentError(f"the motion does not join: {said}; {_remedy(joint.at, low[0][0])}", field, at)
+                amount = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
+                raise IntentError(f"the motion does not join: {amount}; {_remedy(joint.at, low[0][0])}", field, at)
         return self
 
     @cached_property

@@ -112,10 +112,10 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
         raise IntentError("a motion needs at least one segment", field)
     for i, segment in enumerate(segments):
         if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
-            given, least = math.degrees(segment.over), math.degrees(_ANGLE_TOLERANCE)
-            problem = f"the angle of a segment must be above 0, not {given:.6g} degrees"
-            if given > 0.0:
-                problem = f"the angle of a segment, {given:.6g} degrees, is as good as none; give {least:.1g} or more"
+            stated, least = math.degrees(segment.over), math.degrees(_ANGLE_TOLERANCE)
+            problem = f"the angle of a segment must be above 0, not {stated:.6g} degrees"
+            if stated > 0.0:
+                problem = f"the angle of a segment, {stated:.6g} degrees, is as good as none; give {least:.1g} or more"
             raise IntentError(problem, f"{field}[{i}]")
     covered = math.fsum(segment.over for segment in segments)
     if not abs(covered - total) <= _ANGLE_TOLERANCE:
@@ -223,9 +223,9 @@ def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
 
 def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:
     """v, a and j at the end of matched segment i on the side `way` (-1 its start), (3,)."""
-    given = _given(parts[i], way)
-    if given is not None:
-        return given
+    stated = _given(parts[i], way)
+    if stated is not None:
+        return stated
     sign, n = 1.0, i + way
     if not 0 <= n < len(parts):
         if around is None:
