@@ -95,8 +95,8 @@ def test_one_number_is_both_blends_and_parts_without_a_blend_join() -> None:
 
 
 def test_laws_say_what_they_are_made_of() -> None:
-    assert UniformLaw((0.1, 0.2)).made(1.0, "law").name == "uniform (blends 0.1 and 0.2)"
-    assert SccaLaw(0.25).made(1.0, "law").name == "modified-sine"
+    assert UniformLaw((0.1, 0.2)).law(1.0, "law").name == "uniform (blends 0.1 and 0.2)"
+    assert SccaLaw(0.25).law(1.0, "law").name == "modified-sine"
 
 
 # --- points and tables ------------------------------------------------------------------------------------------------
