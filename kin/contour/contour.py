@@ -315,7 +315,7 @@ class Contour(Pieces):
 
     @cached_property
     def plain(self) -> tuple[Arcs, Indices]:
-        """Its lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,)."""
+        """Lines and arcs of the contour in order, each turning by at most half a turn, and the piece of each (k,)."""
         first, _ = self.directions
         size = np.where(self.kind == ARC, self.radius, 1.0)
         curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)

@@ -38,7 +38,7 @@ def least_distance(arcs: Arcs, chain: Arcs, side: float, radius: float, toleranc
 
 
 def _bent_little(arcs: Arcs) -> Arcs:
-    """The same pieces, cut so that none turns by more than a quarter of a turn."""
+    """The pieces cut so that none turns by more than a quarter of a turn."""
     turn = np.abs(arcs.curvature) * arcs.length
     return arcs.cut(np.maximum(np.ceil(turn / (0.5 * np.pi)), 1.0).astype(np.intp))[0]
 

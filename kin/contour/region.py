@@ -85,7 +85,7 @@ class Region:
 
     @cached_property
     def finer(self) -> Region:
-        """The same region, each piece k cut into two of half its length, 2 k and 2 k + 1."""
+        """The region with each piece k cut into two of half its length, 2 k and 2 k + 1."""
         n = self.pieces
         fine, _ = self.chain.cut(np.full(n, 2))
         straight, each = right(fine.tangent), np.repeat(self.widened, 2)

@@ -47,7 +47,7 @@ class ContactSamples:
     knots: Array
 
     def until(self, stretch: int, time: float) -> ContactSamples:
-        """Those that are not later than a time."""
+        """The samples up to a time on a stretch, that time among them."""
         later = (self.stretch > stretch) | ((self.stretch == stretch) & (self.time > time))
         count = int(np.argmax(later)) if later.any() else len(later)
         return ContactSamples(self.stretch[:count], self.time[:count], self.level[:count], self.knots)

@@ -231,7 +231,7 @@ class OfLaw(Moved):
 
     @property
     def breaks(self) -> Array:
-        """Those of the law."""
+        """Breaks of the law (k,), rad."""
         return self.law.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:
@@ -256,7 +256,7 @@ class OfTransmission(Moved):
 
     @property
     def course(self) -> Swing:
-        """The same."""
+        """The swing over the shaft angle, along which contact is followed."""
         return self.motion
 
     @cached_property
@@ -266,7 +266,7 @@ class OfTransmission(Moved):
 
     @property
     def breaks(self) -> Array:
-        """Those of the transmission."""
+        """Breaks of the transmission (k,), rad."""
         return self.transmission.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:

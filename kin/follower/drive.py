@@ -56,7 +56,7 @@ class Shifted:
 
     @property
     def smooth(self) -> bool:
-        """As that one."""
+        """Whether the drive that is shifted is smooth."""
         return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:

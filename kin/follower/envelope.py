@@ -156,7 +156,7 @@ class FlatEnvelope:
 
     @property
     def breaks(self) -> Array:
-        """Those of the pitch."""
+        """Breaks of the pitch (k,), rad."""
         return self.pitch.breaks
 
     def _support(self, tau: Array, side: int = 1) -> tuple[Array, Array]:
@@ -305,7 +305,7 @@ class RollerEnvelope:
 
     @property
     def breaks(self) -> Array:
-        """Those of the pitch curve."""
+        """Breaks of the pitch curve (k,), rad."""
         return self.pitch.breaks
 
     def points(self, parameter: Array) -> Array:

@@ -285,7 +285,7 @@ class _OnArm(Moved):
 
     @cached_property
     def _touched(self) -> tuple[Array, Array]:
-        """What the intended contour has where face A touches it, as limits need it: see `ArmFace.leeway`."""
+        """Support rows (3, n) of the intended contour and shaft angles (n,) where face A touches it."""
         return self._touched_at(grid(self.breaks))
 
     def _touched_at(self, tau: Array) -> tuple[Array, Array]:
@@ -297,7 +297,7 @@ class _OnArm(Moved):
         return float(np.degrees(max(face.leeway(*self._touched, tolerance).max() for face in self.faces)))
 
     def direct_limit(self, tolerance: float) -> float:
-        """The same, degrees, at the pivot's distance."""
+        """Least error of the swing, degrees, that a contour off by the tolerance makes: at the pivot's distance."""
         return float(np.degrees(tolerance / self.faces[0].pivot))
 
 
@@ -322,7 +322,7 @@ class SwingingFace(OfLaw, _OnArm):
 
     @property
     def resolution(self) -> float:
-        """The same everywhere."""
+        """Resolution of the search, rad: one for all angles."""
         return FINE_ANGLE
 
     @cached_property
@@ -408,7 +408,7 @@ class FlatPair(OfTransmission, _OnArm):
 
     @cached_property
     def _touched_ahead(self) -> tuple[Array, Array]:
-        """The same where face B touches it meanwhile."""
+        """The same rows and angles as `_touched`, where face B touches while face A does so at the grid."""
         tau = grid(self.breaks)
         return self._touched_at(
             self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)

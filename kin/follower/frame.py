@@ -152,7 +152,7 @@ class _Prescribed(_Intended):
         return np.broadcast_to(np.zeros(()), (2, 4, len(theta)))
 
     def error(self, theta: Array, measured: Array, near: Array) -> Array:  # noqa: ARG002 - one call for both
-        """As that of what the exact cam does."""
+        """Error of the measured output and two derivatives (3, n) against the law at the measured shaft angle."""
         (phi, phi_slope, phi_bend), output = measured
         meant, rate, bend = self._over_shaft(phi, 2)
         error = self.alike(output[0] - meant)

@@ -379,7 +379,7 @@ def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
 
 
 def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """The same from the piece's own circle, which is the smaller one."""
+    """Both crossings (2, n, 2), as `_on_arm` gives them, from the piece's own circle, which is the smaller one."""
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])

@@ -69,7 +69,7 @@ class OfSurfaces:
 
     @property
     def contour(self) -> Contour | None:
-        """As read, in mm and as if not mirrored."""
+        """Contour as read, mm, turned back if the file mirrors it; None where none was read."""
         return self.surface.contour
 
     @property

@@ -33,7 +33,7 @@ class Joint:
         return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
 
     def scaled(self, by: float) -> Joint:
-        """The same joint with displacements in another unit."""
+        """The joint with displacements times `by`: in another unit."""
         return Joint(self.at, tuple((k, a * by, b * by) for k, a, b in self.jumps))
 
 

@@ -31,7 +31,7 @@ class FromDelta:
     square: float
 
     def scaled(self, scale: float) -> FromDelta:
-        """The same law of arms `scale` times as long."""
+        """The law for arms `scale` times as long."""
         area, delta = scale * scale, self.delta
         terms = tuple((k, area * a, area * b) for k, a, b in delta.terms)
         return FromDelta(Harmonics(area * delta.mean, terms), area * self.square)

@@ -103,7 +103,7 @@ class _Extremes:
 
     @staticmethod
     def none() -> _Extremes:
-        """Those of no series, which is infinitely far."""
+        """Extremes of no series: one, infinitely far."""
         return _Extremes(np.zeros(1), np.zeros(1), np.full(1, math.inf))
 
     @property
@@ -112,7 +112,7 @@ class _Extremes:
         return float(np.abs(self.error).max())
 
     def taken(self, index: NDArray[np.intp]) -> _Extremes:
-        """Those at an index."""
+        """The extremes at some indices."""
         return _Extremes(self.tau[index], self.t[index], self.error[index])
 
 

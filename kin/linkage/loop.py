@@ -119,11 +119,11 @@ class Vector:
 
     @cached_property
     def q(self) -> Jet:
-        """Its squared length."""
+        """Squared length of the vector, mm^2."""
         return self.x * self.x + self.y * self.y
 
     def bearing(self, about: float = 0.0) -> Jet:
-        """Its polar angle, within pi of `about`."""
+        """Polar angle of the vector, rad, within pi of `about`."""
         return bearing(self.x, self.y, self.q, about)
 
 

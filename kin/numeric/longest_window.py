@@ -187,7 +187,7 @@ class _Search:
         return node
 
     def reach_left(self, node: Indices, low: Array) -> Indices:
-        """Likewise the first node of the run to the left."""
+        """First node (k,) of the run from `node` (k,) to the left that stays in the band, `node` itself not asked."""
         node = node.copy()
         for level in range(len(self.lowest) - 1, -1, -1):
             begin = node - 2**level

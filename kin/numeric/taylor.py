@@ -169,34 +169,34 @@ def led(rows: Row, value: Row) -> Row:
 
 
 def sine_rows(s: Row, c: Row, order: int) -> Row:
-    """Those of sin, from sin and cos."""
+    """Taylor coefficients (order + 1, ...) of sin, from sin and cos."""
     cycle = [s, c, -s, -c]
     return stack([cycle[k % 4] for k in range(order + 1)]) / factorials(order)
 
 
 def sinh_rows(s: Row, c: Row, order: int) -> Row:
-    """Those of sinh, from sinh and cosh."""
+    """Taylor coefficients (order + 1, ...) of sinh, from sinh and cosh."""
     return stack([c if k % 2 else s for k in range(order + 1)]) / factorials(order)
 
 
 def exp_rows(value: Row, order: int) -> Row:
-    """Those of exp, from its value."""
+    """Taylor coefficients (order + 1, ...) of exp, from its value."""
     return value / factorials(order)
 
 
 def log_rows(x: Row, value: Row, order: int) -> Row:
-    """Those of log, from its value at x."""
+    """Taylor coefficients (order + 1, ...) of log, from its value at x."""
     return stack([value] + [x**-k / (k if k % 2 else -k) for k in range(1, order + 1)])
 
 
 def cbrt_rows(x: Row, value: Row, order: int) -> Row:
-    """Those of the cube root, from its value at x of either sign."""
+    """Taylor coefficients (order + 1, ...) of the cube root, from its value at x of either sign."""
     factors = binomials(1.0, order, 3)
     return stack([value] + [value * x**-k * factors[k] for k in range(1, order + 1)])
 
 
 def tan_rows(value: Row, sense: float, order: int) -> Row:
-    """Those of tan (sense 1) and tanh (sense -1), from the value: y' = 1 + sense y^2."""
+    """Taylor coefficients of tan (sense 1) and tanh (sense -1), from the value: y' = 1 + sense y^2."""
     rows = [value]
     if order:
         rows.append(value**2 * sense + 1.0)
@@ -209,7 +209,7 @@ def tan_rows(value: Row, sense: float, order: int) -> Row:
 
 
 def atan_rows(x: Row, value: Row, order: int) -> Row:
-    """Those of atan, from its value at x: (1 + x^2) y' = 1, differentiated."""
+    """Taylor coefficients of atan, from its value at x: (1 + x^2) y' = 1, differentiated."""
     slope = (x**2 + 1.0) ** -1
     rows = [value, slope]
     for k in range(1, order):
@@ -222,7 +222,7 @@ def atan_rows(x: Row, value: Row, order: int) -> Row:
 
 
 def asin_rows(x: Row, value: Row, order: int) -> Row:
-    """Those of asin, from its value at x: (1 - x^2) y'' = x y', differentiated."""
+    """Taylor coefficients of asin, from its value at x: (1 - x^2) y'' = x y', differentiated."""
     room = (1.0 - x) * (1.0 + x)
     slope = room**-1
     rows = [value, room**-0.5]

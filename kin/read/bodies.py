@@ -26,7 +26,7 @@ def no_rows(columns: int) -> Array:
 
 
 class Slivered:
-    """What of a solid's walls leans no farther than the rounding of its file explains.
+    """A solid some of whose walls lean, no farther than the rounding of its file explains.
 
     `slivers` (k, 4): least and greatest height, reach from the axis, and by how much, mm.
     """
@@ -40,7 +40,7 @@ class Slivered:
         return self.uneven_between(-np.inf, np.inf)
 
     def uneven_between(self, low: float, high: float, beyond: float = 0.0) -> float:
-        """The same of what reaches in between two heights, and as far from the axis as `beyond`, mm."""
+        """Greatest unevenness, mm, of what lies between two heights and reaches `beyond` mm from the axis."""
         rows = self.slivers
         there = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
         return float(rows[there, 3].max(initial=0.0))

@@ -126,5 +126,5 @@ def crank_after(cam: float, fires: float) -> float:
 
 
 def signed(crank: float) -> float:
-    """The same angle from -360 to below 360."""
+    """A crank angle, degrees, as the same place from -360 to below 360."""
     return (crank + 360.0) % CRANK - 360.0

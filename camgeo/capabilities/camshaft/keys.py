@@ -91,7 +91,7 @@ class Lobe:
 
     @property
     def made(self) -> Recipe:
-        """Its cam's recipe as it is made on the shaft: as long as the lobe is, and without chamfers."""
+        """Recipe of the cam as it is made on the shaft: as long as the lobe is, and without chamfers."""
         long = round(self.high - self.low, DECIMALS)
         return replace(self.recipe, part=replace(self.recipe.part, thickness=long, chamfer=None))
 

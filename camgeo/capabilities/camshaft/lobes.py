@@ -80,7 +80,7 @@ class PlacedLobe:
 
     @property
     def stretches(self) -> tuple[Stretch, ...]:
-        """Its rises, dwells and returns over the shaft's angle."""
+        """Rises, dwells and returns of the lobe over the shaft's angle."""
         return stretches(self.design.exact, self.zero)
 
     def rows(self, shaft: Array, order: int) -> Array:

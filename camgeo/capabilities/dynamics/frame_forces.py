@@ -54,7 +54,7 @@ class FrameTurn(Turn):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Those of the faces."""
+        """Names of the faces, in the order of their forces."""
         return "face 1", "face 2", "face 3", "face 4"
 
     def rows(self, t: Array) -> Array:
@@ -87,7 +87,7 @@ class FrameRunning(Running):
 
     @cached_property
     def turn(self) -> FrameTurn:
-        """Its output over the turn."""
+        """Motion of the frame over the turn."""
         return FrameTurn(self.mechanism, self.corners)
 
     def position(self, rows: Array) -> Array:

@@ -72,7 +72,7 @@ class Running(ABC):
     @property
     @abstractmethod
     def turn(self) -> Turn:
-        """It over the turn."""
+        """Motion of the follower over the turn."""
 
     @abstractmethod
     def position(self, rows: Array) -> Array:

@@ -356,7 +356,7 @@ class Evaluator:
         }
 
     def _lengths(self, linkage: Linkage, dimensions: tuple[str, ...], values: Array) -> Lengths:
-        """Those dimensions, mm, of linkages that differ from this one in the values (m, k)."""
+        """Dimensions, mm, of linkages that differ from this one in the values (m, k)."""
         columns = []
         for name in Lengths._fields:
             path = f"linkage.{name}"

@@ -42,7 +42,7 @@ class MotionRows:
     force: Array
 
     def part(self, rows: Mask) -> MotionRows:
-        """Those of some rows (m,)."""
+        """The rows (m,) that are true in a mask."""
         return MotionRows(*(column[rows] for column in vars(self).values()))
 
 

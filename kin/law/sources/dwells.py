@@ -47,7 +47,7 @@ class Run(NamedTuple):
         return 0.5 * (1.0 - _INNER) * (self.end - self.begin)
 
     def later(self, by: float) -> Run:
-        """The same run a turn on."""
+        """The run, `by` rad later."""
         return self._replace(begin=self.begin + by, end=self.end + by)
 
 

@@ -247,7 +247,7 @@ class _Spline(NamedTuple):
         return pull[:count]
 
     def curve(self) -> Curve:
-        """Its polynomials."""
+        """Polynomials of the motion between its knots."""
         width, (b0, b1, b2) = self.widths, self.bernstein
         c = np.zeros((6, len(width)))
         c[0] = self.values[:-1]

@@ -142,7 +142,7 @@ def _of_bytes(
 
 
 def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[NDArray[np.float64], Indices]:
-    """The same of a file in text form; its numbers are read as doubles."""
+    """Vertices (v, 3) and corners of the faces (t, 3) of a file in text form; numbers are read as doubles."""
     words = raw.split()
     if not words or max(map(len, words)) > LONGEST_WORD:
         reason = "syntax" if words else "truncated"
