@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import OF_DRAWING
-from camgeo.registry.formats import Form, Format, foresee_nothing, no_fault
+from camgeo.registry.capability import NO_CHECK
+from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import Field, Kind, Table
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ def drawing_format(
     draw: Draw,
     *more: Field,
     path: bool = False,
-    check: Callable[[Values, Values, Reader], None] = no_fault,
-    foresee: Callable[[Job, FileRequest], None] = foresee_nothing,
+    check: Callable[[Values, Values, Reader], None] = NO_CHECK,
+    foresee: Callable[[Job, FileRequest], None] = NO_CHECK,
 ) -> Format:
     """Make the record of a format of drawings; `draw` writes one, as `make_drawing` takes it.
 

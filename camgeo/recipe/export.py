@@ -234,7 +234,7 @@ EXPORT = export_of(FORMATS)
 
 def _variants() -> dict[str, Variant]:
     """Variants by their capability; one whose record was not read has left no value in a file."""
-    records = {name: registry.capability(name).variant for name in registry.loaded()}
+    records = {name: registry.capability(name).variant for name in registry.names_loaded()}
     return {name: made for name, made in records.items() if made is not None}
 
 

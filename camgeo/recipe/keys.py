@@ -96,7 +96,7 @@ _KEYS: Gathered[Field] = Gathered(
 
 def recipe_table(capabilities: Collection[str] | None = None) -> Table:
     """Give the keys of a recipe, the core's and those of some capabilities, or of all."""
-    return _table(registry.recorded() if capabilities is None else tuple(capabilities))
+    return _table(registry.names_with_record() if capabilities is None else tuple(capabilities))
 
 
 @cache

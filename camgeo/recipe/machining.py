@@ -193,5 +193,5 @@ def build_compensation(file: Values) -> Compensation | None:
 
 def alterations() -> dict[str, Alteration]:
     """Alterations by their capability; one whose record was not read has left no value in a file."""
-    records = {name: registry.capability(name).alteration for name in registry.loaded()}
+    records = {name: registry.capability(name).alteration for name in registry.names_loaded()}
     return {name: made for name, made in records.items() if made is not None}

@@ -303,7 +303,7 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         raise RecipeErrors([RecipeError(str(path), *mark, key, f"a {key} is no cam", None, remedy)])
     reader, values = _read(source, registry.by_words(words_of(source.root)))
     if reader.errors:  # so that suggestions know all keys, and keys in other tables are found
-        reader, values = _read(source, registry.recorded())
+        reader, values = _read(source, registry.names_with_record())
     if "name" not in reader.marks:
         stem = Path(path).stem
         try:
@@ -320,7 +320,7 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         kinds=reader.kinds,
     )
     recipe = _built(values, document, words_of(source.root))
-    return recipe if recipe.cam.open is None else roots.settled(recipe)
+    return recipe if recipe.cam.open is None else roots.settle(recipe)
 
 
 def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values]:
@@ -375,11 +375,11 @@ def _used(document: Document, words: set[str]) -> tuple[str, ...]:
     named = registry.by_words(words)
     below = [
         name
-        for name in registry.loaded()
+        for name in registry.names_loaded()
         for path, fields in registry.capability(name).below.items()
         if any(f"{path}.{field.name}" in document.marks for field in fields)
     ]
-    return tuple(name for name in registry.recorded() if name in {*named, *below})
+    return tuple(name for name in registry.names_with_record() if name in {*named, *below})
 
 
 def _of_core(values: Values, capabilities: list[str]) -> Values:

@@ -1,8 +1,8 @@
-"""Formats of files as the core sees them: the record of each, and which there are.
+"""Records of the formats of files, and the list of the formats.
 
-A format is a module of `camgeo/formats`, whose `FORMAT` is all that is known of it. `MODULES` names the modules; one is
-imported when a recipe or a file is of its format. The types below stand above this module, for which alone imports for
-types run upwards. Functions import what they need when they are called: a record is read with the recipe.
+A format is a module of `camgeo/formats`, whose `FORMAT` holds all facts of it. `MODULES` names the modules; each is
+imported when a recipe or a file is of its format. The types below stand above this module: imports upwards are for
+types alone. Functions import what they need when they are called, since a record is read with the recipe.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.common.on_demand import OnDemand
 from camgeo.registry import registry
+from camgeo.registry.capability import NO_CHECK, always
 from camgeo.schema.fields import Table
 from kin.numeric.records import dataclass, field
 
@@ -36,35 +37,17 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent
 
 
-def no_fault(_file: Values, _values: Values, _reader: Reader, /) -> None:
-    """Note nothing."""
-
-
-def foresee_nothing(_job: Job, _request: FileRequest, /) -> None:
-    """Refuse nothing."""
-
-
-def as_designed(recipe: Recipe, design: Design, /) -> PartIntent:
-    """Give the intent of the part as it is designed."""
+def designed_intent(recipe: Recipe, design: Design, /) -> PartIntent:
+    """Intent of the part as it is designed, by which kin judges files."""
     from camgeo.synthesis.intent import intended
 
     return intended(recipe, design)
 
 
-def always(_recipe: Recipe, /) -> bool:
-    """Whether there is a thing that every file shows."""
-    return True
-
-
-def with_holes(recipe: Recipe, /) -> bool:
+def has_holes(recipe: Recipe, /) -> bool:
     """Whether the part has round holes besides its bore."""
     part = recipe.part
     return part.bolts is not None or part.dowel is not None or part.lightening is not None
-
-
-def nothing_left(_recipe: Recipe, _design: Design, /) -> Sequence[tuple[str, str]]:
-    """Leave nothing out."""
-    return ()
 
 
 class Run(NamedTuple):
@@ -79,14 +62,14 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Variant:
-    """What an option of a capability makes of a file in place of the cam alone.
+    """Option of a capability by which a file shows something in place of the cam alone.
 
     option    the key, whose default is the cam alone; it stands before the options of the format
     offered   whether files of a format have the key
-    tag       what stands behind the recipe's name in the name of the first file of a format
-    check     notes the faults of a file that is made so: (request, values of the recipe, reader, path of the file)
-    foresee   refuses what is certain to be refused, before anything is fitted
-    make      writes and judges its files, the first at a path
+    tag       text behind the recipe's name in the name of the first file of a format
+    check     notes the faults of a file with the option: (request, values of the recipe, reader, path of the file)
+    foresee   raises what is certain to be refused, before anything is fitted
+    make      writes and judges the files, the first at a path
     """
 
     option: Field
@@ -97,7 +80,7 @@ class Variant:
     make: Callable[[Job, FileRequest, Path], Made]
 
     def chosen(self, file: Values) -> bool:
-        """Whether the values of a file ask for it."""
+        """Whether the values of a file have the option at another value than its default."""
         return bool(file.get(self.option.name, self.option.default) != self.option.default)
 
 
@@ -111,7 +94,7 @@ class Altered(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Alteration:
-    """What an option of a capability makes of the part that a file shows, beside kerf, clearance and shrinkage.
+    """Option of a capability that alters the part of a file, beside kerf, clearance and shrinkage.
 
     option    the key, a number whose default leaves the part as it is; it stands before the options of the format
     offered   whether files of a format have the key
@@ -126,7 +109,7 @@ class Alteration:
     alter: Callable[[Recipe, Design, ExactCam, float, float], ExactCam]
 
     def chosen(self, file: Values) -> float | None:
-        """The number that the values of a file give, if it alters the part."""
+        """Number that the values of a file give for the option; None for the default, which alters nothing."""
         value = file.get(self.option.name)
         return None if value is None or value == float(self.option.default) else float(value)
 
@@ -137,13 +120,13 @@ class Form:
 
     surfaces  greatest number of surfaces that it holds of a cam of one disc; a cam of more is refused
     discs     the same of discs on one shaft
-    pieces    what a piece of its contour is called in reports
-    listed    options that a report tells
+    pieces    noun for the pieces of its contour in reports
+    listed    options that a report states
     ground    whether it is a table by which a lobe is ground, whose contour is judged
     curve     whether it is a list of points, the spline through which is judged as a contour
-    takes     options of its files that it has and other forms have not
-    check     notes what a recipe that asks for it lacks: (values of the file, values of the recipe, reader)
-    make      writes and judges it, where the format has no one way for all its forms
+    takes     options of its files that other forms do not have
+    check     notes what the recipe lacks for the form: (values of the file, values of the recipe, reader)
+    make      writes and judges the file, where the format has no one way for all its forms
     after     name of the core's form behind which that of a capability stands; empty: behind all
     """
 
@@ -155,7 +138,7 @@ class Form:
     ground: bool = False
     curve: bool = False
     takes: tuple[str, ...] = ()
-    check: Callable[[Values, Values, Reader], None] = no_fault
+    check: Callable[[Values, Values, Reader], None] = NO_CHECK
     make: Callable[[Job, FileRequest, Path], Made] | None = None
     after: str = ""
 
@@ -166,7 +149,7 @@ WHOLE: Mapping[str, Form] = MappingProxyType({"": Form(surfaces=2, discs=2)})
 
 @dataclass(frozen=True, kw_only=True)
 class Format:
-    """Everything that is known of a format.
+    """All facts of a format.
 
     Of the recipe:
 
@@ -194,11 +177,11 @@ class Format:
     summarise writes files that report on all others of a run, when they are judged: (run, request, path)
     foresee   refuses what is certain to be refused, before anything is fitted; raises MissingExtraError where a package
               is missing that makes its files, which are then left out
-    intent    what kin judges its files by
-    bored     whether a file has the bore that the part has
-    drilled   whether a file has round holes besides
-    unmade    what of the part its files leave out, with the reason
-    numbers   gives the numbers that a mesh holds
+    intent    intent by which kin judges its files
+    bored     whether a file has the bore of the part
+    drilled   whether a file has round holes besides the bore
+    unmade    pairs of a feature of the part that its files leave out and the reason
+    numbers   precision of the numbers of a mesh
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
     shaft     writes a file of several cams on one shaft, which nothing judges: (recipe of the shaft, its cams, request,
               path); None where it has none
@@ -210,7 +193,7 @@ class Format:
     options: Table = Table(())
     named: tuple[str, ...] = ()
     forms: Mapping[str, Form] = field(default_factory=lambda: WHOLE)
-    check: Callable[[Values, Values, Reader], None] = no_fault
+    check: Callable[[Values, Values, Reader], None] = NO_CHECK
     contour: bool = True
     part: bool = True
     solid: bool = False
@@ -220,11 +203,11 @@ class Format:
     path: bool = False
     make: Callable[[Job, FileRequest, Path], Made] | None = None
     summarise: Callable[[Run, FileRequest, Path], Made] | None = None
-    foresee: Callable[[Job, FileRequest], None] = foresee_nothing
-    intent: Callable[[Recipe, Design], PartIntent] = as_designed
-    bored: Callable[[Recipe], bool] = always
-    drilled: Callable[[Recipe], bool] = with_holes
-    unmade: Callable[[Recipe, Design], Sequence[tuple[str, str]]] = nothing_left
+    foresee: Callable[[Job, FileRequest], None] = NO_CHECK
+    intent: Callable[[Recipe, Design], PartIntent] = designed_intent
+    bored: Callable[[Recipe], bool] = always(True)
+    drilled: Callable[[Recipe], bool] = has_holes
+    unmade: Callable[[Recipe, Design], Sequence[tuple[str, str]]] = always(())
     numbers: Callable[[], Precision] | None = None
     write: Callable[[Path, Sequence[Item], str, float, str], None] | None = None
     shaft: Callable[[Order, Sequence[ShaftCam], FileRequest, Path], None] | None = None
@@ -246,11 +229,11 @@ class Format:
 
     @property
     def chosen(self) -> Values:
-        """Form of a file whose options do not say, and what else its name has."""
+        """Defaults of the options that choose a file's form and name."""
         return {item.name: item.default for item in self.options.fields if item.name in {"as", *self.named}}
 
     def form(self, word: str | None) -> Form:
-        """Form by its word, for None that which is chosen by default; of an unknown word one that holds one surface."""
+        """Form by its word, for None the default form; for an unknown word a form that holds one surface."""
         name = word or self.chosen.get("as", "")
         return self.forms.get(name) or Form(name=name)
 
@@ -280,23 +263,23 @@ FORMATS: Mapping[str, Format] = OnDemand(_ALL, _record)
 
 
 def numbers_of(record: Format, mm: float) -> Precision:
-    """Give the numbers that a mesh holds in a unit of `mm` mm; raises ValueError for a format without meshes."""
+    """Precision of the numbers of a mesh in a unit of `mm` mm; raises ValueError for a format without meshes."""
     if record.numbers is None:
         raise ValueError(f"{record.name} holds no mesh")
     return record.numbers().in_units(mm)
 
 
 def variant(capability: str) -> Variant:
-    """What the option of a capability makes of a file; raises KeyError for one that adds no option."""
-    made = registry.capability(capability).variant
-    if made is None:
+    """Record of the option by which a capability makes files; raises KeyError for a capability without one."""
+    record = registry.capability(capability).variant
+    if record is None:
         raise KeyError(capability)
-    return made
+    return record
 
 
 def alteration(capability: str) -> Alteration:
-    """What the option of a capability makes of a file's part; raises KeyError for one that adds no such option."""
-    made = registry.capability(capability).alteration
-    if made is None:
+    """Record of the option by which a capability alters the part; raises KeyError for a capability without one."""
+    record = registry.capability(capability).alteration
+    if record is None:
         raise KeyError(capability)
-    return made
+    return record

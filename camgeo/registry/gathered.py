@@ -23,22 +23,22 @@ E = TypeVar("E", bound=Entry)
 
 
 class Gathered(Mapping[str, E]):
-    """The core's entries and those of the capabilities, in one order whatever has been imported.
+    """Entries of the core and of the capabilities, in one order whatever has been imported.
 
-    A name of the core is found without an import. Any other is looked for in the records that were read, then in all
-    of them; to go over the table reads all. `among` has the core's and those of some capabilities.
+    A name of the core needs no import. Any other is sought in the records that were imported, then in all of them;
+    iteration imports all. `among` gives the entries of the core and of some capabilities.
     """
 
-    def __init__(self, core: Mapping[str, E], of: Callable[[Capability], Mapping[str, E]]) -> None:
-        """Make the table of the core's entries; `of` gives those of a capability."""
+    def __init__(self, core: Mapping[str, E], entries_of: Callable[[Capability], Mapping[str, E]]) -> None:
+        """Make the table of the core's entries; `entries_of` gives those of a capability."""
         self._core = core
-        self._of = of
+        self._entries_of = entries_of
         self._every: list[str] = []
 
     def __getitem__(self, name: str) -> E:
         """Entry of this name; raises KeyError."""
         owner = self.owner(name)
-        return self._of(registry.capability(owner))[name] if owner else self._core[name]
+        return self._entries_of(registry.capability(owner))[name] if owner else self._core[name]
 
     def __contains__(self, name: object) -> bool:
         """Whether the core or a capability has an entry of this name."""
@@ -66,9 +66,9 @@ class Gathered(Mapping[str, E]):
         """Name of the capability that an entry comes from, empty for the core; raises KeyError where there is none."""
         if name in self._core:
             return ""
-        read = registry.loaded()
-        for capability in (*read, *(other for other in registry.recorded() if other not in read)):
-            if name in self._of(registry.capability(capability)):
+        loaded = registry.names_loaded()
+        for capability in (*loaded, *(unread for unread in registry.names_with_record() if unread not in loaded)):
+            if name in self._entries_of(registry.capability(capability)):
                 return capability
         raise KeyError(name)
 
@@ -78,7 +78,7 @@ class Gathered(Mapping[str, E]):
         return {name: added[name] if name in added else self._core[name] for name in self._ordered(capabilities)}
 
     def _added(self, capabilities: Collection[str]) -> Iterator[Mapping[str, E]]:
-        return (self._of(capability) for capability in registry.in_order(capabilities))
+        return map(self._entries_of, registry.in_order(capabilities))
 
     def _ordered(self, capabilities: Collection[str]) -> list[str]:
         """Names in order; no entry of the core is asked for."""
@@ -91,5 +91,5 @@ class Gathered(Mapping[str, E]):
 
     def _whole(self) -> list[str]:
         if not self._every:
-            self._every = self._ordered(registry.recorded())
+            self._every = self._ordered(registry.names_with_record())
         return self._every

@@ -1,4 +1,4 @@
-"""What is known of a capability before its record is read."""
+"""Label of a capability: its words, commands and formats, read before its record."""
 
 from __future__ import annotations
 

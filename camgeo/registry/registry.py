@@ -20,18 +20,18 @@ PACKAGE = camgeo.capabilities.__name__
 
 @cache
 def labels() -> dict[str, Label]:
-    """Label of each capability by the name of its folder, in the order of their ranks."""
+    """Label of each capability by the name of its folder, in order of rank."""
     (folder,) = camgeo.capabilities.__path__
     names = [path.name for path in Path(folder).iterdir() if (path / "__init__.py").is_file()]
-    found: dict[str, Label] = {name: import_module(f"{PACKAGE}.{name}").LABEL for name in names}
-    return dict(sorted(found.items(), key=lambda item: (item[1].rank, item[0])))
+    by_folder: dict[str, Label] = {name: import_module(f"{PACKAGE}.{name}").LABEL for name in names}
+    return dict(sorted(by_folder.items(), key=lambda item: (item[1].rank, item[0])))
 
 
 _RECORDS: dict[str, Capability] = {}
 
 
 def capability(name: str) -> Capability:
-    """Record of a capability that has one; raises KeyError for a name that no folder has."""
+    """Record of a capability; raises KeyError for a name that no folder has."""
     if name not in _RECORDS:
         if name not in labels():
             raise KeyError(name)
@@ -40,20 +40,20 @@ def capability(name: str) -> Capability:
     return _RECORDS[name]
 
 
-def recorded() -> tuple[str, ...]:
-    """Names of all capabilities that have a record."""
+def names_with_record() -> tuple[str, ...]:
+    """Names of all capabilities that have a record, in order of rank."""
     return tuple(name for name, label in labels().items() if label.record)
 
 
-def loaded() -> tuple[str, ...]:
-    """Names of those whose record was read already."""
-    return tuple(name for name in recorded() if name in _RECORDS)
+def names_loaded() -> tuple[str, ...]:
+    """Names of the capabilities whose records were imported so far, in order of rank."""
+    return tuple(name for name in names_with_record() if name in _RECORDS)
 
 
 def in_order(names: Iterable[str]) -> list[Capability]:
-    """Records of these capabilities, in the order of their ranks."""
+    """Records of these capabilities, in order of rank."""
     chosen = set(names)
-    return [capability(name) for name in recorded() if name in chosen]
+    return [capability(name) for name in names_with_record() if name in chosen]
 
 
 def options() -> dict[str, str]:
@@ -62,9 +62,9 @@ def options() -> dict[str, str]:
 
 
 def judges() -> dict[str, FileJudge]:
-    """What judges files of their own for each capability that has such, by its name."""
-    found = {name: capability(name).judges for name, label in labels().items() if label.suffixes}
-    return {name: judge for name, judge in found.items() if judge is not None}
+    """Judge of its own files for each capability that has one, by the capability's name."""
+    candidates = {name: capability(name).judges for name, label in labels().items() if label.suffixes}
+    return {name: judge for name, judge in candidates.items() if judge is not None}
 
 
 def judge_of(path: Path, options: Mapping[str, object]) -> str:
@@ -75,7 +75,7 @@ def judge_of(path: Path, options: Mapping[str, object]) -> str:
 
 
 def names() -> dict[str, str]:
-    """Module of each name that capabilities add to the library."""
+    """Full name of the module of each name that capabilities add to the library."""
     return {
         name: f"{PACKAGE}.{folder}.{module}"
         for folder, label in labels().items()
@@ -84,7 +84,7 @@ def names() -> dict[str, str]:
 
 
 def formats() -> dict[str, str]:
-    """Module of each format of files that capabilities add."""
+    """Full name of the module of each format of files that capabilities add."""
     return {
         name: f"{PACKAGE}.{folder}.{module}"
         for folder, label in labels().items()
@@ -94,4 +94,4 @@ def formats() -> dict[str, str]:
 
 def by_words(words: Collection[str]) -> tuple[str, ...]:
     """Names of the recorded capabilities that a recipe with these words uses, see `Label.words`."""
-    return tuple(name for name in recorded() if not set(labels()[name].words).isdisjoint(words))
+    return tuple(name for name in names_with_record() if not set(labels()[name].words).isdisjoint(words))

@@ -30,29 +30,29 @@ _OF_A_CAM = "camgeo.api.cam"  # the module that has the core's own
 
 
 class Designed(Protocol):
-    """What the library hands out as a design."""
+    """Design as the library gives it."""
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file."""
+        """Checks that need no file."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Root(Generic[R]):
-    """All that commands and the library ask of one kind of recipe; lengths in mm.
+    """Functions of one kind of recipe for commands and the library; lengths in mm.
 
-    table    its keys
-    read     makes a recipe of a text that was parsed, at a path; raises RecipeErrors with all its faults
-    design   the exact cams, as the library hands them out
-    export   writes and judges files: (recipe, folder, kinds of files or none for all, what hears of stages)
-    check    makes and judges all files, and keeps none: (recipe, what hears of stages)
-    judge    reports on files of any origin: (recipe, paths, tolerance, unit of files that state none, gap)
-    claimed  reports on files that a capability judges: (recipe, name of the capability, what `verify` is given)
-    settle   finds what a recipe leaves open of its motion, when all else is read; None where nothing may be
-    show     reports likewise, and gives the page that shows the files; None where there is none
-    explain  tells a failed check of a report over several lines: (check, report, recipe, name of the recipe's file)
-    foresee  checks to come
-    instead  what to give a command that takes recipes of one cam alone
+    table    keys of the recipe
+    read     recipe of a parsed text, at a path; raises RecipeErrors with all faults
+    design   exact cams, as the library gives them
+    export   writes and judges files: (recipe, folder, kinds of files or none for all, callback for each stage)
+    check    makes and judges all files, and keeps none: (recipe, callback for each stage)
+    judge    report on files of any origin: (recipe, paths, tolerance, mm of the unit of files that state none, gap)
+    claimed  report on files that a capability judges: (recipe, name of the capability, arguments of `verify`)
+    settle   recipe with the open values of its motion found, when all else is read; None: none may be open
+    show     report as of `judge`, and the page that shows the files; None where there is no page
+    explain  text of several lines on a failed check: (check, report, recipe, name of the recipe's file)
+    foresee  checks that a run will make
+    instead  remedy for a command that takes recipes of one cam alone
     """
 
     table: Callable[[], Table]
@@ -70,7 +70,7 @@ class Root(Generic[R]):
 
 
 def folders() -> dict[str, str]:
-    """Capability by the key of the recipes that it reads."""
+    """Name of the capability that reads recipes with a key, by that key."""
     return {key: name for name, label in registry.labels().items() for key in label.roots}
 
 
@@ -87,7 +87,7 @@ def root_of(recipe: R) -> Root[R]:
     return root(recipe.root)
 
 
-def settled(recipe: R) -> R:
-    """Give the recipe with what it leaves open found, itself where its kind leaves nothing; raises RecipeErrors."""
-    settle = root_of(recipe).settle
-    return recipe if settle is None else settle(recipe)
+def settle(recipe: R) -> R:
+    """Recipe with the open values of its motion found; itself where its kind leaves none open. Raises RecipeErrors."""
+    settle_kind = root_of(recipe).settle
+    return recipe if settle_kind is None else settle_kind(recipe)

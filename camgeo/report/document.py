@@ -365,7 +365,7 @@ def table(report: dict[str, Any]) -> str:
             )
         )
     text += "\n\n" + aligned(rows)
-    tables = (capability.lines(report) for capability in registry.in_order(registry.loaded()))
+    tables = (capability.lines(report) for capability in registry.in_order(registry.names_loaded()))
     text += "".join(f"\n\n{lines}" for lines in tables if lines)
     if report["skipped"]:
         text += f"\n\nskipped (the JSON says why): {', '.join(item['what'] for item in report['skipped'])}"

@@ -164,7 +164,7 @@ PATHS = ["cam.shaft[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].
 ranges = st.fixed_dictionaries({"from": numbers, "to": numbers}, optional={"steps": st.integers(0, 9)})
 vary = st.dictionaries(st.sampled_from(PATHS), ranges | st.lists(numbers, max_size=3) | structures, max_size=4)
 known = {
-    **{name: tabled(name, vary=vary) for name in registry.recorded() if name in recipe_table().keys},
+    **{name: tabled(name, vary=vary) for name in registry.names_with_record() if name in recipe_table().keys},
     "cam": kinded(CAMS),
     "linkage": linkages,
     "dwell": tabled("dwell"),

@@ -207,7 +207,7 @@ function, with each law of the catalogue, at 360 angles.
 @cache
 def estimates() -> dict[str, FigureEstimate]:
     """Estimates by the names of their figures, those of capabilities after the core's."""
-    capabilities = registry.in_order(registry.recorded())
+    capabilities = registry.in_order(registry.names_with_record())
     return _CORE | {
         name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()
     }
