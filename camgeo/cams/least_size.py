@@ -22,7 +22,7 @@ import numpy as np
 from camgeo.curve.curvature import least_radius, roots
 from camgeo.curve.curve import Curve
 from camgeo.curve.disc import SwingingFace, face_shape
-from camgeo.curve.extremes import divided, greatest, least
+from camgeo.curve.extremes import greatest, least, subdivide
 from camgeo.curve.moving_frame import CentreShape, Oscillating, Translating
 from camgeo.curve.rates import cut, stretches
 from kin.law.programme import IntentError
@@ -268,7 +268,7 @@ def least_round(
 def _samples(motion: Displacement) -> Array:
     """Displacement with three derivatives (4, m) at sample angles, at the ends of stretches from inside."""
     over = stretches(motion)[: max(1, len(motion.breaks) // motion.repeats)]
-    low, _ = divided(over[:, 0], over[:, 1], max(6, math.ceil(_ANGLES / len(over))))
+    low, _ = subdivide(over[:, 0], over[:, 1], max(6, math.ceil(_ANGLES / len(over))))
     return np.concatenate([motion.derivatives(low, 3, 1), motion.derivatives(over[:, 1], 3, -1)], axis=1)
 
 

@@ -1,4 +1,4 @@
-"""A curve run through the other way: its hollows are the outside there."""
+"""A curve run through the other way: its hollows are convex there."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Backwards:
-    """A shape run through the other way, its parameter negated: what was outside lies on its inner side."""
+    """A shape run through the other way, with its parameter negated: its outside becomes its inside."""
 
     base: Shape
 
@@ -39,11 +39,11 @@ class Backwards:
 
     @property
     def repeats(self) -> int:
-        """Equal parts of the base."""
+        """Number of equal parts of the base."""
         return self.base.repeats
 
     def _stretches(self) -> NDArray[np.intp]:
-        """Which stretch of the base each one is (m,)."""
+        """Index of each stretch in the base (m,)."""
         count = max(len(self.base.breaks), 1)
         order = np.arange(count)[::-1]
         at_zero = len(self.base.breaks) > 0 and float(self.base.breaks[0]) == 0.0
@@ -64,8 +64,8 @@ class Backwards:
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        at = self.base.sample(-t, -side)
-        return Frame(at.point, -at.tangent, at.speed, -at.turn, -at.speed_slope, at.turn_slope)
+        frame = self.base.sample(-t, -side)
+        return Frame(frame.point, -frame.tangent, frame.speed, -frame.turn, -frame.speed_slope, frame.turn_slope)
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
@@ -85,7 +85,7 @@ class Backwards:
 
 
 def backwards(curve: Curve) -> Curve:
-    """A curve run through the other way; what lies outside its base is then inside, as a roller's contour is."""
+    """A curve run through the other way; a contour outside its base is then inside, as a roller's contour is."""
     shape = curve.shape
     turned = Parallel(Backwards(shape.base), -shape.distance) if isinstance(shape, Parallel) else Backwards(shape)
     return Curve(turned, runs_backwards(curve.runs), curve)
@@ -100,5 +100,5 @@ def runs_backwards(runs: Sequence[Run]) -> tuple[Run, ...]:
 
 def least_hollow(contour: Curve) -> tuple[float, float]:
     """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow."""
-    radius, at = least_radius(backwards(contour))
-    return radius, -at
+    radius, place = least_radius(backwards(contour))
+    return radius, -place

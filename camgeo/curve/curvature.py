@@ -1,4 +1,4 @@
-"""Where a curve is bent most and where it runs backwards: decided for the whole turn, from proved bounds.
+"""Least radius of curvature of a curve, and stretches on which it runs backwards, for the whole turn, proved.
 
 Both questions are about ``h = sigma - v omega``: the radius of curvature sigma/omega is at least v on convex stretches
 where h >= 0, and the curve runs backwards (it undercuts) where h < 0 for v = 0. Between two points a distance w apart
@@ -39,7 +39,7 @@ _ROOT_STEPS = _FALSE_POSITIONS + 56  # of a bracket: 53 halvings reach the round
 
 @dataclass(frozen=True)
 class Reversal:
-    """Parameters `start` to `end` over which the curve stands still (`still`) or runs backwards."""
+    """Parameters `start` to `end` over which the curve stands still (`still`), or runs backwards."""
 
     start: float
     end: float
@@ -48,11 +48,11 @@ class Reversal:
 
 @dataclass(frozen=True)
 class Least:
-    """The least radius of curvature found, mm, its parameter, and by how much more than `SHARPNESS` it may be less."""
+    """A least radius of curvature, mm, its parameter, and how much smaller it may be, mm, beyond `SHARPNESS`."""
 
     radius: float
     at: float
-    room: float = 0.0
+    excess: float = 0.0
 
 
 def least_radius(curve: Curve) -> tuple[float, float]:
@@ -62,12 +62,12 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     (up to rounding of the samples); of an enclosure that is wider, the result is the lower end. A curve without a
     convex stretch has (inf, its first parameter). Raises CurveError where the proof does not end.
     """
-    found = enclosed_least_radius(curve)
-    return found.radius - found.room, found.at
+    least = enclosed_least_radius(curve)
+    return least.radius - least.excess, least.at
 
 
 def enclosed_least_radius(curve: Curve) -> Least:
-    """Least radius as `least_radius` has it, and how much less it may be.
+    """Least radius as in `least_radius`, with a bound of its error.
 
     Stretches that are circles but for rounding would be divided without end: where there are many, and no sign is in
     doubt, it is proved to `LOOSE` of the curve's size only.
@@ -80,18 +80,18 @@ def enclosed_least_radius(curve: Curve) -> Least:
         return Least(math.inf, float(cells.low[0]))
     # circular arcs need no search, and would not end one
     arcs = _arc_radii(curve)
-    best, at = _least_arc(curve, arcs, possible)
+    best, place = _least_arc(curve, arcs, possible)
     possible &= np.isnan(arcs)
     if not possible.any():
-        return Least(best, at)
+        return Least(best, place)
     state = _Intervals.of(
         curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
     )
     extent = _extent(state.at_low)
-    tolerance, room, loose = SHARPNESS * extent, 0.0, LOOSE * curve.size
-    least, where = _least_end(state)
+    tolerance, excess, loose = SHARPNESS * extent, 0.0, LOOSE * curve.size
+    least, worst = _least_end(state)
     if least < best:
-        best, at = least, where
+        best, place = least, worst
     for _ in range(LEVELS):
         dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
         ends = _radius_slope(dips.at_low), _radius_slope(dips.at_high)
@@ -99,22 +99,24 @@ def enclosed_least_radius(curve: Curve) -> Least:
         if bottoms.size:
             radius = _radius(curve.sample(bottoms))
             if radius.min() < best:
-                best, at = float(radius.min()), float(bottoms[np.argmin(radius)])
+                best, place = float(radius.min()), float(bottoms[np.argmin(radius)])
         state = state.part(state.floor(best - tolerance) < 0.0)
-        if not room and state.low.size > MANY and not 0.0 <= best <= loose:
-            tolerance = room = max(loose, tolerance)
+        if not excess and state.low.size > MANY and not 0.0 <= best <= loose:
+            tolerance = excess = max(loose, tolerance)
             state = state.part(state.floor(best - tolerance) < 0.0)
         if state.low.size == 0:
-            return Least(best, at, room)
+            return Least(best, place, excess)
         if state.low.size > MOST_INTERVALS:
             break
         grade = 0.5 * math.sqrt(8.0 * tolerance / max(state.bend(best).max(), 1e-300))
-        minima = np.empty(0) if room else np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)])
-        state = state.divided(curve, minima, grade, fresh=not room)
-        least, where = _least_end(state)
+        minima = np.empty(0) if excess else np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)])
+        state = state.subdivided(curve, minima, grade, fresh=not excess)
+        least, worst = _least_end(state)
         if least < best:
-            best, at = least, where
-    raise CurveError(f"the least radius of curvature near parameter {at:.9g}, {best:.9g} mm, cannot be proved", at)
+            best, place = least, worst
+    raise CurveError(
+        f"the least radius of curvature near parameter {place:.9g}, {best:.9g} mm, cannot be proved", place
+    )
 
 
 def _arc_radii(curve: Curve) -> Array:
@@ -125,7 +127,7 @@ def _arc_radii(curve: Curve) -> Array:
 
 
 def _least_arc(curve: Curve, radii: Array, possible: Mask) -> tuple[float, float]:
-    """Least radius (n,) of the possible cells that are circular arcs and convex, and where; infinite without one."""
+    """Least radius, mm, of the possible cells that are convex circular arcs, and its parameter; else infinite."""
     cells = curve.cells
     arcs = np.flatnonzero(possible & ~np.isnan(radii))
     if arcs.size:
@@ -150,26 +152,26 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
     state = _Intervals.of(curve, cells.low, cells.high, cells.rows[6], cells.rows[7])
     tolerance = ROUNDING * _extent(state.at_low)
     arcs = _arc_radii(curve)
-    found = _arcs_below_zero(state, arcs, tolerance)
+    stretches = _arcs_below_zero(state, arcs, tolerance)
     state = state.part(doubtful & np.isnan(arcs))
     for _ in range(LEVELS):
         a, b = state.at_low, state.at_high
-        room = 0.125 * state.speed_bend * (state.high - state.low) ** 2
+        swing = 0.125 * state.speed_bend * (state.high - state.low) ** 2
         least, most = np.minimum(a.speed, b.speed), np.maximum(a.speed, b.speed)
         turning = state.speed_bend * (state.high - state.low)
         monotone = (a.speed_slope * b.speed_slope > 0.0) & (
             np.minimum(np.abs(a.speed_slope), np.abs(b.speed_slope)) > turning
         )
-        decided = (least - room >= -tolerance) | (most + room < -tolerance) | monotone | (room <= 0.25 * tolerance)
-        found += _below_zero(curve, state.part(decided), tolerance)
+        decided = (least - swing >= -tolerance) | (most + swing < -tolerance) | monotone | (swing <= 0.25 * tolerance)
+        stretches += _below_zero(curve, state.part(decided), tolerance)
         state = state.part(~decided)
         if state.low.size == 0:
-            return _joined(curve, found)
+            return _join(curve, stretches)
         if state.low.size > MOST_INTERVALS:
             break
-        state = state.divided(curve, np.empty(0), 0.0, fresh=True)
-    where = float(state.low[0])
-    raise CurveError(f"whether the curve runs backwards near parameter {where:.9g} cannot be proved", where)
+        state = state.subdivided(curve, np.empty(0), 0.0, fresh=True)
+    place = float(state.low[0])
+    raise CurveError(f"whether the curve runs backwards near parameter {place:.9g} cannot be proved", place)
 
 
 def _may_hold_least(cells: Cells) -> Mask:
@@ -207,15 +209,9 @@ class _Intervals:
         return falls
 
     def part(self, chosen: Mask) -> _Intervals:
-        """Give the chosen (n,) intervals."""
-        return _Intervals(
-            self.low[chosen],
-            self.high[chosen],
-            self.speed_bend[chosen],
-            self.turn_bend[chosen],
-            _chosen(self.at_low, chosen),
-            _chosen(self.at_high, chosen),
-        )
+        """The intervals for which `chosen` (n,) is true."""
+        ends = self.at_low.part(chosen), self.at_high.part(chosen)
+        return _Intervals(self.low[chosen], self.high[chosen], self.speed_bend[chosen], self.turn_bend[chosen], *ends)
 
     def bend(self, v: float) -> Array:
         """Bound of the second derivative of ``sigma - v omega``, of ``-omega`` for an infinite v (n,)."""
@@ -231,7 +227,7 @@ class _Intervals:
         return np.minimum(a, b) - 0.125 * self.bend(v) * (self.high - self.low) ** 2
 
     def ends_below(self, v: float) -> Array:
-        """Find the ends of intervals at which the radius is at most v (m,)."""
+        """Ends of intervals (m,) at which the radius is at most v."""
         ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
         return distinct(ends)
 
@@ -241,7 +237,7 @@ class _Intervals:
         inside: Mask = rising[np.searchsorted(rising, self.low)] <= self.high
         return inside
 
-    def divided(self, curve: Curve, minima: Array, grade: float, *, fresh: bool) -> _Intervals:
+    def subdivided(self, curve: Curve, minima: Array, grade: float, *, fresh: bool) -> _Intervals:
         """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward.
 
         `fresh` forms the bounds over many intervals anew.
@@ -260,10 +256,10 @@ class _Intervals:
             lows.append(knots[:-1])
             highs.append(knots[1:])
             owner.append(np.full(knots.size - 1, i))
-        of = np.concatenate(owner)
-        order = np.argsort(of, kind="stable")
-        of, low, high = of[order], np.concatenate(lows)[order], np.concatenate(highs)[order]
-        speed_bend, turn_bend = self.speed_bend[of], self.turn_bend[of]
+        owners = np.concatenate(owner)
+        order = np.argsort(owners, kind="stable")
+        owners, low, high = owners[order], np.concatenate(lows)[order], np.concatenate(highs)[order]
+        speed_bend, turn_bend = self.speed_bend[owners], self.turn_bend[owners]
         if fresh and len(self.low) > FRESH:
             # Where terms cancel, as on a circle that its formula does not tell, a bound falls with the width.
             anew = curve.shape.bounds(low, high)
@@ -276,17 +272,6 @@ def _extent(frame: Frame) -> float:
     return float(max(np.abs(frame.point).max(), np.abs(frame.speed).max()))
 
 
-def _chosen(frame: Frame, chosen: Mask) -> Frame:
-    return type(frame)(
-        frame.point[chosen],
-        frame.tangent[chosen],
-        frame.speed[chosen],
-        frame.turn[chosen],
-        frame.speed_slope[chosen],
-        frame.turn_slope[chosen],
-    )
-
-
 def _radius(frame: Frame) -> Array:
     """Radius of curvature where the curve is convex, else infinite (n,)."""
     radius: Array = np.full(frame.speed.shape, np.inf)
@@ -295,15 +280,15 @@ def _radius(frame: Frame) -> Array:
 
 
 def _radius_slope(frame: Frame) -> Array:
-    """Differentiate sigma/omega, times omega^2 (n,)."""
+    """Derivative of sigma/omega, times omega^2 (n,)."""
     return frame.speed_slope * frame.turn - frame.speed * frame.turn_slope
 
 
 def _least_end(state: _Intervals) -> tuple[float, float]:
-    """Least radius at the ends of the intervals, and where."""
+    """Least radius at the ends of the intervals, mm, and its parameter."""
     radius = np.concatenate([_radius(state.at_low), _radius(state.at_high)])
-    where = int(np.argmin(radius))
-    return float(radius[where]), float(np.concatenate([state.low, state.high])[where])
+    worst = int(np.argmin(radius))
+    return float(radius[worst]), float(np.concatenate([state.low, state.high])[worst])
 
 
 def roots(
@@ -319,23 +304,23 @@ def roots(
     a, b = low, high
     fa, fb = values
     close = precision * (high - low) + 2.0 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
-    found = np.zeros(low.shape, dtype=bool)
+    closed = np.zeros(low.shape, dtype=bool)
     for step in range(_ROOT_STEPS):
-        if found.all():
+        if closed.all():
             break
         with np.errstate(divide="ignore", invalid="ignore"):
             x = b - fb * (b - a) / (fb - fa)
         # a step beyond the root closes the bracket; small steps alone are no sign of one
         x = np.where(np.abs(x - b) < 0.5 * close, b + np.copysign(0.5 * close, a - b), x)
         halve = ~((x >= np.minimum(a, b)) & (x <= np.maximum(a, b))) | (step % 8 == 7) | (step >= _FALSE_POSITIONS)
-        x = np.where(found, b, np.where(halve, 0.5 * (a + b), x))
+        x = np.where(closed, b, np.where(halve, 0.5 * (a + b), x))
         fx = function(x)
-        crossed = (np.sign(fx) != np.sign(fb)) & ~found
+        crossed = (np.sign(fx) != np.sign(fb)) & ~closed
         # the end that stays has its weight halved, so that both ends move
         fa = np.where(crossed, fb, 0.5 * fa)
         a = np.where(crossed, b, a)
         b, fb = x, fx
-        found |= (np.abs(b - a) <= close) | (fb == 0.0)
+        closed |= (np.abs(b - a) <= close) | (fb == 0.0)
     return b
 
 
@@ -363,7 +348,7 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     return [(float(begin[i]), float(end[i]), False) for i in kept if end[i] > begin[i]]
 
 
-def _joined(curve: Curve, pieces: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
+def _join(curve: Curve, pieces: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
     """Join pieces that touch, also across the seam of a closed run."""
     merged: list[list[Any]] = []
     for start, end, still in sorted(pieces):

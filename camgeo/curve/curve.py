@@ -74,8 +74,12 @@ class Frame:
         """Frames at the first `count` parameters, and at the others."""
         return Frame(*(row[:count] for row in self.rows)), Frame(*(row[count:] for row in self.rows))
 
+    def part(self, chosen: NDArray[np.bool_]) -> Frame:
+        """Frames at the parameters for which `chosen` (n,) is true."""
+        return Frame(*(row[chosen] for row in self.rows))
+
     def joined(self, other: Frame) -> Frame:
-        """These frames, and then the others."""
+        """These frames followed by the others."""
         return Frame(*(np.concatenate(both) for both in zip(self.rows, other.rows, strict=True)))
 
     @property
@@ -98,7 +102,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is proved of a frame over n parameter intervals; all (n,).
+    """Proved bounds of a frame over n parameter intervals; all (n,).
 
     `speed` and `turn` lie in [low, high]; the others are upper bounds of absolute values: `speed_slope` of sigma',
     `speed_bend` of sigma'', and likewise for the turn.
@@ -115,22 +119,12 @@ class Bounds:
 
     def rows(self) -> Array:
         """All eight as one (8, n) array, in the order of the fields."""
-        return np.stack(
-            [
-                self.speed_low,
-                self.speed_high,
-                self.turn_low,
-                self.turn_high,
-                self.speed_slope,
-                self.turn_slope,
-                self.speed_bend,
-                self.turn_bend,
-            ]
-        )
+        ranges = self.speed_low, self.speed_high, self.turn_low, self.turn_high
+        return np.stack([*ranges, self.speed_slope, self.turn_slope, self.speed_bend, self.turn_bend])
 
 
 class Shape(Protocol):
-    """What a family of profiles provides; `Curve` adds everything that follows from it."""
+    """A curve as a family of profiles gives it; `Curve` adds what follows for all families."""
 
     @property
     def period(self) -> float:
@@ -144,7 +138,7 @@ class Shape(Protocol):
 
     @property
     def repeats(self) -> int:
-        """Equal parts that the turn is known to consist of, each the one before turned about the shaft."""
+        """Number of equal parts of the turn, each the one before turned about the shaft."""
         ...
 
     @property
@@ -201,8 +195,8 @@ class Curve:
     """A closed counter-clockwise curve: a shape, and the runs of it that are kept.
 
     One closed run is the ordinary case. Several open runs are a contour trimmed where it would undercut: they meet in
-    corners, the end of each run in the beginning of the next. `mirror` is the same curve run through the other way,
-    whose bounds are its own, of one that was made of it.
+    corners, the end of each run in the beginning of the next. `mirror` is the curve of which this one is the reverse:
+    the bounds are taken from it.
     """
 
     shape: Shape
@@ -238,9 +232,9 @@ class Curve:
 
     @cached_property
     def size(self) -> float:
-        """How far the curve reaches from the shaft, as far as the ends of its cells show.
+        """Greatest distance from the shaft among the ends of the cells, mm.
 
-        Where there are hardly any, as of a circle, their middles are looked at too: the ends may be the shaft itself.
+        With hardly any cells, as of a circle, their middles count too: the ends may be the shaft itself.
         """
         t = np.append(self.cells.low, self.cells.high[-1])
         if len(t) <= 3:
@@ -278,10 +272,8 @@ class Curve:
         return self.shape.radii
 
     def _index(self, stretch: Sequence[float] | Array) -> int:
-        """Which of the shape's stretches between breaks holds this one."""
-        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
-        middle = (0.5 * (stretch[0] + stretch[1])) % self.shape.period
-        return (int(np.searchsorted(breaks, middle, side="right")) - 1) % breaks.size if breaks.size else 0
+        """Index of the shape's stretch that holds this one."""
+        return int(self.stretch_of(np.array([0.5 * (stretch[0] + stretch[1])]))[0])
 
     def steady(self, stretch: Sequence[float] | Array) -> tuple[float, float] | None:
         """Speed and turn where both are exactly constant over a stretch (a dwell, a Reuleaux arc), else None."""
@@ -321,7 +313,7 @@ class Cells:
         return _sharpened(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
 
     def backwards(self) -> Cells:
-        """The same of the curve run through the other way, its parameter negated and its turn too."""
+        """Bounds of the curve run through the other way, with its parameter and its turn negated."""
         order = [0, 1, 3, 2, 4, 5, 6, 7]  # of `Bounds`: the lower bound of the turn is the upper one of its negative
         rows = self.rows[order, ::-1] * np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])[:, None]
         return Cells(-self.high[::-1], -self.low[::-1], rows)
@@ -411,3 +403,9 @@ def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.boo
         around = np.maximum(seen, np.maximum(np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)))
         loose: NDArray[np.bool_] = (~np.isfinite(bends) | (matters & (bends > SHARP_ENOUGH * around))).any(axis=0)
     return loose
+
+
+def cyclic_gap(a: float, b: float, period: float) -> float:
+    """Distance of two parameters the shorter way round a period."""
+    gap = abs(a - b) % period
+    return min(gap, period - gap)

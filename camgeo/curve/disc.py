@@ -33,17 +33,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Face(ABC):
-    """A face led by a motion."""
+    """A face with its motion."""
 
     motion: Displacement
 
     @abstractmethod
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Where the cam touches the face, mm along it."""
+        """Place of contact on the face, mm along it, at jets of the shaft angle."""
 
     @abstractmethod
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle."""
+        """Tangent of the pressure angle at jets of the shaft angle."""
 
     def pressure_angle(self, theta: Array) -> Array:
         """Pressure angle at shaft angles (n,), rad."""
@@ -51,7 +51,7 @@ class _Face(ABC):
         return angle
 
     def place(self, theta: Array) -> Array:
-        """Where the face is touched at shaft angles (n,), mm from the stem's axis or from the arm's pivot."""
+        """Place of contact at shaft angles (n,), mm from the stem's axis or from the arm's pivot."""
         return np.asarray(self.contact(Jet.variable(theta, 1)).c[0])
 
     @property
@@ -61,7 +61,7 @@ class _Face(ABC):
 
     @property
     def repeats(self) -> int:
-        """Equal parts of the motion."""
+        """Number of equal parts of the motion."""
         return self.motion.repeats
 
 
@@ -86,15 +86,15 @@ class StraightFace(_Face):
 
     @property
     def steady(self) -> Mask:
-        """For each stretch whether the contour is a circular arc: a dwell, or an eccentric."""
+        """Whether the contour is a circular arc on each stretch (m,): a dwell, or an eccentric."""
         return self.motion.eccentric
 
     def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Give the face's distance and its normal's direction."""
+        """Distance from the shaft, mm, and direction of the normal, rad, at jets of the shaft angle."""
         return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + (self.tilt + self.turned)
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Give both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        """Both with their derivatives at shaft angles (n,), (order + 1, n) each."""
         p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
         p[0] += self.base
         t = np.zeros_like(p)
@@ -103,17 +103,17 @@ class StraightFace(_Face):
 
     @property
     def level(self) -> float:
-        """Where the face crosses the stem's axis at S = 0, mm along that from the foot of the shaft."""
+        """Place at which the face crosses the stem's axis at S = 0, mm along that from the foot of the shaft."""
         return (self.base - self.offset * math.sin(self.tilt)) / math.cos(self.tilt)
 
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Where the cam touches the face, mm from the stem's axis along the face, above 0 ahead of it."""
+        """Place of contact, mm from the stem's axis along the face, above 0 ahead of it."""
         s, sine, cosine = self.motion.on(tau, side), math.sin(self.tilt), math.cos(self.tilt)
         v = s.derivative()
         return v * cosine + (cut(s, v.order) + self.level) * sine - self.offset * cosine
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle: that of the tilt."""
+        """Tangent of the pressure angle, which is the tilt."""
         return self.motion.on(tau, side) * 0.0 + math.tan(self.tilt)
 
 
@@ -133,7 +133,7 @@ class SwingingFace(_Face):
 
     @staticmethod
     def on(motion: Displacement, base: float, pivot: float, face: float, side: int) -> SwingingFace:
-        """Give the face that stands `base` mm from the shaft at S = 0, psi acute."""
+        """Face that stands `base` mm from the shaft at S = 0, psi acute; raises IntentError without one."""
         return SwingingFace(motion, pivot, face, rest_of(base, pivot, face), side)
 
     def __post_init__(self) -> None:
@@ -164,21 +164,21 @@ class SwingingFace(_Face):
 
     @property
     def steady(self) -> Mask:
-        """For each stretch whether it is a dwell."""
+        """Whether each stretch (m,) is a dwell."""
         return self.motion.steady
 
     def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Give the face's distance and its normal's direction."""
+        """Distance from the shaft, mm, and direction of the normal, rad, at jets of the shaft angle."""
         psi, sense = self.motion.on(tau, side) + self.rest, float(self.side)
         return elementary.sin(psi) * self.pivot - self.face, tau + (psi - 0.5 * math.pi) * sense
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Give both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        """Both with their derivatives at shaft angles (n,), (order + 1, n) each."""
         p, t = self.polar(Jet.variable(tau, order), side)
         return p.derivatives(), t.derivatives()
 
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Where the cam touches the face, mm from the pivot's foot along the face."""
+        """Place of contact, mm from the pivot's foot along the face."""
         psi = self.motion.on(tau, side) + self.rest
         rate = psi.derivative() * float(self.side) + 1.0
         return elementary.cos(cut(psi, rate.order)) * self.pivot / rate
@@ -189,7 +189,7 @@ class SwingingFace(_Face):
 
 
 def rest_of(base: float, pivot: float, face: float) -> float:
-    """Angle, rad, to the line from pivot to shaft of a face `base` mm from the shaft; raises IntentError for none."""
+    """Angle, rad, between a face `base` mm from the shaft and the line from pivot to shaft; IntentError without one."""
     if not 0.0 < base + face < pivot:
         raise IntentError(
             f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "

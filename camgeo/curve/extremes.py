@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 CELLS = 16  # of each stretch, at first
 PARTS, TOGETHER = 4, 64  # into which an undecided interval is divided, or so many of all intervals if they are few
 LEVELS = 24
-MOST = 20_000  # undecided intervals; then the rest is given as room
+MOST = 20_000  # undecided intervals; then what they may hold is given as excess
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
 NEWTON = 5
 NOISE = 1e-9  # of a figure, or of 1: by less nothing surpasses it but rounding
@@ -35,42 +35,42 @@ class ShaftFigure(Protocol):
     """A figure of the shaft angle, as a jet or ball jet; the side decides at breaks."""
 
     def __call__(self, tau: Series, side: Side = 1, /) -> Series:
-        """Give it, of an order or two less."""
+        """The figure at jets of the shaft angle, of an order or two less."""
         ...
 
 
 @dataclass(frozen=True)
 class Extreme:
-    """A value that is taken at `at`, and by how much at most a value elsewhere may surpass it."""
+    """A value, taken at parameter `at`, and a bound of the `excess` of any other value over it."""
 
     value: float
     at: float
-    room: float
+    excess: float
 
     @property
     def slack(self) -> float:
-        """By how much it may be surpassed, where that is more than rounding."""
-        return self.room if self.room > NOISE * max(abs(self.value), 1.0) else 0.0
+        """`excess` where it is more than rounding, else 0."""
+        return self.excess if self.excess > NOISE * max(abs(self.value), 1.0) else 0.0
 
 
 def least(figure: ShaftFigure, stretches: Array) -> Extreme:
     """Least value of a figure over stretches (m, 2), none of which spans a break."""
     (lowest,) = _highest(figure, stretches, -1)
-    return Extreme(-lowest.value, lowest.at, lowest.room)
+    return Extreme(-lowest.value, lowest.at, lowest.excess)
 
 
 def both(figure: ShaftFigure, stretches: Array) -> tuple[Extreme, Extreme]:
     """Least and greatest value of a figure over stretches (m, 2), none of which spans a break."""
     lowest, highest = _highest(figure, stretches, -1, 1)
-    return Extreme(-lowest.value, lowest.at, lowest.room), highest
+    return Extreme(-lowest.value, lowest.at, lowest.excess), highest
 
 
 def surely_positive(figure: ShaftFigure, stretches: Array) -> bool:
-    """Whether bounds over a few intervals already prove a figure above 0: cheaper than `least`, which says by how much.
+    """Whether bounds over a few intervals already prove a figure above 0; cheaper than `least`.
 
     False leaves it open.
     """
-    below, _ = figure(BallJet.variable(*divided(stretches[:, 0], stretches[:, 1], CELLS), ORDER)).bounds()
+    below, _ = figure(BallJet.variable(*subdivide(stretches[:, 0], stretches[:, 1], CELLS), ORDER)).bounds()
     return bool((below[0] > 0.0).all())  # not where a bound is nan
 
 
@@ -94,26 +94,26 @@ class _Seen(NamedTuple):
 
     @staticmethod
     def of(figure: ShaftFigure, low: Array, high: Array, sense: Array) -> _Seen:
-        """Look at the ends, and bound."""
+        """Evaluate at the ends of intervals (n,), and bound over them."""
         rows = figure(Jet.variable(np.concatenate([low, high]), ORDER), np.repeat([1, -1], low.size)).derivatives()
         below, above = figure(BallJet.variable(low, high, ORDER)).bounds()
         rows = rows.reshape(-1, 2, low.size) * sense
         return _Seen(low, high, sense, rows, np.where(sense > 0, below, -above), np.where(sense > 0, above, -below))
 
     def times(self, sense: int) -> _Seen:
-        """The same of the figure times a sense."""
+        """The intervals for the figure times a sense, 1 or -1."""
         if sense > 0:
             return self
         return _Seen(self.low, self.high, -self.sense, -self.rows, -self.above, -self.below)
 
 
 def _highest(figure: ShaftFigure, stretches: Array, *senses: int) -> list[Extreme]:
-    """Greatest value of the figure times each of the senses, looked for together: what costs is to evaluate at all."""
-    low, high = divided(stretches[:, 0], stretches[:, 1], CELLS)
+    """Greatest value of the figure times each of the senses, sought together, as evaluations cost most."""
+    low, high = subdivide(stretches[:, 0], stretches[:, 1], CELLS)
     first = _Seen.of(figure, low, high, np.ones(low.size))
-    seen = _Seen(*(np.concatenate(each, axis=-1) for each in zip(*map(first.times, senses), strict=True)))
-    best, at, size = dict.fromkeys(senses, -np.inf), dict.fromkeys(senses, float(low[0])), dict.fromkeys(senses, 0.0)
-    found: dict[int, Extreme] = {}
+    seen = _Seen(*(np.concatenate(parts, axis=-1) for parts in zip(*map(first.times, senses), strict=True)))
+    best, place, size = dict.fromkeys(senses, -np.inf), dict.fromkeys(senses, float(low[0])), dict.fromkeys(senses, 0.0)
+    extremes: dict[int, Extreme] = {}
     for level in range(LEVELS):
         tops, rows = _with_tops(figure, seen)
         reach = _most(seen, rows)
@@ -126,38 +126,38 @@ def _highest(figure: ShaftFigure, stretches: Array, *senses: int) -> list[Extrem
             places, values = np.concatenate([seen.low[own], seen.high[own], tops[own]]), rows[0][:, own].ravel()
             top = int(np.argmax(values))
             if values[top] > best[sense]:
-                best[sense], at[sense] = float(values[top]), float(places[top])
-            left = own[~(reach[own] <= best[sense] + SHARPNESS * size[sense])]
-            if not left.size:
-                found[sense] = Extreme(best[sense], at[sense], SHARPNESS * size[sense])
-            elif left.size > MOST or level == LEVELS - 1:
-                found[sense] = Extreme(best[sense], at[sense], float(reach[left].max()) - best[sense])
+                best[sense], place[sense] = float(values[top]), float(places[top])
+            undecided = own[~(reach[own] <= best[sense] + SHARPNESS * size[sense])]
+            if not undecided.size:
+                extremes[sense] = Extreme(best[sense], place[sense], SHARPNESS * size[sense])
+            elif undecided.size > MOST or level == LEVELS - 1:
+                extremes[sense] = Extreme(best[sense], place[sense], float(reach[undecided].max()) - best[sense])
             else:
-                open_[left] = True
+                open_[undecided] = True
         if not open_.any():
             break
-        low, high, owner = divided_anew(seen.low[open_], seen.high[open_])
+        low, high, owner = subdivide_undecided(seen.low[open_], seen.high[open_])
         seen = _Seen.of(figure, low, high, seen.sense[open_][owner])
-    return [found[sense] for sense in senses]
+    return [extremes[sense] for sense in senses]
 
 
-def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
-    """Intervals (n,), each in equal parts, in order: (n * parts,)."""
+def subdivide(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
+    """Low and high ends (n * parts,) of intervals (n,), each divided into equal parts."""
     share = np.linspace(0.0, 1.0, parts + 1)
     knots = low[:, None] * (1.0 - share) + high[:, None] * share
     return knots[:, :-1].ravel(), knots[:, 1:].ravel()
 
 
-def divided_anew(low: Array, high: Array) -> tuple[Array, Array, Indices]:
-    """Undecided intervals (n,) in the parts that cost least in all, and the interval that each part is of."""
+def subdivide_undecided(low: Array, high: Array) -> tuple[Array, Array, Indices]:
+    """Low and high ends (m,) of undecided intervals (n,), divided, and the interval of each part (m,)."""
     parts = max(PARTS, TOGETHER // low.size)
-    return *divided(low, high, parts), np.repeat(np.arange(low.size), parts)
+    return *subdivide(low, high, parts), np.repeat(np.arange(low.size), parts)
 
 
 def _with_tops(figure: ShaftFigure, seen: _Seen) -> tuple[Array, Array]:
     """Tops (n,) that Newton's method finds inside the intervals; value and slope at low end, high end, top: (2, 3, n).
 
-    Of an interval between whose ends the slope does not fall through 0 the low end stands for the top.
+    Where the slope does not fall through 0 between the ends, the low end stands for the top.
     """
     at_ends = seen.rows[:2]
     tops, values = seen.low.copy(), np.concatenate([at_ends, at_ends[:, :1]], axis=1)
@@ -166,11 +166,11 @@ def _with_tops(figure: ShaftFigure, seen: _Seen) -> tuple[Array, Array]:
         a, b, sense = seen.low[near], seen.high[near], seen.sense[near]
         x = 0.5 * (a + b)
         for _ in range(NEWTON):
-            before = x
+            previous = x
             _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3] * sense
             step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
             x = np.minimum(np.maximum(x - step, a), b)
-            if (x == before).all():
+            if (x == previous).all():
                 break
         tops[near] = x
         values[:, 2, near] = figure(Jet.variable(x, ORDER)).derivatives()[:2] * sense

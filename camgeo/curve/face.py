@@ -1,4 +1,4 @@
-"""Profiles that a flat face touches, from the face's distance from the shaft and the direction it faces."""
+"""Profiles under a flat face, from the face's distance from the shaft and the direction of its normal."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
-from camgeo.curve.curve import Bounds, Frame, columns
-from camgeo.curve.rates import OfLaw, Source, bounds_of, cut, series_of
+from camgeo.curve.curve import Frame, columns
+from camgeo.curve.rates import MotionShape, Source, cut
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,11 +20,11 @@ class Facing(Source, Protocol):
     """A face as it moves round the standing cam: its distance r from the shaft and its normal's direction."""
 
     def polar(self, tau: Series, side: Side = 1, /) -> tuple[Series, Series]:
-        """Give both for jets or ball jets of the parameter."""
+        """Distance r, mm, and direction of the normal, rad, at jets or ball jets of the parameter."""
         ...
 
     def pitch(self, tau: Array, order: int, side: Side = 1, /) -> tuple[Array, Array]:
-        """Give both with their derivatives at parameters (n,), (order + 1, n) each."""
+        """Both with their derivatives at parameters (n,), (order + 1, n) each."""
         ...
 
 
@@ -32,7 +32,7 @@ FacingT = TypeVar("FacingT", bound=Facing)
 
 
 @dataclass(frozen=True)
-class FaceShape(OfLaw[FacingT]):
+class FaceShape(MotionShape[FacingT]):
     """Envelope of a face: r is the support function of the curve.
 
     The parameter is the law's; the normal turns as ``t`` does, the point is ``E(t)(r + i r'/t')``, and
@@ -43,7 +43,7 @@ class FaceShape(OfLaw[FacingT]):
         """Frame at parameters t (n,) of the law."""
         r, normal = self.law.pitch(t, 3, side)
         turn, turn1, turn2 = normal[1:]
-        # `_rates` by hand
+        # `rates_of` by hand
         slope = r[1] / turn
         slope1 = (r[2] - slope * turn1) / turn
         slope2 = (r[3] - slope * turn2 - 2.0 * slope1 * turn1) / turn
@@ -53,19 +53,11 @@ class FaceShape(OfLaw[FacingT]):
             point, columns(-sine, cosine), r[0] * turn + slope1, turn, r[1] * turn + r[0] * turn1 + slope2, turn1
         )
 
-    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
-        return series_of(self.law.polar, t, order, side, self._rates)
+    def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        """Support function and direction of the normal at jets of the parameter."""
+        return self.law.polar(tau, side)
 
-    def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
-        return bounds_of(self.law.polar, low, high, self._rates)
-
-    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, two orders fewer."""
-        return self._rates(self.law.polar(tau, side))
-
-    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+    def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         """Speed and turn from the support function and the normal's angle: ``r t' + (r'/t')'``."""
         r, normal = figures
         turn = normal.derivative()

@@ -18,7 +18,7 @@ import numpy as np
 
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
-from camgeo.curve.extremes import LEVELS, MOST, SHARPNESS, Extreme, divided_anew
+from camgeo.curve.extremes import LEVELS, MOST, SHARPNESS, Extreme, subdivide_undecided
 from camgeo.curve.support import is_sharp
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
@@ -53,7 +53,7 @@ class Measures:
 class Moments:
     """Moments of a plane area about the shaft: area, mm^2; of its x and of its y, mm^3; of its radius squared, mm^4.
 
-    `error` is by how much each may be off, in the same units.
+    `error` bounds the error of each, in the same units.
     """
 
     area: float
@@ -66,8 +66,8 @@ class Moments:
 def measures(curve: Curve) -> Measures:
     """Perimeter and area: integrals of sigma and of h sigma/2 (Green), to about twelve digits."""
 
-    def rates(at: Frame) -> Array:
-        return np.stack([at.speed, 0.5 * at.speed * np.sum(at.point * at.normal, axis=1)])
+    def rates(frame: Frame) -> Array:
+        return np.stack([frame.speed, 0.5 * frame.speed * np.sum(frame.point * frame.normal, axis=1)])
 
     (perimeter, area), _ = _integrals(curve, rates)
     return Measures(float(perimeter), float(area))
@@ -80,34 +80,34 @@ def moments(curve: Curve, inset: float = 0.0) -> Moments:
     the place), h the distance of the tangent from the shaft. The parallel has the speed sigma - inset omega.
     """
 
-    def rates(at: Frame) -> Array:
-        point = at.point - inset * at.normal
-        return _shares(point, np.sum(point * at.normal, axis=1) * (at.speed - inset * at.turn))
+    def rates(frame: Frame) -> Array:
+        point = frame.point - inset * frame.normal
+        return _moment_rates(point, np.sum(point * frame.normal, axis=1) * (frame.speed - inset * frame.turn))
 
     total, change = _integrals(curve, rates)
     area, x, y, polar = total.tolist()
     far = curve.size
     # rounding of the sums: each is of terms no larger than the area's by a power of the size
     scale = ROUNDING * area * np.array([1.0, far, far, far * far])
-    off = np.maximum(change, scale).tolist()
-    return Moments(area, x, y, polar, (off[0], off[1], off[2], off[3]))
+    error = np.maximum(change, scale).tolist()
+    return Moments(area, x, y, polar, (error[0], error[1], error[2], error[3]))
 
 
 def moments_of_chain(chain: Arcs) -> Moments:
-    """The same within a closed chain of lines and arcs, counter-clockwise: to rounding, no piece turning far."""
+    """Moments of the area within a closed chain of lines and arcs, counter-clockwise; exact to rounding."""
     parts, _ = chain.cut(np.maximum(np.ceil(np.abs(chain.curvature) * chain.length), 1.0).astype(np.intp))
     total = np.zeros(4)
     for node, weight in zip(NODES, WEIGHTS, strict=True):
         s = 0.5 * (1.0 + node) * parts.length
         point, tangent = parts.points(s), parts.tangents(s)
         height = point[:, 0] * tangent[:, 1] - point[:, 1] * tangent[:, 0]
-        total += _shares(point, 0.5 * weight * parts.length * height).sum(axis=1)
+        total += _moment_rates(point, 0.5 * weight * parts.length * height).sum(axis=1)
     area, x, y, polar = total.tolist()
     return Moments(area, x, y, polar)
 
 
-def _shares(point: Array, swept: Array) -> Array:
-    """What places (n, 2) with h ds (n,) add to area, its moments of x and y, and that of the radius squared (4, n)."""
+def _moment_rates(point: Array, swept: Array) -> Array:
+    """Contributions (4, n) of points (n, 2) with h ds (n,) to area, moments of x and y, and of the radius squared."""
     x, y = point.T
     added: Array = swept * np.stack([np.full_like(x, 0.5), x / 3.0, y / 3.0, 0.25 * (x * x + y * y)])
     return added
@@ -140,48 +140,46 @@ def _integrals(curve: Curve, rates: Callable[[Frame], Array]) -> tuple[Array, Ar
 
 
 def _over(curve: Curve, rates: Callable[[Frame], Array], low: Array, high: Array) -> Array:
-    """Of rates over intervals (n,) within stretches, (k, n), by Gauss and Legendre."""
+    """Integrals (k, n) of rates over intervals (n,) within stretches, by Gauss and Legendre."""
     half = 0.5 * (high - low)
     t = 0.5 * (low + high)[:, None] + half[:, None] * NODES
     rows = rates(curve.sample(t.ravel()))
-    found: Array = (rows.reshape(len(rows), *t.shape) @ WEIGHTS) * half
-    return found
+    integrals: Array = (rows.reshape(len(rows), *t.shape) @ WEIGHTS) * half
+    return integrals
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point of each parameter (n,), a sharp corner or not, or was trimmed away there."""
+    """Whether the contour has a point, perhaps a sharp corner, at each parameter (n,); not where it is trimmed away."""
     if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
-    kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
-    found: Mask = np.any(kept, axis=0)
-    return found
+    inside = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
+    mask: Mask = np.any(inside, axis=0)
+    return mask
 
 
 # --- distances from the shaft -----------------------------------------------------------------------------------------
 
 
 def farthest(curve: Curve) -> Extreme:
-    """Greatest distance of a contour from the shaft, mm, and the parameter there."""
-    found = _greatest(curve, lambda at: np.sum(at.point**2, axis=1), _radial)
-    return _rooted(found, 1.0)
+    """Greatest distance of a contour from the shaft, mm, and its parameter."""
+    return _root(_greatest(curve, lambda frame: np.sum(frame.point**2, axis=1), _radial), 1.0)
 
 
 def nearest(curve: Curve) -> Extreme:
-    """Least distance of a contour from the shaft, mm, and the parameter there."""
-    found = _greatest(curve, lambda at: -np.sum(at.point**2, axis=1), _radial)
-    return _rooted(found, -1.0)
+    """Least distance of a contour from the shaft, mm, and its parameter."""
+    return _root(_greatest(curve, lambda frame: -np.sum(frame.point**2, axis=1), _radial), -1.0)
 
 
 def least_support(curve: Curve) -> Extreme:
-    """Least distance of the shaft from a tangent, mm, below 0 beyond it: above 0 where each ray has one point."""
-    found = _greatest(curve, lambda at: -np.sum(at.point * at.normal, axis=1), _turning)
-    return Extreme(-found.value, found.at, found.room)
+    """Least distance of the shaft from a tangent, mm; below 0 outside. Above 0 each ray meets the contour once."""
+    extreme = _greatest(curve, lambda frame: -np.sum(frame.point * frame.normal, axis=1), _turning)
+    return Extreme(-extreme.value, extreme.at, extreme.excess)
 
 
-def _rooted(square: Extreme, sign: float) -> Extreme:
+def _root(square: Extreme, sign: float) -> Extreme:
     value = math.sqrt(max(sign * square.value, 0.0))
-    return Extreme(value, square.at, square.room / value if value else math.sqrt(square.room))
+    return Extreme(value, square.at, square.excess / value if value else math.sqrt(square.excess))
 
 
 def _radial(bounds: Bounds) -> tuple[Array, Mask]:
@@ -197,35 +195,35 @@ def _turning(bounds: Bounds) -> tuple[Array, Mask]:
 
 
 def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bounds], tuple[Array, Mask]]) -> Extreme:
-    """Greatest value of a figure whose derivative is g times its pace."""
+    """Greatest value of a figure of the curve, whose derivative is g times its `pace`."""
     cells = curve.cells
     low, high, size = cells.low, cells.high, 2.0 * curve.size
-    best, at, tolerance = -math.inf, float(low[0]), 0.0
+    best, place, tolerance = -math.inf, float(low[0]), 0.0
     for _ in range(LEVELS):
         ends = curve.span(low, high)
-        values = np.stack([value(one) for one in ends])
-        g = np.stack([np.sum(one.point * one.tangent, axis=1) for one in ends])
+        values = np.stack([value(frame) for frame in ends])
+        g = np.stack([np.sum(frame.point * frame.tangent, axis=1) for frame in ends])
         top = int(np.argmax(values))
         tolerance = max(tolerance, SHARPNESS * float(np.abs(values).max()))
         if values.flat[top] > best + NOISE * tolerance:  # on a circle the first place, not where rounding is greatest
-            best, at = float(values.flat[top]), float(np.concatenate([low, high])[top])
+            best, place = float(values.flat[top]), float(np.concatenate([low, high])[top])
         bounds, width = cells.over(low, high), high - low
         turn = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
         bend = 0.125 * width**2
-        own, left = bend * (bounds.speed_slope + bounds.turn_slope * size), 1.0 - bend * turn**2
+        slack, share = bend * (bounds.speed_slope + bounds.turn_slope * size), 1.0 - bend * turn**2
         with np.errstate(divide="ignore", invalid="ignore"):
-            most = np.where(left > 0.0, np.minimum((np.abs(g).max(axis=0) + own) / left, size), size)
-        keeps = (g[0] * g[1] > 0.0) & (np.abs(g).min(axis=0) > own + bend * turn**2 * most)
+            most = np.where(share > 0.0, np.minimum((np.abs(g).max(axis=0) + slack) / share, size), size)
+        keeps = (g[0] * g[1] > 0.0) & (np.abs(g).min(axis=0) > slack + bend * turn**2 * most)
         rate, one_way = pace(bounds)
         reach = values.max(axis=0) + np.where(keeps & one_way, 0.0, 0.5 * width * rate * most)
         open_ = ~(reach <= best + tolerance)
         if not open_.any():
-            return Extreme(best, at, tolerance)
+            return Extreme(best, place, tolerance)
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        low, high, _ = divided_anew(low, high)
-    return Extreme(best, at, float(reach.max()) - best)
+        low, high, _ = subdivide_undecided(low, high)
+    return Extreme(best, place, float(reach.max()) - best)
 
 
 # --- over the polar angle ---------------------------------------------------------------------------------------------
@@ -248,36 +246,35 @@ def polar_parameters(curve: Curve, angles: Array) -> Array:
     Raises StarError unless each ray is proved to cross the contour once.
     """
     least = least_support(curve)
-    if not least.value > least.room:
+    if not least.value > least.excess:
         raise StarError("a ray from the shaft may cross the contour more than once or not at all", least.at)
-    parameters, turned = _turned(curve)
-    wanted = np.mod(angles - turned[0], 2.0 * np.pi) + turned[0]
-    cell = np.clip(np.searchsorted(turned, wanted, side="right") - 1, 0, len(turned) - 2)
-    skipped = parameters[cell + 1] <= parameters[cell]  # the seam between two runs, of one polar angle
+    knots, polar = _polar_knots(curve)
+    rays = np.mod(angles - polar[0], 2.0 * np.pi) + polar[0]
+    cell = np.clip(np.searchsorted(polar, rays, side="right") - 1, 0, len(polar) - 2)
+    skipped = knots[cell + 1] <= knots[cell]  # the seam between two runs, of one polar angle
     cell = np.where(skipped, cell - 1, cell)
-    low, high = parameters[cell], parameters[cell + 1]
-    cosine, sine = np.cos(wanted), np.sin(wanted)
+    low, high = knots[cell], knots[cell + 1]
+    cosine, sine = np.cos(rays), np.sin(rays)
 
     def beside(t: Array) -> Array:
         point = curve.sample(t).point
-        found: Array = point[:, 1] * cosine - point[:, 0] * sine
-        return found
+        distance: Array = point[:, 1] * cosine - point[:, 0] * sine
+        return distance
 
     ends = beside(low), beside(high)
     exact = [np.abs(end) <= 0.0 for end in ends]
     open_ = ~(exact[0] | exact[1]) & (ends[0] < 0.0) & (ends[1] > 0.0)
     # rounding alone puts a ray beside both ends: the nearer one is it
-    at = np.where(np.abs(ends[0]) <= np.abs(ends[1]), low, high)
+    parameters: Array = np.where(np.abs(ends[0]) <= np.abs(ends[1]), low, high)
     if open_.any():
         cosine, sine = cosine[open_], sine[open_]
-        at[open_] = roots(beside, low[open_], high[open_], (ends[0][open_], ends[1][open_]), CLOSE)
-    found: Array = at
-    return found
+        parameters[open_] = roots(beside, low[open_], high[open_], (ends[0][open_], ends[1][open_]), CLOSE)
+    return parameters
 
 
-def _turned(curve: Curve) -> tuple[Array, Array]:
-    """Parameters run after run, and the polar angle there, rising over one turn and less than `STEP` apart."""
-    found = []
+def _polar_knots(curve: Curve) -> tuple[Array, Array]:
+    """Parameters (m,), run after run, and their polar angles, rising over one turn and less than `STEP` apart."""
+    runs = []
     for run in curve.runs:
         t = np.linspace(run.low, run.high, PLACES + 1)
         for _ in range(LEVELS):
@@ -287,8 +284,8 @@ def _turned(curve: Curve) -> tuple[Array, Array]:
             if not wide.any():
                 break
             t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])[wide]]))
-        found.append((t, z))
-    z = np.concatenate([z for _, z in found])
+        runs.append((t, z))
+    z = np.concatenate([z for _, z in runs])
     steps = np.angle(z[1:] / z[:-1])
-    turned = np.angle(z[0]) + np.concatenate([[0.0], np.cumsum(np.maximum(steps, 0.0))])
-    return np.concatenate([t for t, _ in found]), turned
+    polar = np.angle(z[0]) + np.concatenate([[0.0], np.cumsum(np.maximum(steps, 0.0))])
+    return np.concatenate([t for t, _ in runs]), polar

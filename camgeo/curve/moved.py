@@ -1,4 +1,4 @@
-"""A curve moved along its normals by a distance that varies: what is made in place of another for what a machine does.
+"""A curve moved along its normals by a distance that varies, as to correct a machine's deviations.
 
 With f over the curve's parameter the point is ``c + f N``, N the outward normal, and its derivative
 ``(sigma + f omega) T + f' N``: its speed is the length of that, and its tangent turns as T does less the angle by which
@@ -41,9 +41,8 @@ class Spline:
 
     @property
     def knots(self) -> Array:
-        """Where spans begin (N,), rad."""
-        count = self.pieces.shape[1]
-        return equal_steps(count)
+        """Beginnings of the spans (N,), rad."""
+        return equal_steps(self.pieces.shape[1])
 
     def on(self, tau: Series, side: Side = 1) -> Series:
         """The function as a jet or ball jet of the parameter, whose points or intervals lie in a span each."""
@@ -58,7 +57,7 @@ class Spline:
 
 @dataclass(frozen=True, eq=False)
 class Moved:
-    """Curve `by` outside `base` along its normals."""
+    """Curve at the distance `by` outside `base`, along its normals."""
 
     base: Shape
     by: Spline
@@ -79,27 +78,27 @@ class Moved:
 
     @property
     def repeats(self) -> int:
-        """No equal parts."""
+        """1: no equal parts."""
         return 1
 
     @property
     def steady(self) -> Array:
-        """No stretch of constant speed and turn (m, 2)."""
+        """All nan (m, 2): no stretch of constant speed and turn."""
         return np.full((len(self.breaks), 2), np.nan)
 
     @property
     def radii(self) -> Array:
-        """No stretch that is a circular arc (m,)."""
+        """All nan (m,): no stretch that is a circular arc."""
         return np.full(len(self.breaks), np.nan)
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        at = self.base.sample(t, side)
+        frame = self.base.sample(t, side)
         off, slope = self.by.on(Jet.variable(t, 1), side).c
-        along = at.speed + off * at.turn
-        tangent = along[:, None] * at.tangent + slope[:, None] * at.normal
+        along = frame.speed + off * frame.turn
+        tangent = along[:, None] * frame.tangent + slope[:, None] * frame.normal
         speed, turn = self.series(t, 1, side)
-        point = at.point + off[:, None] * at.normal
+        point = frame.point + off[:, None] * frame.normal
         return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
@@ -132,7 +131,7 @@ class Moved:
 
 
 def moved(curve: Curve, by: Spline) -> Curve:
-    """A whole curve moved along its normals; one that is a roller's contour is again a parallel of a pitch curve."""
+    """A whole curve moved outward along its normals; a roller's contour stays a parallel of a pitch curve."""
     shape, out = curve.shape, Moved(curve.shape, by)
     if isinstance(shape, Parallel):
         return Curve.whole(Parallel(Parallel(out, -shape.distance), shape.distance))

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
-from camgeo.curve.rates import OfLaw, SourceT, bounds_of, cut, series_of
+from camgeo.curve.rates import MotionShape, SourceT, cut
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import Affine, Constant
@@ -41,7 +41,7 @@ MOST_KEPT = 8  # bounds over many intervals
 
 @dataclass(frozen=True, eq=False)
 class Displacement:
-    """S over the shaft angle, mm or rad, all round: a periodic motion, `repeats` times a turn."""
+    """Displacement S over the whole turn, mm or rad: a periodic motion, `repeats` times a turn."""
 
     over: Piecewise
     repeats: int
@@ -49,7 +49,7 @@ class Displacement:
 
     @staticmethod
     def of(motion: Motion) -> Displacement:
-        """Take a motion over a whole turn or an equal part of one; IntentError unless S and S' join all round."""
+        """Displacement of a motion over a whole turn or an equal part of one; IntentError unless S and S' join."""
         repeats = round(TURN / motion.total)
         if not (motion.around == 1 and repeats >= 1 and abs(repeats * motion.total - TURN) <= 1e-9):
             raise ValueError(f"a motion over {motion.total!r} rad does not go round a turn")
@@ -63,7 +63,7 @@ class Displacement:
 
     @cached_property
     def functions(self) -> tuple[Stretch, ...]:
-        """The function of each stretch between breaks; of one alone where there is no break."""
+        """Function of each stretch between breaks; a single one without breaks."""
         begin = self.over.breaks if len(self.over.breaks) else self.over.knots[:1]
         index, _ = self.over.locate(begin, 1)
         part = tuple(self.over.functions[i] for i in index)
@@ -71,11 +71,11 @@ class Displacement:
 
     @property
     def steady(self) -> Mask:
-        """For each stretch whether it is a dwell."""
+        """Whether each stretch (m,) is a dwell."""
         return np.array([isinstance(f, Constant) for f in self.functions])
 
     def law(self, offset: float = 0.0, scale: float = 1.0) -> Piecewise:
-        """Give offset + scale S over a whole turn, as one motion."""
+        """The motion offset + scale S over a whole turn, by pieces."""
         over = self.over
         knots = [over.knots[:1], *(over.knots[1:] + i * TURN / self.repeats for i in range(self.repeats))]
         functions = [
@@ -84,7 +84,7 @@ class Displacement:
         return Piecewise(np.concatenate(knots), tuple(functions), TURN, over.smooth_seam and self.repeats == 1)
 
     def scaled(self, scale: float) -> Displacement:
-        """The same motion, so much larger."""
+        """The motion with S multiplied by `scale`."""
         functions = tuple(_moved(f, 0.0, scale, 0.0) for f in self.over.functions)
         over = Piecewise(self.over.knots, functions, self.over.period, self.over.smooth_seam)
         low, high = sorted(scale * end for end in self.range)
@@ -92,22 +92,22 @@ class Displacement:
 
     @property
     def rounding(self) -> float:
-        """By how much S or S' may be off through the rounding of a recipe's own formula; 0 where there is none."""
+        """Rounding error of S and S' through a recipe's own formula, mm or rad; 0 without one."""
         return self.over.rounding
 
     @property
     def eccentric(self) -> Mask:
-        """For each stretch whether S + S'' is constant: a dwell, or the harmonic law over a half turn."""
-        found = [isinstance(f, Affine) and first_harmonic(f) is not None for f in self.functions]
-        both: Mask = self.steady | np.array(found)
-        return both
+        """Whether S + S'' is constant on each stretch (m,): a dwell, or the harmonic law over a half turn."""
+        harmonic = [isinstance(f, Affine) and first_harmonic(f) is not None for f in self.functions]
+        mask: Mask = self.steady | np.array(harmonic)
+        return mask
 
     def on(self, tau: Series, side: Side = 1) -> Series:
-        """Apply S to jets or ball jets of the shaft angle; `side` decides at breaks."""
+        """S at jets or ball jets of the shaft angle; `side` decides at breaks."""
         return self.over.on(tau, side)
 
     def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
-        """Give S and its derivatives at theta (n,), (order + 1, n)."""
+        """S and its derivatives at theta (n,), (order + 1, n)."""
         return self.over.derivatives(theta, order, side)
 
 
@@ -119,9 +119,10 @@ def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stre
 
 @dataclass(frozen=True)
 class Translating:
-    """A stem whose line passes the shaft at `offset`, e > 0 on the side from which the surface comes; `foot` is d.
+    """A stem whose line passes the shaft at `offset` e, mm, above 0 on the side from which the surface comes.
 
-    The centre is at d + S along the line, d^2 = Rp^2 - e^2, which stands `turned` ahead of the shaft angle, rad.
+    The centre is at d + S along the line, `foot` d, mm, with d^2 = Rp^2 - e^2. The line stands `turned` ahead of the
+    shaft angle, rad.
     """
 
     foot: float
@@ -130,7 +131,7 @@ class Translating:
 
     @staticmethod
     def on(prime: float, offset: float = 0.0) -> Translating:
-        """Give the guide of a prime circle, mm; IntentError unless the stem's line meets the circle."""
+        """Guide with a prime circle, mm; raises IntentError unless the stem's line meets the circle."""
         if not (math.isfinite(prime) and abs(offset) < prime):
             raise IntentError(
                 f"the offset, {offset:.6g} mm, must be below the prime circle's radius, {prime:.6g} mm",
@@ -157,12 +158,12 @@ class Translating:
             )
 
     def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
-        """Give the centre as complex numbers (n,) and the direction of travel (n,)."""
+        """Centre as complex numbers (n,), mm, and direction of travel (n,), rad, at S (n,)."""
         travel = theta + self.turned if self.turned else theta
         return np.exp(1j * travel) * (self.foot + s + 1j * self.offset), travel
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """Give b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
+        """b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
         b, a, rate = s[:3].copy(), s[1:].copy(), np.zeros_like(s[:2])
         b[0] += self.foot
         a[0] -= self.offset
@@ -170,15 +171,15 @@ class Translating:
         return b, a, rate
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series: of the order of S, one fewer, one fewer."""
+        """b, a and tau' as series, of the order of S, one fewer and one fewer."""
         return s + self.foot, s.derivative() - self.offset, 1.0
 
     def resized(self, prime: float) -> Translating:
-        """Give the same line at another prime circle."""
+        """The same line at another prime circle, mm."""
         return Translating.on(prime, self.offset)
 
     def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
-        """Give the line with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        """The line with the shaft elsewhere, by b and -a of a follower at rest at S = 0, mm."""
         return Translating(cast("float", along), cast("float", across))
 
 
@@ -196,7 +197,7 @@ class Oscillating:
 
     @staticmethod
     def on(prime: float, pivot: float, length: float, side: int) -> Oscillating:
-        """Give the guide of a prime circle, mm; IntentError unless the arm reaches it."""
+        """Guide with a prime circle, mm; raises IntentError unless the arm reaches it."""
         if not abs(pivot - length) < prime < pivot + length:
             raise IntentError(
                 f"an arm of {length:.6g} mm about a pivot at {pivot:.6g} mm does not reach a prime circle of "
@@ -229,13 +230,13 @@ class Oscillating:
             )
 
     def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
-        """Give the centre as complex numbers (n,) and the direction of travel (n,)."""
+        """Centre as complex numbers (n,), mm, and direction of travel (n,), rad, at S (n,)."""
         psi = self.rest + s
         centre = np.exp(1j * theta) * (self.pivot - self.length * np.exp(1j * self.side * psi))
         return centre, theta + self.side * (psi - 0.5 * math.pi)
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """Give b, a (3, n) and tau' (2, n) with their derivatives."""
+        """b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
         sine, cosine = self.pivot * np.sin(self.rest + s[0]), self.pivot * np.cos(self.rest + s[0])
         _, v, w, j = s
         b = np.stack([sine, cosine * v, cosine * w - sine * v * v])
@@ -249,18 +250,18 @@ class Oscillating:
         return b, a, np.stack([1.0 + self.side * v, self.side * w])
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series."""
+        """b, a and tau' as series, of the order of S, one fewer and one fewer."""
         psi, side = s + self.rest, float(self.side)
         slope = s.derivative()
         lean = elementary.cos(cut(psi, slope.order)) * self.pivot - self.length
         return elementary.sin(psi) * self.pivot, slope * self.length - lean * side, slope * side + 1.0
 
     def resized(self, prime: float) -> Oscillating:
-        """Give the same arm and pivot at another prime circle."""
+        """The same arm and pivot at another prime circle, mm."""
         return Oscillating.on(prime, self.pivot, self.length, self.side)
 
     def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
-        """Give the same arm with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        """The same arm with the shaft elsewhere, by b and -a of a follower at rest at S = 0, mm."""
         x = self.length + self.side * across
         return Oscillating(
             cast("float", np.hypot(x, along)), self.length, cast("float", np.arctan2(along, x)), self.side
@@ -268,29 +269,25 @@ class Oscillating:
 
 
 Guide: TypeAlias = Translating | Oscillating
-"""How a roller's centre is led: its place, its direction of travel, and the frame's b, a and tau'."""
+"""Guide of a roller's centre: its place, its direction of travel, and the frame's b, a and tau'."""
 
 
 @dataclass(frozen=True)
-class FramedShape(OfLaw[SourceT]):
+class FramedShape(MotionShape[SourceT]):
     """Path of a point by the figures b, a and tau' of its moving frame, over the parameter of a motion."""
 
     @abstractmethod
-    def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Give the motion's figures as series."""
-
-    @abstractmethod
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series of those."""
+        """b, a and tau' as series, from the motion's figures."""
 
     @abstractmethod
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Give the point as complex numbers (n,), tau (n,), b and a (3, n) and tau' (2, n) with their derivatives."""
+        """Point as complex numbers (n,), tau (n,), b and a (3, n) and tau' (2, n) with derivatives, at t (n,)."""
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
         centre, travel, b, a, rate = self.rows(t, side)
-        # `_rates` by hand
+        # `rates_of` by hand
         speed = np.hypot(a[0], b[0])
         square = speed * speed
         along = a[0] * a[1] + b[0] * b[1]
@@ -306,29 +303,21 @@ class FramedShape(OfLaw[SourceT]):
             turn_slope,
         )
 
-    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
-        return series_of(self.figures, t, order, side, self._rates)
-
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,); a parallel asks for the same ones."""
-        asked = low.tobytes(), high.tobytes()
-        if asked not in self._bounds:
+        """Proved bounds over intervals (n,), kept for parallels of the curve, which need the same."""
+        key = low.tobytes(), high.tobytes()
+        if key not in self._bounds:
             if len(self._bounds) == MOST_KEPT:
                 self._bounds.clear()
-            self._bounds[asked] = bounds_of(self.figures, low, high, self._rates)
-        return self._bounds[asked]
+            self._bounds[key] = super().bounds(low, high)
+        return self._bounds[key]
 
     @cached_property
     def _bounds(self) -> dict[tuple[bytes, bytes], Bounds]:
         return {}
 
-    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, two orders fewer."""
-        return self._rates(self.figures(tau, side))
-
-    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from the motion's figures: two orders fewer."""
+    def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        """Speed and turn from the motion's figures, two orders fewer."""
         b, a, rate = self.frame(figures)
         a_slope = a.derivative()
         order = a_slope.order
@@ -348,15 +337,15 @@ class CentreShape(FramedShape[Displacement]):
         self.guide.demand(*self.law.range)
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Give S."""
+        """S at jets of the shaft angle."""
         return (self.law.on(tau, side),)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Give those of the guide."""
+        """b, a and tau' of the guide as series."""
         return self.guide.frame(figures[0])
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Give those of the guide at shaft angles t (n,)."""
+        """Point and figures of the guide at shaft angles t (n,), as `FramedShape.rows`."""
         s = self.law.derivatives(t, 3, side)
         return (*self.guide.place(t, s[0]), *self.guide.rows(s))
 

@@ -38,7 +38,7 @@ class Parallel:
 
     @property
     def repeats(self) -> int:
-        """Equal parts of the base curve."""
+        """Number of equal parts of the base curve."""
         return self.base.repeats
 
     @property
@@ -54,14 +54,14 @@ class Parallel:
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        at = self.base.sample(t, side)
+        frame = self.base.sample(t, side)
         return Frame(
-            at.point - self.distance * at.normal,
-            at.tangent,
-            at.speed - self.distance * at.turn,
-            at.turn,
-            at.speed_slope - self.distance * at.turn_slope,
-            at.turn_slope,
+            frame.point - self.distance * frame.normal,
+            frame.tangent,
+            frame.speed - self.distance * frame.turn,
+            frame.turn,
+            frame.speed_slope - self.distance * frame.turn_slope,
+            frame.turn_slope,
         )
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:

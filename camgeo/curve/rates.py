@@ -25,7 +25,7 @@ class Figures(Protocol):
     """Figures of a motion as jets of its parameter: phi and psi, or S alone; the side decides at breaks."""
 
     def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]:
-        """Give the figures."""
+        """The figures as jets."""
         ...
 
 
@@ -33,7 +33,7 @@ class Rates(Protocol):
     """Speed and turn of a shape from jets of those figures."""
 
     def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]:
-        """Give speed and turn."""
+        """Speed and turn as jets."""
         ...
 
 
@@ -44,7 +44,7 @@ FINE_ORDER = 9
 
 
 class Source(Protocol):
-    """What every motion gives of its stretches."""
+    """The stretches of a motion."""
 
     @property
     def breaks(self) -> Array:
@@ -53,12 +53,12 @@ class Source(Protocol):
 
     @property
     def repeats(self) -> int:
-        """Equal parts of the turn."""
+        """Number of equal parts of the turn."""
         ...
 
     @property
     def steady(self) -> Mask:
-        """For each stretch whether speed and turn are exactly constant there."""
+        """Whether speed and turn are exactly constant on each stretch (m,)."""
         ...
 
 
@@ -66,14 +66,35 @@ SourceT = TypeVar("SourceT", bound=Source)
 
 
 @dataclass(frozen=True)
-class OfLaw(ABC, Generic[SourceT]):
-    """What a shape has of its motion, whose parameter it shares."""
+class MotionShape(ABC, Generic[SourceT]):
+    """A shape by its motion, whose parameter it shares."""
 
     law: SourceT
 
     @abstractmethod
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
+
+    @abstractmethod
+    def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        """Figures of the motion at jets of its parameter."""
+
+    @abstractmethod
+    def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        """Speed and turn from those figures, two orders fewer."""
+
+    def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Speed and turn as series, two orders fewer than `tau`."""
+        return self.rates_of(self.figures(tau, side))
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.rates(Jet.variable(t, order + 2), side)
+        return speed.c, turn.c
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        return bounds_of(self.figures, low, high, self.rates_of)
 
     @property
     def period(self) -> float:
@@ -87,7 +108,7 @@ class OfLaw(ABC, Generic[SourceT]):
 
     @property
     def repeats(self) -> int:
-        """Equal parts of the motion: so has the curve, but for a turn."""
+        """Number of equal parts of the motion; the curve's are the same but for a turn."""
         return self.law.repeats
 
     @cached_property
@@ -96,8 +117,8 @@ class OfLaw(ABC, Generic[SourceT]):
         rests = self.law.steady
         out = np.full((rests.size, 2), np.nan)
         if rests.any():
-            at = self.sample(stretches(self.law).mean(axis=1)[rests])
-            out[rests] = np.column_stack([at.speed, at.turn])
+            frame = self.sample(stretches(self.law).mean(axis=1)[rests])
+            out[rests] = np.column_stack([frame.speed, frame.turn])
         return out
 
     @property
@@ -114,42 +135,36 @@ def stretches(shape: Source | Shape) -> Array:
 
 
 def cut(series: Series, order: int) -> Series:
-    """Cut a series to a lower order."""
+    """The series cut to a lower order."""
     if isinstance(series, Jet):
         return Jet(series.c[: order + 1])
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
 
 
-def series_of(figures: Figures, t: Array, order: int, side: Side, rates: Rates) -> tuple[Array, Array]:
-    """Taylor coefficients of speed and turn (order + 1, n) from those of the law, two orders more."""
-    speed, turn = rates(figures(Jet.variable(t, order + 2), side))
-    return speed.c, turn.c
-
-
 def bounds_of(figures: Figures, low: Array, high: Array, rates: Rates) -> Bounds:
-    """Bounds over intervals (n,) from a motion's figures, and from speed and turn as functions of them.
+    """Proved bounds over intervals (n,) from a motion's figures, and from speed and turn as functions of them.
 
-    Interval arithmetic alone loses how its operands hang together. So each derivative, of the law as of speed and
-    turn, is taken from the middle of the interval, plus half the width times what bounds the next derivative; only the
-    last comes from the arithmetic. In the middle too it is balls, of no width: so rounding is known for each interval.
+    Interval arithmetic alone loses the dependence of its operands. So each derivative, of the law as of speed and turn,
+    is taken at the middle of the interval, plus half the width times the bound of the next derivative; the arithmetic
+    gives the last one alone. Balls of no width at the middle bound the rounding.
     """
     middle = low + 0.5 * (high - low)
     reach = np.maximum(high - middle, middle - low)
     order = ORDER if reach.max(initial=0.0) > NARROW else FINE_ORDER
     # One call for both: intervals first, then their middles.
     both = BallJet.variable(np.concatenate([low, middle]), np.concatenate([high, middle]), order)
-    sharp = tuple(_over_sharpened(ball, reach) for ball in figures(both))
-    speed, turn = (_sharpened(ball, reach) for ball in rates(sharp))
+    sharp = tuple(_sharpen_balls(ball, reach) for ball in figures(both))
+    speed, turn = (_sharpen(ball, reach) for ball in rates(sharp))
     speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
     return Bounds(
         speed[0][0], speed[1][0], turn[0][0], turn[1][0], speed_size[1], turn_size[1], speed_size[2], turn_size[2]
     )  # fmt: skip
 
 
-def _sharpened(ball: BallJet, reach: Array) -> tuple[Array, Array]:
+def _sharpen(ball: BallJet, reach: Array) -> tuple[Array, Array]:
     """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,).
 
-    The balls are those over the n intervals, and then those in their middles.
+    `ball` holds the balls over the n intervals, then those in their middles.
     """
     (low, least), (high, most) = (np.hsplit(rows, 2) for rows in ball.bounds())
     for k in range(len(low) - 2, -1, -1):
@@ -159,9 +174,9 @@ def _sharpened(ball: BallJet, reach: Array) -> tuple[Array, Array]:
     return low, high
 
 
-def _over_sharpened(ball: BallJet, reach: Array) -> BallJet:
-    """Balls over intervals sharpened, then the same in their middles."""
-    sharp = Ball.between(*_sharpened(ball, reach))
+def _sharpen_balls(ball: BallJet, reach: Array) -> BallJet:
+    """The balls with those over intervals sharpened; the ones in their middles stay."""
+    sharp = Ball.between(*_sharpen(ball, reach))
     factorial = factorials(ball.order)
     rad = sharp.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(sharp.mid)
     mids, rads = ball.mid[:, reach.size :], ball.rad[:, reach.size :]

@@ -27,7 +27,7 @@ Number = TypeVar("Number", float, "Array")
 
 
 def radius_of(length: Number, bulge: Number) -> Number:
-    """Radius of arcs, by their chords' lengths."""
+    """Radius of arcs, by their chords' lengths and bulges."""
     return length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
 
 
@@ -60,13 +60,13 @@ class ArcChain:
 
     @property
     def chords(self) -> Array:
-        """From the start of each piece to its end (n, 2)."""
+        """Chord of each piece (n, 2), from its start to its end."""
         chords: Array = np.roll(self.points, -1, axis=0) - self.points
         return chords
 
     @property
     def circle(self) -> tuple[tuple[float, float], float] | None:
-        """Centre and radius of two halves of a circle, None of any other chain."""
+        """Centre and radius of a chain of two half circles; None for any other."""
         if len(self.points) != 2 or not bool((self.bulges == 1.0).all()):
             return None
         x, y = (0.5 * (self.points[0] + self.points[1])).tolist()
@@ -85,20 +85,20 @@ class Ring(ArcChain):
 
     @staticmethod
     def through(points: Sequence[tuple[float, float]] | Array, *, closed: bool = True) -> Ring:
-        """Return straight lines through points."""
-        at = np.asarray(points, dtype=np.float64)
-        return Ring(at, np.zeros(len(at)), closed)
+        """Straight lines through points (n, 2)."""
+        vertices = np.asarray(points, dtype=np.float64)
+        return Ring(vertices, np.zeros(len(vertices)), closed)
 
     def scaled(self, factor: float) -> Ring:
-        """Return the ring enlarged about the origin."""
+        """The ring enlarged about the origin."""
         return replace(self, points=factor * self.points)
 
     def mirrored(self) -> Ring:
-        """Return its image in the x axis."""
+        """The image in the x axis."""
         return replace(self, points=self.points * MIRROR, bulges=-self.bulges)
 
     def flattened(self) -> Array:
-        """Return points (m, 2) along it, arcs in steps of `FLAT`; the first is repeated at the end if it is closed."""
+        """Points (m, 2) along the ring, arcs in steps of `FLAT`; the first is repeated at the end if it is closed."""
         count = len(self.points) - (not self.closed)
         start, bulge = self.points[:count], self.bulges[:count]
         chord, sweep = self.chords[:count], 4.0 * np.arctan(bulge)
@@ -114,7 +114,7 @@ class Ring(ArcChain):
         return np.concatenate((points, self.points[:1] if self.closed else self.points[-1:]))
 
     def path(self, digits: int) -> str:
-        """Return the ring as the data of an SVG path, coordinates rounded to so many digits."""
+        """The ring as the data of an SVG path, coordinates with so many decimals."""
         x, y = (_text(column, digits) for column in self.points.T)
         text = [f"M{x[0]} {y[0]}"]
         count = len(self.points)
@@ -134,17 +134,17 @@ def _text(values: Array, digits: int) -> list[str]:
 
 
 def disc(x: float, y: float, radius: float) -> Ring:
-    """Return a circle."""
+    """A circle."""
     return Ring(np.array([[x - radius, y], [x + radius, y]]), np.ones(2))
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> Ring:
-    """Return a rectangle."""
+    """A rectangle with corners (x0, y0) and (x1, y1)."""
     return Ring.through([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
 def bar(a: tuple[float, float], b: tuple[float, float], width: float) -> Ring:
-    """Return a bar with round ends about two points; a disc where these are one."""
+    """A bar with round ends about two points; a disc where they coincide."""
     (ax, ay), (bx, by) = a, b
     length = math.hypot(bx - ax, by - ay)
     if length < 1e-9 * width:

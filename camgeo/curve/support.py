@@ -34,12 +34,12 @@ class SupportShape:
 
     @property
     def breaks(self) -> Array:
-        """Where the radius of curvature or its derivatives jump."""
+        """Parameters at which the radius of curvature or its derivatives jump, rising."""
         return self.lift.breaks
 
     @property
     def repeats(self) -> int:
-        """No equal parts are made use of."""
+        """1: equal parts are not used."""
         return 1
 
     @property
@@ -61,7 +61,7 @@ class SupportShape:
         return Frame(point, columns(-sine, cosine), p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
 
     def place(self, t: Array) -> Array:
-        """Where the face is touched at shaft angles (n,): p', mm from the line through the shaft, along the face."""
+        """Place of contact p' at shaft angles (n,), mm along the face from the line through the shaft."""
         slope: Array = self.lift.derivatives(t, 1)[1]
         return slope
 
@@ -81,9 +81,9 @@ class SupportShape:
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds of the radius of curvature over intervals (n,)."""
         mid, rad = self.lift.radius_enclosure(low, high, 2)
-        one, none = np.ones_like(low), np.zeros_like(low)
+        ones, zeros = np.ones_like(low), np.zeros_like(low)
         size = np.abs(mid) + rad
-        return Bounds(mid[0] - rad[0], mid[0] + rad[0], one, one, size[1], none, size[2], none)
+        return Bounds(mid[0] - rad[0], mid[0] + rad[0], ones, ones, size[1], zeros, size[2], zeros)
 
 
 def with_corners(curve: Curve) -> Curve:
@@ -92,12 +92,12 @@ def with_corners(curve: Curve) -> Curve:
     All stretches beside a corner are arcs, as of a Reuleaux polygon.
     """
     stretches = curve.runs[0].stretches
-    kept = [each for each in stretches.tolist() if curve.radius(each) != 0.0]
-    if len(kept) in {0, len(stretches)}:
+    arcs = [stretch for stretch in stretches.tolist() if curve.radius(stretch) != 0.0]
+    if len(arcs) in {0, len(stretches)}:
         return curve
-    return Curve(curve.shape, tuple(Run(low, high, (), closed=False) for low, high in kept))
+    return Curve(curve.shape, tuple(Run(low, high, (), closed=False) for low, high in arcs))
 
 
 def is_sharp(contour: Curve) -> bool:
-    """Whether a contour has corners, and these are all its shape's arcs of radius 0: nothing of it is cut off."""
+    """Whether the corners of a contour are all the arcs of radius 0 of its shape, so that none is trimmed."""
     return not contour.closed and contour == with_corners(Curve.whole(contour.shape))

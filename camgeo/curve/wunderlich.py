@@ -41,11 +41,11 @@ class PitchShape(FramedShape[Transmission]):
         return self.law.pitch_arcs[:, 2]
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Give phi and psi."""
+        """The angles phi and psi at jets of the parameter."""
         return self.law.jets(tau, side)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series."""
+        """b, a and tau' as series, from phi and psi."""
         phi, psi = figures
         rate, slope = phi.derivative(), psi.derivative()
         x, arm = cut(psi, slope.order) + self.law.alpha, self.law.arm
@@ -53,7 +53,7 @@ class PitchShape(FramedShape[Transmission]):
         return elementary.sin(x) * rate * arm, a * arm, rate - slope
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Give them at parameters t (n,) of the law."""
+        """Point and figures at parameters t (n,) of the law, as `FramedShape.rows`."""
         phi, psi = self.law.at(t, 3, side)
         x = psi[0] + self.law.alpha
         (f, f1, f2), (s, s1, s2) = phi[1:], psi[1:]

@@ -17,7 +17,7 @@ import numpy as np
 
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve, CurveError
-from camgeo.curve.extremes import divided
+from camgeo.curve.extremes import subdivide
 from camgeo.curve.measures import StarError, nearest, polar_parameters
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.files.table import DIGITS as PLACES
@@ -109,7 +109,7 @@ def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
 def greatest_bend(path: Curve) -> float:
     """A proved bound of |d2X/dC2|, mm/rad^2, over the whole path; raises CurveError where there is none."""
     stretches = np.concatenate([run.stretches for run in path.runs])
-    low, high = divided(stretches[:, 0], stretches[:, 1], max(CELLS // len(stretches), 1))
+    low, high = subdivide(stretches[:, 0], stretches[:, 1], max(CELLS // len(stretches), 1))
     proved, ends, width = path.shape.bounds(low, high), path.span(low, high), high - low
     speed, turn = proved.speed_high, np.maximum(np.abs(proved.turn_low), np.abs(proved.turn_high))
     g, h, x = (

@@ -210,13 +210,13 @@ def sound(recipe: Recipe, exact: ExactCam, surface: Surface) -> SurfaceDesign:
 
 def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], float]) -> tuple[list[Check], Curve | None]:
     from camgeo.curve.undercut.causes import UndercutError
-    from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
+    from camgeo.curve.undercut.undercut import MOST_REPORTED, undercuts
 
     trim, advice = recipe.cam.undercut == "trim", recipe.cam.advice.on(surface.name)
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius
-    if roller and len(backward := _seen_backward(surface.curve)) > MOST_TOLD * surface.curve.shape.repeats:
+    if roller and len(backward := _seen_backward(surface.curve)) > MOST_REPORTED * surface.curve.shape.repeats:
         raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
     least = _bent_most(surface)
     radius = least.radius + roller
@@ -224,8 +224,8 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
         bent = replace(bent, detail="the pitch curve of the ring has no hollow")
-    if least.room and roomy:
-        lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
+    if least.excess and roomy:
+        lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.excess) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
     try:
         found = undercuts(surface.curve)

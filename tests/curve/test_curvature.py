@@ -203,8 +203,8 @@ def test_lobes_that_are_almost_circles_are_enclosed():
     thin = 1e-6
     curve = Curve.whole(booth(60.0, 60.0 * math.sqrt(1.0 - thin)))
     found = enclosed_least_radius(curve)
-    assert 0.0 < found.room <= 1.01 * LOOSE * 120.0
-    assert least_radius(curve)[0] == found.radius - found.room
+    assert 0.0 < found.excess <= 1.01 * LOOSE * 120.0
+    assert least_radius(curve)[0] == found.radius - found.excess
     with mpmath.workdps(40):
 
         def radius(t):
@@ -214,7 +214,7 @@ def test_lobes_that_are_almost_circles_are_enclosed():
             return (r**2 + slope**2) ** 1.5 / (r**2 + 2 * slope**2 - 2 * r * bend)
 
         seen = float(min(radius(mpmath.mpf(t)) for t in np.linspace(0.0, 1.5, 31)))
-    assert found.radius - found.room <= seen
+    assert found.radius - found.excess <= seen
     assert found.radius == pytest.approx(seen, abs=1e-12 * 120.0)
 
 
@@ -224,7 +224,7 @@ def test_no_enclosure_is_wide_where_the_sign_is_in_doubt():
     least = least_radius(Curve.whole(pitch))[0]
     for share in (-1e-10, 1e-10):
         found = enclosed_least_radius(Curve.whole(Parallel(pitch, least * (1.0 + share))))
-        assert found.room == 0.0
+        assert found.excess == 0.0
         assert found.radius == pytest.approx(-share * least, rel=0.05)
 
 

@@ -352,7 +352,7 @@ def test_extremes_are_proved_and_reached() -> None:
     ):
         assert found.value == pytest.approx(seen, abs=1e-10)
         assert abs(found.value) >= abs(seen)
-        assert found.room < 1e-12
+        assert found.excess < 1e-12
     turn = np.array([[0.0, TURN]])
     assert both(figure, turn) == (least(figure, turn), greatest(figure, turn))
     assert greatest(lambda tau, side=1: tau * 0.0 + 2.0, np.array([[0.0, 1.0]])).value == 2.0  # noqa: ARG005
@@ -384,8 +384,8 @@ def test_a_flat_top_beside_a_break_is_not_passed_over(bend: float) -> None:
     for low, high in ((0.3, 1.5), (1.0, 2.4), (1.5707, 1.5708)):
         grid = np.linspace(low, high, 200_001)
         found = greatest(figure, np.array([[low, high]]))
-        assert found.value + found.room >= (np.sin(grid) + bend * (grid - 1.0) ** 2).max()
-        assert found.room < 1e-12
+        assert found.value + found.excess >= (np.sin(grid) + bend * (grid - 1.0) ** 2).max()
+        assert found.excess < 1e-12
 
 
 def test_a_figure_is_found_once_of_a_profile() -> None:
@@ -400,8 +400,8 @@ def test_a_kink_inside_a_stretch_is_bounded_by_values_alone() -> None:
 
     found = greatest(lambda tau, side=1: -elementary.abs_(tau - 0.3), np.array([[0.0, 1.0]]))  # noqa: ARG005
     assert found.value == pytest.approx(0.0, abs=1e-12)
-    assert found.value + found.room >= 0.0
-    assert found.room < 1e-9
+    assert found.value + found.excess >= 0.0
+    assert found.excess < 1e-9
 
 
 @pytest.mark.slow

@@ -76,10 +76,10 @@ def test_against_the_polygon_and_dense_samples(name: str) -> None:
     assert found.perimeter > np.hypot(*np.diff(points, axis=0).T).sum()
     distance = np.hypot(*points.T)
     far, near = farthest(curve), nearest(curve)
-    assert distance.max() - 1e-9 <= far.value + far.room
+    assert distance.max() - 1e-9 <= far.value + far.excess
     assert far.value == pytest.approx(distance.max(), abs=1e-8)
     assert near.value == pytest.approx(distance.min(), abs=1e-8)
-    assert max(far.room, near.room) < 1e-10
+    assert max(far.excess, near.excess) < 1e-10
     for one in (far, near):
         assert np.hypot(*curve.sample(np.array([one.at])).point[0]) == pytest.approx(one.value, abs=1e-11)
 
@@ -136,6 +136,6 @@ def test_any_cam_s_measures_are_those_of_its_polygon(base: float, stroke: float,
     points = polygon(curve, 20_001)
     assert measures(curve).area == pytest.approx(area_of(points), rel=1e-6)
     far, distance = farthest(curve), np.hypot(*points.T)
-    assert distance.max() <= far.value + far.room + 1e-12
+    assert distance.max() <= far.value + far.excess + 1e-12
     assert far.value == pytest.approx(distance.max(), rel=1e-6)
     assert nearest(curve).value <= distance.min() + 1e-12

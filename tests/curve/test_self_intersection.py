@@ -13,7 +13,7 @@ from support.shapes import PEAR
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.support import SupportShape
-from camgeo.curve.undercut.self_intersection import all_breaks, displacement, seen_crossings, settled
+from camgeo.curve.undercut.self_intersection import all_breaks, displacement, newton_crossings, polygon_crossings
 from camgeo.curve.wunderlich import PitchShape
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_law
@@ -82,7 +82,9 @@ def test_a_swallowtail_crosses_at_root_three_of_its_reversal(margin):
     curve = wave(8.0 - margin)
     d = math.acos((8.0 - margin) / 8.0) / 3.0
     crest = PERIOD / 3.0
-    found = settled(curve, np.array([[crest - 1.5 * d, crest + 1.5 * d], [crest - 2.2 * d, crest + 2.0 * d]]), 10.0)
+    found = newton_crossings(
+        curve, np.array([[crest - 1.5 * d, crest + 1.5 * d], [crest - 2.2 * d, crest + 2.0 * d]]), 10.0
+    )
     assert found.shape == (2, 2)
     rough = 3.0 * d**2 + 1e-15 / margin
     assert found - crest == pytest.approx(np.array([[-1.0, 1.0]] * 2) * math.sqrt(3.0) * d, rel=max(rough, 1e-9))
@@ -94,9 +96,9 @@ def test_crossings_of_a_polygon():
     t = np.arange(6.0)
     for shift in range(6):
         moved = np.roll(points, -shift, axis=0)
-        (found,) = seen_crossings(t, moved, 6.0, t.size)
+        (found,) = polygon_crossings(t, moved, 6.0, t.size)
         assert sorted((found + shift) % 6.0) == pytest.approx([0.5, 3.5])
-    assert seen_crossings(t[:4], np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 4.0, 4).shape == (0, 2)
+    assert polygon_crossings(t[:4], np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 4.0, 4).shape == (0, 2)
 
 
 def test_crossings_settle_across_the_seam():
@@ -104,9 +106,9 @@ def test_crossings_settle_across_the_seam():
     nodes = np.linspace(0.0, PERIOD, 401)[:-1]
     for shift in (0.0, 1.62, 3.0):
         t = nodes + shift
-        seen = seen_crossings(t, curve.sample(t).point, PERIOD, t.size)
+        seen = polygon_crossings(t, curve.sample(t).point, PERIOD, t.size)
         assert seen.shape == (2, 2)
-        found = settled(curve, seen, 50.0)
+        found = newton_crossings(curve, seen, 50.0)
         gap = curve.sample(found[:, 0]).point - curve.sample(found[:, 1]).point
         assert np.abs(gap).max() < 1e-12
         # symmetric about the x axis
@@ -115,5 +117,5 @@ def test_crossings_settle_across_the_seam():
 
 def test_what_is_no_crossing_does_not_settle():
     curve = wave(9.0)
-    assert settled(curve, np.array([[0.1, 2.0], [3.0, 4.0], [1.0, 1.0]]), 10.0).shape == (0, 2)
-    assert settled(curve, np.empty((0, 2)), 10.0).shape == (0, 2)
+    assert newton_crossings(curve, np.array([[0.1, 2.0], [3.0, 4.0], [1.0, 1.0]]), 10.0).shape == (0, 2)
+    assert newton_crossings(curve, np.empty((0, 2)), 10.0).shape == (0, 2)

@@ -90,7 +90,7 @@ def leans(shape, most, fewest):
     """Greatest and least pressure angle, each with the shaft angle at which it is reached."""
     top, bottom = greatest(shape.slope, stretches(shape)), least(shape.slope, stretches(shape))
     for found, (value, where) in ((top, most), (bottom, fewest)):
-        assert found.room < 1e-11
+        assert found.excess < 1e-11
         assert angle(found)[0] == pytest.approx(value, abs=NINE)
         assert angle(found)[1] == pytest.approx(where, abs=1.01e-5)
 

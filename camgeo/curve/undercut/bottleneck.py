@@ -1,4 +1,4 @@
-"""How large a disc can roll all round inside a pitch curve: necks between far-apart stretches (docs/theory.md 7).
+"""Largest disc that rolls all round inside a pitch curve: necks between far-apart stretches (docs/theory.md 7).
 
 The disc that touches the curve from inside at x and passes through y has the radius
 
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.curve import SHIFT, CurveError
+from camgeo.curve.curve import SHIFT, CurveError, cyclic_gap
 from camgeo.curve.undercut.pairs import Boxes, Pairs, Pitch
 from camgeo.curve.undercut.tangents import Turning
 from kin.numeric.records import dataclass
@@ -55,10 +55,10 @@ class Neck:
 
 
 class OpenNeckError(CurveError):
-    """What was left open: every disc of radius `least` rolls all round, none above `most`; `pair` is where, parameters.
+    """An undecided neck at parameters `pair`: every disc of radius `least`, mm, rolls all round, none above `most`.
 
-    Both in mm. `seen` says whether a pair of points was found that no larger disc than `most` passes; otherwise `most`
-    is the radius that was asked for.
+    `seen` says whether a pair of points was found that no larger disc than `most` passes; otherwise `most` is the
+    radius to be decided.
     """
 
     def __init__(self, least: float, most: float, pair: tuple[float, float], seen: bool) -> None:
@@ -81,21 +81,21 @@ def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
         return ()  # a convex curve: every pair is near
     search = _Search.of(pitch)
     boxes = search.boxes()
-    found: list[Neck] = []
+    necks: list[Neck] = []
     least: _Least = (below, None)
     for _ in range(LEVELS):
-        boxes, least = search.sifted(boxes, least, found)
-        if boxes.low.shape[0] == 0 and (found or least[1] is None):
-            return _distinct(search.turned(n for n in found if n.half < below), least[0], pitch.curve.shape.period)
+        boxes, least = search.sift(boxes, least, necks)
+        if boxes.low.shape[0] == 0 and (necks or least[1] is None):
+            return _distinct(search.images(n for n in necks if n.half < below), least[0], pitch.curve.shape.period)
         if not 0 < boxes.low.shape[0] <= MOST_BOXES:
             break
-    raise search.left_open(boxes, least)
+    raise search.undecided(boxes, least)
 
 
 def neck_from(pitch: Pitch, first: float, second: float) -> Neck | None:
-    """Double normal across the inside that Newton's method finds from two parameters, None if it finds none."""
+    """Double normal across the inside that Newton's method reaches from two parameters; None where it reaches none."""
     ends = _double_normals(pitch, np.array([[first, second]]))
-    neck, inside, _ = _measured(pitch, ends)
+    neck, inside, _ = _chord(pitch, ends)
     return Neck(float(ends[0, 0]), float(ends[0, 1]), float(neck[0])) if inside[0] else None
 
 
@@ -155,23 +155,23 @@ class _Search:
         first = own[first]
         return Boxes(np.column_stack([low[first], low[second]]), np.column_stack([high[first], high[second]]))
 
-    def turned(self, necks: Iterable[Neck]) -> list[Neck]:
+    def images(self, necks: Iterable[Neck]) -> list[Neck]:
         """Necks with their images by all turns that lead the curve into itself."""
         shape = self.pitch.curve.shape
         by = [shape.period / shape.repeats * k for k in range(shape.repeats)]
         return [Neck(n.first + turn, n.second + turn, n.half) for n in necks for turn in by]
 
     def far(self, boxes: Boxes) -> Boxes:
-        """Boxes of which the pairs are not all near, one way round or the other."""
+        """Boxes whose pairs are not all near, one way round or the other."""
         period = self.pitch.curve.shape.period
         near = np.zeros(boxes.low.shape[0], dtype=bool)
-        for one, other in ((0, 1), (1, 0)):
-            before = boxes.low[:, other] < boxes.low[:, one]
-            near |= self.turning.near(boxes.low[:, one], boxes.high[:, other] + np.where(before, period, 0.0))
+        for first, second in ((0, 1), (1, 0)):
+            before = boxes.low[:, second] < boxes.low[:, first]
+            near |= self.turning.near(boxes.low[:, first], boxes.high[:, second] + np.where(before, period, 0.0))
         return Boxes(boxes.low[~near], boxes.high[~near])
 
-    def sifted(self, boxes: Boxes, least: _Least, necks: list[Neck]) -> tuple[Boxes, _Least]:
-        """Boxes, divided, in which R may still fall below the least seen, and that after what was found in these."""
+    def sift(self, boxes: Boxes, least: _Least, necks: list[Neck]) -> tuple[Boxes, _Least]:
+        """Boxes, divided, in which R may still fall below the least seen, and the least seen after these."""
         boxes = self.far(boxes)
         if boxes.low.shape[0] == 0:
             return boxes, least
@@ -185,24 +185,26 @@ class _Search:
         bowls = np.flatnonzero((pairs.bowl > 0.0) & (pairs.chord < 2.0 * least[0] * (1.0 + NECK_SHARPNESS)))
         if bowls.size:
             ends = _double_normals(self.pitch, pairs.centre[bowls])
-            half, inside, slant = _measured(self.pitch, ends)
-            held = ((ends >= boxes.low[bowls]) & (ends <= boxes.high[bowls])).all(axis=1) & inside
+            half, inside, slant = _chord(self.pitch, ends)
+            reached = ((ends >= boxes.low[bowls]) & (ends <= boxes.high[bowls])).all(axis=1) & inside
             # |x - y| falls by no more than its share slant^2 / 2 bowl from there: Newton's method has come close enough
-            held &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
-            free[bowls[held]] = True
-            necks += [Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[held], half[held], strict=True)]
+            reached &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
+            free[bowls[reached]] = True
+            necks += [
+                Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[reached], half[reached], strict=True)
+            ]
             narrowest = min(necks, key=lambda n: n.half, default=None)
             if narrowest is not None and narrowest.half < least[0]:
                 least = narrowest.half, (narrowest.first, narrowest.second)
-        return _divided(boxes, pairs.centre, pairs.doubt.T, ~free), least
+        return _halve(boxes, pairs.centre, pairs.doubt.T, ~free), least
 
-    def left_open(self, boxes: Boxes, least: _Least) -> OpenNeckError:
-        """Say what is proved of pairs that were left, and how close the least was seen to be."""
+    def undecided(self, boxes: Boxes, least: _Least) -> OpenNeckError:
+        """Error for undecided boxes: the radius that is proved to pass, and the least that was seen."""
         most, seen = least
         boxes = self.far(boxes)
         if boxes.low.shape[0] == 0:  # the least was seen, and no neck found that has it
-            at = seen or (0.0, 0.0)
-            return OpenNeckError(most * (1.0 - NECK_SHARPNESS), most, at, seen is not None)
+            pair = seen or (0.0, 0.0)
+            return OpenNeckError(most * (1.0 - NECK_SHARPNESS), most, pair, seen is not None)
         pairs = Pairs.of(self.pitch, boxes)
         low, high = 0.0, most
         where = pairs.centre[int(np.argmin(pairs.radius.min(axis=0)))]
@@ -218,12 +220,12 @@ class _Search:
         return OpenNeckError(low, most, seen or _pair(where), seen is not None)
 
 
-def _pair(at: Array) -> tuple[float, float]:
-    return float(at[0]), float(at[1])
+def _pair(pair: Array) -> tuple[float, float]:
+    return float(pair[0]), float(pair[1])
 
 
-def _divided(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.bool_]) -> Boxes:
-    """Halve the kept boxes, along both intervals unless one leaves much less in doubt."""
+def _halve(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.bool_]) -> Boxes:
+    """Halve the doubtful boxes, along both intervals unless one leaves much less in doubt."""
     low, high, centre, doubt = boxes.low[doubtful], boxes.high[doubtful], centre[doubtful], doubt[doubtful]
     for side in (0, 1):
         cut = doubt[:, side] > 0.5 * doubt[:, 1 - side]
@@ -238,7 +240,7 @@ def _divided(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.boo
 def _double_normals(pitch: Pitch, ends: Array) -> Array:
     """Parameters (n, 2) that Newton's method comes to from (n, 2), for chords normal to the curve at both ends.
 
-    Whether it has come there is for `_measured` to tell: without a double normal nearby it ends anywhere.
+    `_chord` says whether they are: without a double normal nearby the method ends anywhere.
     """
     ends = ends.copy()
     count = ends.shape[0]
@@ -257,10 +259,10 @@ def _double_normals(pitch: Pitch, ends: Array) -> Array:
     return ends
 
 
-def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Array]:
-    """Half the chord between parameters (n, 2), whether it is a double normal that runs across the inside, its slant.
+def _chord(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Half the chord between parameters (n, 2), mm, whether it is a double normal across the inside, and its slant.
 
-    The slant is how far both tangents are from square to it.
+    The slant is the share of the chord that lies along both tangents, 0 for a double normal.
     """
     count = ends.shape[0]
     x, y = pitch.curve.sample(ends.T.ravel()).split(count)
@@ -275,16 +277,11 @@ def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Arra
 
 def _distinct(necks: list[Neck], limit: float, period: float) -> tuple[Neck, ...]:
     """Narrowest necks, each once; its first end is the lower parameter."""
-    kept: list[Neck] = []
+    distinct: list[Neck] = []
     for neck in sorted(necks, key=lambda n: n.half):
         if neck.half > limit * (1.0 + NECK_SHARPNESS):
             break
         a, b = sorted((neck.first % period, neck.second % period))
-        if not any(_apart(a, n.first, period) < 1e-7 and _apart(b, n.second, period) < 1e-7 for n in kept):
-            kept.append(Neck(a, b, neck.half))
-    return tuple(sorted(kept, key=lambda n: n.first))
-
-
-def _apart(a: float, b: float, period: float) -> float:
-    gap = abs(a - b) % period
-    return min(gap, period - gap)
+        if not any(cyclic_gap(a, n.first, period) < 1e-7 and cyclic_gap(b, n.second, period) < 1e-7 for n in distinct):
+            distinct.append(Neck(a, b, neck.half))
+    return tuple(sorted(distinct, key=lambda n: n.first))

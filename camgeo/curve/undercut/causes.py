@@ -1,4 +1,4 @@
-"""Why a follower loses contact: reversals of the contour, and necks that a roller does not pass."""
+"""Causes of lost contact: reversals of the contour, and necks that a roller does not pass."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class UndercutError(CamgeoError, ValueError):
-    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round.
+    """No single contour is left by trimming; `parameter` is that of the cause, None if all round.
 
-    `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it was not asked for.
+    `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it is not worked out.
     """
 
     def __init__(self, message: str, parameter: float | None = None, free_at: float | None = None) -> None:
@@ -27,15 +27,15 @@ class UndercutError(CamgeoError, ValueError):
         self.parameter, self.free_at = parameter, free_at
 
     def mirrored(self) -> UndercutError:
-        """The same of a curve run through the other way."""
+        """The error for the curve run through the other way."""
         return UndercutError(str(self), None if self.parameter is None else -self.parameter, self.free_at)
 
 
 @dataclass(frozen=True)
 class Causes:
-    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve.
+    """Causes of lost contact: reversals of the contour, and the narrowest necks of a pitch curve.
 
-    `open` is set where there is undercut, but whether there are narrower necks could not be decided.
+    `open` is set where there is undercut and narrower necks could be neither found nor excluded.
     """
 
     reversals: tuple[Reversal, ...]
@@ -68,32 +68,32 @@ def follower_radius(curve: Curve) -> float:
 
 
 def causes(curve: Curve) -> Causes:
-    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
+    """Reversals, and the narrowest necks that a roller does not pass, as proved by `reversals` and `narrowest_necks`.
 
     Raises ValueError for a curve that a flat face cannot work, as its tangent turns back; CurveError where it is open
     whether there is any undercut.
     """
     radius = follower_radius(curve)
-    found = reversals(curve)
+    reversed_stretches = reversals(curve)
     if math.isinf(radius):
         hollow = curve.cells.rows[3] < 0.0
         if hollow.any():
             raise ValueError(
                 f"a flat face cannot touch the concave part near parameter {curve.cells.low[hollow][0]:.9g}"
             )
-        return Causes(found, ())
+        return Causes(reversed_stretches, ())
     if radius == 0.0:  # a point passes every neck
-        return Causes(found, ())
+        return Causes(reversed_stretches, ())
     from camgeo.curve.undercut.bottleneck import OpenNeckError, narrowest_necks, neck_from
     from camgeo.curve.undercut.pairs import Pitch
 
-    below = radius if not found else min(radius, radius + least_radius(curve)[0])
+    below = radius if not reversed_stretches else min(radius, radius + least_radius(curve)[0])
     pitch = Pitch.of(curve)
     try:
-        return Causes(found, narrowest_necks(pitch, below))
+        return Causes(reversed_stretches, narrowest_necks(pitch, below))
     except OpenNeckError as error:
         # a pair of points that the roller does not pass is undercut, whatever else there is
         neck = neck_from(pitch, *error.pair) if error.seen else None
-        if not found and (neck is None or not neck.half < radius):
+        if not reversed_stretches and (neck is None or not neck.half < radius):
             raise
-        return Causes(found, () if neck is None or not neck.half < radius else (neck,), error)
+        return Causes(reversed_stretches, () if neck is None or not neck.half < radius else (neck,), error)

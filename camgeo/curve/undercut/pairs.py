@@ -1,6 +1,6 @@
-"""Pairs of points of a pitch curve: what is proved of the disc that touches it at one and passes through the other.
+"""Pairs of points of a pitch curve: proved bounds of the disc that touches it at one and passes through the other.
 
-Over a box, a pair of parameter intervals, all is stated about its centre, with what the bounds of speed and turn allow.
+Over a box, a pair of parameter intervals, bounds are taken about its centre, from those of speed and turn.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Pitch:
 
     @staticmethod
     def of(contour: Curve) -> Pitch:
-        """Pitch curve of a roller's whole contour, a `Parallel`. Its bounds are its own: the contour's say less."""
+        """Pitch curve of a roller's whole contour, a `Parallel`, with its own bounds, tighter than the contour's."""
         if not isinstance(contour.shape, Parallel):
             raise TypeError("only a roller's contour has a pitch curve")
         return Pitch(Curve(contour.shape.base, contour.runs))
@@ -39,14 +39,14 @@ class Pitch:
         b = self.curve.cells.over(low, high)
         far = np.maximum(t - low, high - t)
         # breaks inside an interval spoil Taylor's series about the point, not the bounds of the cells
-        speed_room = np.abs(points.speed_slope) * far + 0.5 * b.speed_bend * far**2
-        turn_room = np.abs(points.turn_slope) * far + 0.5 * b.turn_bend * far**2
+        speed_change = np.abs(points.speed_slope) * far + 0.5 * b.speed_bend * far**2
+        turn_change = np.abs(points.turn_slope) * far + 0.5 * b.turn_bend * far**2
         broken = self._broken(low, high)
-        speed_room[broken], turn_room[broken] = np.inf, np.inf
-        least = np.maximum(b.speed_low, points.speed - speed_room)
-        most = np.minimum(b.speed_high, points.speed + speed_room)
-        turn_low = np.maximum(b.turn_low, points.turn - turn_room)
-        turn_high = np.minimum(b.turn_high, points.turn + turn_room)
+        speed_change[broken], turn_change[broken] = np.inf, np.inf
+        least = np.maximum(b.speed_low, points.speed - speed_change)
+        most = np.minimum(b.speed_high, points.speed + speed_change)
+        turn_low = np.maximum(b.turn_low, points.turn - turn_change)
+        turn_high = np.minimum(b.turn_high, points.turn + turn_change)
         # where the speed is not proved to be above 0, nothing is known of the curvature
         least = np.where(least > 0.0, least, np.nan)
         bend_low = np.minimum(turn_low / least, turn_low / most)
@@ -79,9 +79,9 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Pairs:
-    """What is known of the pairs of n boxes about their centres (n, 2); rows are one point's and the other's.
+    """Bounds of the pairs of n boxes about their centres (n, 2); rows are one point's and the other's.
 
-    `radius` (2, n) holds what R at the centres is not above, `reach` (2, n) how far along the curve a box extends to
+    `radius` (2, n) is an upper bound of R at the centres, `reach` (2, n) how far along the curve a box extends to
     either side, `doubt` (2, n) by how much that and the turning there move the pair against each other, `chord` (n,) a
     lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length.
     """
@@ -94,7 +94,7 @@ class Pairs:
     bowl: Array
     square: Array
     along: Array
-    along_room: Array
+    along_change: Array
     across: Array
     bend_low: Array
     bend_high: Array
@@ -102,7 +102,7 @@ class Pairs:
 
     @staticmethod
     def of(pitch: Pitch, boxes: Boxes) -> Pairs:
-        """Work out what is known of the pairs of boxes."""
+        """Bounds of the pairs of boxes."""
         count = boxes.low.shape[0]
         centre = 0.5 * (boxes.low + boxes.high)
         both = pitch.curve.sample(centre.T.ravel())
@@ -113,21 +113,21 @@ class Pairs:
         d = x.point - y.point
         square = np.sum(d * d, axis=1)
         length = np.sqrt(square)
-        room = reach.sum(axis=0)
+        shift = reach.sum(axis=0)
         along = np.stack([np.sum(d * x.tangent, axis=1), -np.sum(d * y.tangent, axis=1)])
         across = np.stack([np.sum(d * x.normal, axis=1), -np.sum(d * y.normal, axis=1)])
-        # how far these may change over the box: d moves by `room`, the frames turn by bend * reach
+        # how far these may change over the box: d moves by `shift`, the frames turn by bend * reach
         turned = np.maximum(np.abs(bend_low), np.abs(bend_high)) * reach
         doubt = np.nan_to_num(reach + turned * length, nan=np.inf)
-        along_room = room + turned * (length + room)
-        across_room = room + turned * (np.abs(along) + along_room)
+        along_change = shift + turned * (length + shift)
+        across_change = shift + turned * (np.abs(along) + along_change)
         radius = np.full(across.shape, np.inf)
-        sure = across - ROUNDING * pitch.curve.size  # points of a fold differ by less than they are rounded
-        np.divide(square, 2.0 * sure, out=radius, where=sure > 0.0)
+        least_across = across - ROUNDING * pitch.curve.size  # points of a fold differ by less than they are rounded
+        np.divide(square, 2.0 * least_across, out=radius, where=least_across > 0.0)
         # Hessian of |d|^2 / 2 in arc length: [[1 - k across, -T.T'], [-T.T', 1 - k' across']]
         diagonal = 1.0 - np.maximum(
-            np.maximum(bend_low * (across - across_room), bend_low * (across + across_room)),
-            np.maximum(bend_high * (across - across_room), bend_high * (across + across_room)),
+            np.maximum(bend_low * (across - across_change), bend_low * (across + across_change)),
+            np.maximum(bend_high * (across - across_change), bend_high * (across + across_change)),
         )
         mixed = np.minimum(np.abs(np.sum(x.tangent * y.tangent, axis=1)) + turned.sum(axis=0), 1.0)
         bowl = 0.5 * (diagonal[0] + diagonal[1]) - np.hypot(0.5 * (diagonal[0] - diagonal[1]), mixed)
@@ -135,10 +135,10 @@ class Pairs:
         least = square - 2.0 * np.sum(np.abs(along) * reach, axis=0) + np.minimum(bowl, 0.0) * np.sum(reach**2, axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
             least = np.where(bowl > 0.0, np.maximum(least, square - slope / bowl), least)
-        chord = np.maximum(length - room, np.sqrt(np.fmax(least, 0.0)))
+        chord = np.maximum(length - shift, np.sqrt(np.fmax(least, 0.0)))
         slanted = np.abs(np.sum(x.normal * y.tangent, axis=1)) + turned.sum(axis=0)
         return Pairs(
-            centre, radius, reach, doubt, chord, bowl, square, along, along_room, across, bend_low, bend_high, slanted
+            centre, radius, reach, doubt, chord, bowl, square, along, along_change, across, bend_low, bend_high, slanted
         )
 
     def free(self, aim: float) -> NDArray[np.bool_]:
@@ -149,7 +149,7 @@ class Pairs:
         for i in (0, 1):
             other = 1 - i
             steep = np.maximum(np.abs(1.0 - aim * self.bend_low[i]), np.abs(1.0 - aim * self.bend_high[i]))
-            own = 2.0 * steep * (np.abs(self.along[i]) + self.along_room[i]) * self.reach[i]
-            pull = np.abs(self.along[other]) + self.along_room[other] + aim * self.slanted
+            own = 2.0 * steep * (np.abs(self.along[i]) + self.along_change[i]) * self.reach[i]
+            pull = np.abs(self.along[other]) + self.along_change[other] + aim * self.slanted
             clear &= self.square - 2.0 * aim * self.across[i] > own + 2.0 * pull * self.reach[other]
         return clear | (self.chord >= 2.0 * aim)

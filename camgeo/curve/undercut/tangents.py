@@ -1,4 +1,4 @@
-"""Which way a curve's tangent points over any stretch of it: proved ranges, looked up in a table."""
+"""Directions of a curve's tangent over any stretch of it: proved ranges, in a table."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Turning:
 
     @staticmethod
     def of(curve: Curve) -> Turning:
-        """Make the table of a whole closed curve, from its cells' proved bounds of the turn."""
+        """Table of a whole closed curve, from its cells' proved bounds of the turn."""
         cells = curve.cells
         width = cells.high - cells.low
         steep = np.maximum(np.abs(cells.rows[2]), np.abs(cells.rows[3]))
@@ -65,28 +65,28 @@ class Turning:
         )
 
     def near(self, start: Array, end: Array) -> NDArray[np.bool_]:
-        """Whether stretches from `start` to `end` (n,), start < end, keep within a right angle.
+        """Whether stretches from `start` to `end` (n,), start < end, turn by a right angle at most.
 
-        Or within half a turn, where they are bent one way throughout.
+        Half a turn will do where they are bent one way throughout.
         """
         first = np.clip(np.searchsorted(self.knots, start, side="right") - 1, 0, self.low.shape[1] - 1)
         last = np.clip(np.searchsorted(self.knots, end, side="left"), first + 1, self.low.shape[1])
         level = np.frexp(last - first)[1] - 1
-        other = last - (1 << level)
-        span = np.maximum(self.high[level, first], self.high[level, other]) - np.minimum(
-            self.low[level, first], self.low[level, other]
+        second = last - (1 << level)
+        span = np.maximum(self.high[level, first], self.high[level, second]) - np.minimum(
+            self.low[level, first], self.low[level, second]
         )
         one_way = (self.hollow[first] == self.hollow[last]) | (self.bulging[first] == self.bulging[last])
-        found: NDArray[np.bool_] = (span <= RIGHT) | (one_way & (span <= STRAIGHT))
-        return found
+        is_near: NDArray[np.bool_] = (span <= RIGHT) | (one_way & (span <= STRAIGHT))
+        return is_near
 
 
-def _before(marked: NDArray[np.bool_]) -> NDArray[np.intp]:
-    return np.concatenate([[0], np.cumsum(np.tile(marked, 2))])
+def _before(flags: NDArray[np.bool_]) -> NDArray[np.intp]:
+    return np.concatenate([[0], np.cumsum(np.tile(flags, 2))])
 
 
 def _doubled(worst: np.ufunc, values: Array) -> Array:
-    """Worst of 1, 2, 4, ... values from each on (levels, m)."""
+    """Extremes of 1, 2, 4, ... values from each on (levels, m), by `worst`, minimum or maximum."""
     rows = [values]
     while 2 << (len(rows) - 1) <= values.size:
         step = 1 << (len(rows) - 1)

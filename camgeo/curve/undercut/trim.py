@@ -1,4 +1,4 @@
-"""The contour that is left where a profile undercuts: what every position of the follower leaves standing.
+"""The contour that is left where a profile undercuts: the metal that no position of the follower cuts away.
 
 A point q of the metal stands if no contact position cuts it away. For a contour point z(s) with the outward normal N
 and a follower of curvature k (a roller of radius e: k = 1/e; a flat face: k = 0) that is
@@ -18,9 +18,16 @@ import numpy as np
 
 from camgeo.curve.backwards import backwards, runs_backwards
 from camgeo.curve.curvature import ROUNDING, roots
-from camgeo.curve.curve import SHIFT, Curve, Run
+from camgeo.curve.curve import SHIFT, Curve, Run, cyclic_gap
 from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius, in_ring
-from camgeo.curve.undercut.self_intersection import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
+from camgeo.curve.undercut.self_intersection import (
+    SHORT,
+    all_breaks,
+    displacement,
+    in_parts,
+    newton_crossings,
+    polygon_crossings,
+)
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -30,9 +37,9 @@ if TYPE_CHECKING:
     from camgeo.curve.undercut.causes import Causes
     from kin.numeric.arrays import Array
 
-NODES = 480  # of the polygon on which crossings are first seen
-MOST_TANGLED = 40  # stretches that run backwards whose crossings are looked for all over: time grows with their square
-ROUNDS = 3  # of seeing them, each with twice the nodes
+NODES = 480  # of the polygon on which crossings are sought first
+MOST_TANGLED = 40  # stretches that run backwards whose crossings are sought all over: time grows with their square
+ROUNDS = 3  # of seeking them, each with twice the nodes
 NEAR_BY = 0.03  # of a reversal's length: the first node beside it; the following ones grow
 GROWTH = 1.35
 STARTS = (0.366, 0.05, 1.0)  # a swallowtail reaches (sqrt 3 - 1)/2 of its reversal beyond it, where sigma is a parabola
@@ -64,7 +71,7 @@ class Lost:
 
 @dataclass(frozen=True)
 class Remains:
-    """What stands: lost stretches in order, corners between those that are kept, and the number of pieces of metal."""
+    """The contour left: lost stretches in order, corners between the kept ones, and the number of pieces of metal."""
 
     lost: tuple[Lost, ...]
     corners: tuple[Corner, ...]
@@ -78,34 +85,34 @@ def trimmed(curve: Curve) -> Curve:
     the shaft is not inside, or the crossings cannot be separated.
     """
     if not in_ring(curve):
-        return _trimmed(curve, 1)
+        return _trim(curve, 1)
     try:
-        opening = _trimmed(backwards(curve), -1)
+        reverse = _trim(backwards(curve), -1)
     except UndercutError as error:
         raise error.mirrored() from error
-    return curve if opening.closed else Curve(curve.shape, runs_backwards(opening.runs))
+    return curve if reverse.closed else Curve(curve.shape, runs_backwards(reverse.runs))
 
 
-def _trimmed(curve: Curve, sense: int) -> Curve:
-    """What is left of a curve that goes round the shaft in a sense."""
-    why = causes(curve)
-    if why.none:
+def _trim(curve: Curve, sense: int) -> Curve:
+    """The contour left of a curve that goes round the shaft in a sense, 1 or -1; raises UndercutError as `trimmed`."""
+    reasons = causes(curve)
+    if reasons.none:
         return curve
-    what = remains(curve, why)
-    where = next((0.5 * (r.start + r.end) for r in why.reversals), None)
-    if not what.corners:
-        raise UndercutError("the undercut leaves nothing of the contour", where)
-    if what.pieces > 1:
-        middle = 0.5 * (what.lost[0].start + what.lost[0].end)
-        raise UndercutError(f"the undercut divides the metal into {what.pieces} pieces", middle)
-    result = Curve(curve.shape, kept_runs(curve, what))
+    remainder = remains(curve, reasons)
+    place = next((0.5 * (r.start + r.end) for r in reasons.reversals), None)
+    if not remainder.corners:
+        raise UndercutError("the undercut leaves nothing of the contour", place)
+    if remainder.pieces > 1:
+        middle = 0.5 * (remainder.lost[0].start + remainder.lost[0].end)
+        raise UndercutError(f"the undercut divides the metal into {remainder.pieces} pieces", middle)
+    result = Curve(curve.shape, kept_runs(curve, remainder))
     if _turns(result) != sense:
-        raise UndercutError("the shaft lies outside of what the undercut leaves", where)
+        raise UndercutError("the shaft lies outside of what the undercut leaves", place)
     return result
 
 
-def remains(curve: Curve, why: Causes) -> Remains:
-    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be separated.
+def remains(curve: Curve, reasons: Causes) -> Remains:
+    """The contour left of a curve that undercuts. Raises UndercutError where crossings cannot be separated.
 
     Every corner is checked against all contact positions. Where the pitch curve is convex, and for a flat face, that
     settles the whole contour: kept stretches run forward and turn once round, so they bound the body of the half planes
@@ -113,63 +120,69 @@ def remains(curve: Curve, why: Causes) -> Remains:
     a fine grid, without proof for what lies between; a missed cut shows when the file is judged.
     """
     contact = _Contact.of(curve)
-    plain = _swallowtails(curve, contact, why)
+    plain = _swallowtails(curve, contact, reasons)
     if plain is not None:
         return plain
-    reverse = sum(not r.still for r in why.reversals)
+    reverse = sum(not r.still for r in reasons.reversals)
     if reverse > MOST_TANGLED * curve.shape.repeats:
         message = (
             f"{reverse} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are separated"
         )
-        raise UndercutError(message, why.reversals[0].start)
+        raise UndercutError(message, reasons.reversals[0].start)
     for turn in range(ROUNDS):
-        nodes = _nodes(curve, why, NODES << turn)
-        on = curve.sample(nodes)
+        nodes = _nodes(curve, reasons, NODES << turn)
+        frames = curve.sample(nodes)
         own = int(np.searchsorted(nodes, _first_part(curve)))
-        guesses = np.concatenate([seen_crossings(nodes, on.point, curve.shape.period, own), _guesses(curve, why)])
-        corners = contact.standing(_crossed(curve, settled(curve, guesses, contact.size)), nodes, on)
-        corners = _turned(curve, corners) + contact.standing(_still_corners(curve, why), nodes, on)
+        guesses = np.concatenate(
+            [polygon_crossings(nodes, frames.point, curve.shape.period, own), _guesses(curve, reasons)]
+        )
+        corners = contact.standing(_corners_at(curve, newton_crossings(curve, guesses, contact.size)), nodes, frames)
+        still = [r for r in reasons.reversals if r.still]  # arcs of radius 0
+        points = [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
+        corners = _images(curve, corners) + contact.standing(points, nodes, frames)
         stretches = _lost_stretches(curve, corners)
-        if stretches is not None and _explained(stretches, contact, why, nodes, on):
+        if stretches is not None and _explained(stretches, contact, reasons, nodes, frames):
             return _with_depths(curve, contact, corners, stretches)
-    where = why.reversals[0].start if why.reversals else why.necks[0].first
-    raise UndercutError(f"the crossings of the undercut contour near parameter {where:.9g} cannot be separated", where)
+    place = reasons.reversals[0].start if reasons.reversals else reasons.necks[0].first
+    raise UndercutError(f"the crossings of the undercut contour near parameter {place:.9g} cannot be separated", place)
 
 
-def _swallowtails(curve: Curve, contact: _Contact, why: Causes) -> Remains | None:
-    """What is left where each reversal is cut off by a crossing of its own, apart from all others; else None.
+def _swallowtails(curve: Curve, contact: _Contact, reasons: Causes) -> Remains | None:
+    """The contour left where a crossing of its own cuts off each reversal, apart from all others; else None.
 
     Without a hollow in the pitch curve that settles it: what is kept runs forward and turns once round in left corners,
     so it bounds a convex body. Many small swallowtails, equal but for rounding, are separated by this alone.
     """
     convex = bool((curve.cells.rows[2] >= 0.0).all())
-    if not convex or why.necks or not why.reversals or any(r.still for r in why.reversals):
+    if not convex or reasons.necks or not reasons.reversals or any(r.still for r in reasons.reversals):
         return None
     period = curve.shape.period
-    starts = np.array([r.start for r in why.reversals])
-    ends = np.array([r.end for r in why.reversals])
-    found = np.full((len(starts), 2), np.nan)
+    starts = np.array([r.start for r in reasons.reversals])
+    ends = np.array([r.end for r in reasons.reversals])
+    crossings = np.full((len(starts), 2), np.nan)
     for share in STARTS:
-        open_ = np.flatnonzero(np.isnan(found[:, 0]))
-        room = share * (ends - starts)[open_]
-        pairs = settled(curve, np.column_stack([starts[open_] - room, ends[open_] + room]), contact.size)
-        of = np.searchsorted(starts, pairs[:, 0], side="right")  # the reversal after the first of the two
-        for (low, high), number in zip(pairs.tolist(), of.tolist(), strict=True):
+        open_ = np.flatnonzero(np.isnan(crossings[:, 0]))
+        extra = share * (ends - starts)[open_]
+        pairs = newton_crossings(curve, np.column_stack([starts[open_] - extra, ends[open_] + extra]), contact.size)
+        numbers = np.searchsorted(starts, pairs[:, 0], side="right")  # the reversal after the first of the two
+        for (low, high), number in zip(pairs.tolist(), numbers.tolist(), strict=True):
             shift, i = (period, 0) if number == len(starts) else (0.0, number)
-            if low - shift < starts[i] and ends[i] < high - shift and np.isnan(found[i, 0]):
-                found[i] = low - shift, high - shift
-    following = np.append(found[1:, 0], found[0, 0] + period)
-    if np.isnan(found).any() or not (found[:, 1] < following).all():
+            if low - shift < starts[i] and ends[i] < high - shift and np.isnan(crossings[i, 0]):
+                crossings[i] = low - shift, high - shift
+    following = np.append(crossings[1:, 0], crossings[0, 0] + period)
+    if np.isnan(crossings).any() or not (crossings[:, 1] < following).all():
         return None
-    at, to = curve.sample(found[:, 0], -1), curve.sample(found[:, 1])
-    if not (at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0).all():
+    leaving, entering = curve.sample(crossings[:, 0], -1), curve.sample(crossings[:, 1])
+    if not (
+        leaving.tangent[:, 0] * entering.tangent[:, 1] - leaving.tangent[:, 1] * entering.tangent[:, 0] > 0.0
+    ).all():
         return None
-    middle = 0.5 * (at.point + to.point)
-    corners = [Corner(low, high, point) for (low, high), point in zip(found.tolist(), middle, strict=True)]
+    middle = 0.5 * (leaving.point + entering.point)
+    corners = [Corner(low, high, point) for (low, high), point in zip(crossings.tolist(), middle, strict=True)]
     base = curve.runs[0].low
-    turns = np.floor((found[:, 0] - base) / period) * period
+    turns = np.floor((crossings[:, 0] - base) / period) * period
     stretches = sorted(
-        ((i, i, low, high) for i, (low, high) in enumerate((found - turns[:, None]).tolist())), key=lambda s: s[2]
+        ((i, i, low, high) for i, (low, high) in enumerate((crossings - turns[:, None]).tolist())), key=lambda s: s[2]
     )
     return _with_depths(curve, contact, corners, stretches)
 
@@ -185,64 +198,64 @@ class _Contact:
     @staticmethod
     def of(curve: Curve) -> _Contact:
         radius = follower_radius(curve)
-        at = curve.sample(curve.cells.low)
-        return _Contact(curve, 1.0 / radius, float(max(np.abs(at.point).max(), np.abs(at.speed).max())))
+        frame = curve.sample(curve.cells.low)
+        return _Contact(curve, 1.0 / radius, float(max(np.abs(frame.point).max(), np.abs(frame.speed).max())))
 
     @property
     def tolerance(self) -> float:
         return 4.0 * ROUNDING * self.size
 
     def clearance(self, apart: Array, normal: Array) -> Array:
-        """Give g from q - z (..., 2) and N (..., 2)."""
+        """The function g of q - z (..., 2) and N (..., 2), mm; below 0 where q is cut away."""
         g: Array = 0.5 * self.k * np.sum(apart * apart, axis=-1) - np.sum(apart * normal, axis=-1)
         return g
 
-    def cut(self, on: Frame, own: int) -> NDArray[np.bool_]:
+    def cut(self, frames: Frame, own: int) -> NDArray[np.bool_]:
         """Whether the first `own` contour points (n,) are cut away by contact at any of them (own,)."""
         least = np.empty(own)
-        for rows in in_parts(own, len(on.point)):
-            least[rows] = self.clearance(on.point[rows, None] - on.point[None], on.normal[None]).min(axis=1)
+        for rows in in_parts(own, len(frames.point)):
+            least[rows] = self.clearance(frames.point[rows, None] - frames.point[None], frames.normal[None]).min(axis=1)
         return np.asarray(least < -self.tolerance)
 
-    def standing(self, corners: list[Corner], nodes: Array, on: Frame) -> list[Corner]:
+    def standing(self, corners: list[Corner], nodes: Array, frames: Frame) -> list[Corner]:
         """Corners that no contact position cuts away; every least value of g between nodes is found."""
         if not corners:
             return []
         points = np.array([c.point for c in corners])
-        apart = points[:, None] - on.point[None]
-        along = np.sum(apart * on.tangent[None], axis=2)
-        cut = np.asarray(self.clearance(apart, on.normal[None]).min(axis=1) < -self.tolerance)
+        apart = points[:, None] - frames.point[None]
+        along = np.sum(apart * frames.tangent[None], axis=2)
+        cut = np.asarray(self.clearance(apart, frames.normal[None]).min(axis=1) < -self.tolerance)
         which, where = np.nonzero((along > 0.0) & (np.roll(along, -1, axis=1) < 0.0) & ~cut[:, None])
         period = self.curve.shape.period
         after = np.append(nodes[1:], nodes[0] + period)
 
         def facing(t: Array) -> Array:
-            at = self.curve.sample(t)
-            return np.asarray(np.sum((points[which] - at.point) * at.tangent, axis=1))
+            frame = self.curve.sample(t)
+            return np.asarray(np.sum((points[which] - frame.point) * frame.tangent, axis=1))
 
         values = along[which, where], along[which, (where + 1) % nodes.size]
-        at = self.curve.sample(roots(facing, nodes[where], after[where], values, 1e-9))
-        low = self.clearance(points[which] - at.point, at.normal) < -self.tolerance
+        frame = self.curve.sample(roots(facing, nodes[where], after[where], values, 1e-9))
+        low = self.clearance(points[which] - frame.point, frame.normal) < -self.tolerance
         cut[which[low]] = True
-        return [c for c, gone in zip(corners, cut.tolist(), strict=True) if not gone]
+        return [c for c, is_cut in zip(corners, cut.tolist(), strict=True) if not is_cut]
 
 
-def _nodes(curve: Curve, why: Causes, count: int) -> Array:
+def _nodes(curve: Curve, reasons: Causes, count: int) -> Array:
     """Parameters over one period (n,), close together beside reversals and necks."""
     run, period = curve.runs[0], curve.shape.period
     coarse = period / count
     parts = [np.linspace(run.low, run.high, count + 1)[:-1], np.array(run.breaks)]
 
-    def beside(at: float, first: float, side: int) -> Array:
+    def beside(parameter: float, first: float, side: int) -> Array:
         steps = math.ceil(math.log(max(2.0 * coarse / first, 1.0)) / math.log(GROWTH)) + 1
-        return np.asarray(at + side * first * GROWTH ** np.arange(steps, dtype=np.float64))
+        return np.asarray(parameter + side * first * GROWTH ** np.arange(steps, dtype=np.float64))
 
-    for reversal in why.reversals:
+    for reversal in reasons.reversals:
         width = reversal.end - reversal.start
         parts.append(np.linspace(reversal.start, reversal.end, 9))
         first = max(NEAR_BY * width, 1e-13 * period)
         parts += [beside(reversal.start, first, -1), beside(reversal.end, first, 1)]
-    for neck in why.necks:
+    for neck in reasons.necks:
         for end in (neck.first, neck.second):
             parts += [np.array([end]), beside(end, 1e-6 * period, -1), beside(end, 1e-6 * period, 1)]
     t = np.sort(run.low + np.mod(np.concatenate(parts) - run.low, period))
@@ -251,72 +264,63 @@ def _nodes(curve: Curve, why: Causes, count: int) -> Array:
 
 
 def _first_part(curve: Curve) -> float:
-    """Where the first of the parts ends that the curve repeats, and a hair beyond."""
+    """Parameter just beyond the end of the first of the parts that the curve repeats."""
     part: float = curve.shape.period / curve.shape.repeats
     return curve.runs[0].low + part * (1.0 + SHIFT)
 
 
-def _turned(curve: Curve, corners: list[Corner]) -> list[Corner]:
-    """Corners, among them all that begin in the curve's first part, and their images in the other parts."""
+def _images(curve: Curve, corners: list[Corner]) -> list[Corner]:
+    """Corners that begin in the curve's first part, with their images in the other parts."""
     if curve.shape.repeats == 1 or not corners:
         return corners
     turns = curve.shape.period / curve.shape.repeats * np.arange(curve.shape.repeats)
     pairs = np.array([(c.leave, c.enter) for c in corners])
-    return _crossed(curve, (turns[:, None, None] + pairs).reshape(-1, 2))
+    return _corners_at(curve, (turns[:, None, None] + pairs).reshape(-1, 2))
 
 
-def _guesses(curve: Curve, why: Causes) -> Array:
-    """Where crossings lie if a reversal's speed is a parabola, a neck's two sides are circles; (m, 2).
+def _guesses(curve: Curve, reasons: Causes) -> Array:
+    """Guessed crossings (m, 2), as if a reversal's speed were a parabola and a neck's sides circles.
 
-    Of those that a turn of the curve leads into each other one at least is given.
+    Of crossings that a turn of the curve leads into each other at least one is given.
     """
     last = _first_part(curve)
-    out = [
+    guesses = [
         (r.start - share * (r.end - r.start), r.end + share * (r.end - r.start))
-        for r in why.reversals
+        for r in reasons.reversals
         if not r.still and r.start <= last
         for share in STARTS
     ]
-    for neck in why.necks:
+    for neck in reasons.necks:
         if curve.runs[0].low + (min(neck.first, neck.second) - curve.runs[0].low) % curve.shape.period > last:
             continue
-        at = curve.sample(np.array([neck.first, neck.second]))
-        opening = -float(at.curvature.sum())
+        ends = curve.sample(np.array([neck.first, neck.second]))
+        opening = -float(ends.curvature.sum())
         if opening > 0.0:
             reach = math.sqrt(4.0 * max(follower_radius(curve) - neck.half, 0.0) / opening)
-            t, s = reach / at.speed
-            out += [(neck.first - t, neck.second + s), (neck.first + t, neck.second - s)]
-    return np.array(out).reshape(-1, 2)
+            t, s = reach / ends.speed
+            guesses += [(neck.first - t, neck.second + s), (neck.first + t, neck.second - s)]
+    return np.array(guesses).reshape(-1, 2)
 
 
-def _crossed(curve: Curve, pairs: Array) -> list[Corner]:
+def _corners_at(curve: Curve, pairs: Array) -> list[Corner]:
     """Corners at crossings (m, 2), each once; the contour turns left in them."""
-    at, to = curve.sample(pairs[:, 0], -1), curve.sample(pairs[:, 1])
-    left = at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0
-    kept: list[Corner] = []
+    leaving, entering = curve.sample(pairs[:, 0], -1), curve.sample(pairs[:, 1])
+    left = leaving.tangent[:, 0] * entering.tangent[:, 1] - leaving.tangent[:, 1] * entering.tangent[:, 0] > 0.0
+    corners: list[Corner] = []
     period = curve.shape.period
     for i, (t, s) in enumerate(pairs.tolist()):
         leave, enter = (t, s) if left[i] else (s, t)
         # for a swallowtail that is lost in rounding, guesses settle a little apart
-        near = 1e-2 * _around(s - t, period)
-        if not any(_around(leave - c.leave, period) < near and _around(enter - c.enter, period) < near for c in kept):
-            kept.append(Corner(leave, enter, 0.5 * (at.point[i] + to.point[i])))
-    return kept
-
-
-def _still_corners(curve: Curve, why: Causes) -> list[Corner]:
-    """Corners at arcs of radius 0."""
-    still = [r for r in why.reversals if r.still]
-    return [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
-
-
-def _around(gap: float, period: float) -> float:
-    gap = abs(gap) % period
-    return min(gap, period - gap)
+        near = 1e-2 * cyclic_gap(s, t, period)
+        if not any(
+            cyclic_gap(leave, c.leave, period) < near and cyclic_gap(enter, c.enter, period) < near for c in corners
+        ):
+            corners.append(Corner(leave, enter, 0.5 * (leaving.point[i] + entering.point[i])))
+    return corners
 
 
 def _lost_stretches(curve: Curve, corners: list[Corner]) -> list[tuple[int, int, float, float]] | None:
-    """Pair each leaving with the next entering, corners' numbers and parameters; None if they do not take turns."""
+    """Leaving and next entering corner, and their parameters, of each lost stretch; None if they do not alternate."""
     low, period = curve.runs[0].low, curve.shape.period
     if not corners:
         return []
@@ -325,8 +329,8 @@ def _lost_stretches(curve: Curve, corners: list[Corner]) -> list[tuple[int, int,
         + [(low + (c.enter - low) % period, False, i) for i, c in enumerate(corners)]
     )
     if events[0][1] is False:
-        at, _, i = events.pop(0)
-        events.append((at + period, False, i))
+        place, _, i = events.pop(0)
+        events.append((place + period, False, i))
     pairs = list(zip(events[::2], events[1::2], strict=True))
     if not all(start[1] and not end[1] for start, end in pairs):
         return None
@@ -334,21 +338,21 @@ def _lost_stretches(curve: Curve, corners: list[Corner]) -> list[tuple[int, int,
 
 
 def _explained(
-    stretches: list[tuple[int, int, float, float]], contact: _Contact, why: Causes, nodes: Array, on: Frame
+    stretches: list[tuple[int, int, float, float]], contact: _Contact, reasons: Causes, nodes: Array, frames: Frame
 ) -> bool:
     """Whether every cause and every node that is cut away lies within a lost stretch, and nothing else is lost."""
     period = contact.curve.shape.period
     own = int(np.searchsorted(nodes, _first_part(contact.curve)))
-    cut = contact.cut(on, own)
+    cut = contact.cut(frames, own)
     if not stretches:
         # a node where the contour runs backwards may be cut by less than rounding: such a one has left corners
-        return bool((cut | (on.speed[:own] < 0.0)).all())
-    causes_at = [0.5 * (r.start + r.end) for r in why.reversals] + [n.first for n in why.necks]
+        return bool((cut | (frames.speed[:own] < 0.0)).all())
+    causes_at = [0.5 * (r.start + r.end) for r in reasons.reversals] + [n.first for n in reasons.necks]
     doubtful = np.concatenate([nodes[:own][cut], np.array(causes_at)])
     inside = np.zeros(doubtful.size, dtype=bool)
     for _, _, start, end in stretches:
-        room = 1e-9 * period
-        inside |= (doubtful - (start - room)) % period <= end - start + 2.0 * room
+        slack = 1e-9 * period
+        inside |= (doubtful - (start - slack)) % period <= end - start + 2.0 * slack
     return bool(inside.all())
 
 
@@ -371,24 +375,24 @@ def _with_depths(
     unseen, pieces = set(follows), 0
     while unseen:
         pieces += 1
-        at = next(iter(unseen))
-        while at in unseen:
-            unseen.remove(at)
-            at = follows[at]
+        corner = next(iter(unseen))
+        while corner in unseen:
+            unseen.remove(corner)
+            corner = follows[corner]
     return Remains(tuple(lost), tuple(corners), pieces)
 
 
 def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: float) -> float:
-    """How far the follower stays from the nearest of the corners (m, 2) at the worst between two parameters, mm."""
+    """Greatest distance of the follower from the nearest of the corners (m, 2) between two parameters, mm."""
     low, high, best = start, end, 0.0
     for _ in range(ZOOMS):
         t = np.linspace(low, high, 66)[1:-1]
-        at = curve.sample(t)
+        frame = curve.sample(t)
         if points.shape[0] == 1 and end - start <= SHORT * curve.shape.period:
             apart = -displacement(curve, np.full(t.size, start), t)[:, None]
         else:
-            apart = points[None] - at.point[:, None]
-        g = contact.clearance(apart, at.normal[:, None])
+            apart = points[None] - frame.point[:, None]
+        g = contact.clearance(apart, frame.normal[:, None])
         # the distance to the follower whose contact point is missed by g
         free = (2.0 * g / (1.0 + np.sqrt(np.maximum(1.0 + 2.0 * contact.k * g, 0.0)))).min(axis=1)
         worst = int(np.argmax(free))
@@ -398,32 +402,32 @@ def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: fl
     return best
 
 
-def kept_runs(curve: Curve, what: Remains) -> tuple[Run, ...]:
+def kept_runs(curve: Curve, remainder: Remains) -> tuple[Run, ...]:
     """Kept runs in order, from the end of each lost stretch to the beginning of the next."""
     period = curve.shape.period
     runs = []
-    for lost, following in zip(what.lost, what.lost[1:] + what.lost[:1], strict=True):
+    for lost, following in zip(remainder.lost, remainder.lost[1:] + remainder.lost[:1], strict=True):
         low = lost.end
         high = low + (following.start - low) % period
         inside = all_breaks(curve, low, high)
         # a break within rounding of a corner is the corner
-        near = 64.0 * np.spacing(max(abs(low), abs(high)))
+        close = 64.0 * np.spacing(max(abs(low), abs(high)))
         for b in inside.tolist():
-            low, high = (b if b - low <= near else low), (b if high - b <= near else high)
+            low, high = (b if b - low <= close else low), (b if high - b <= close else high)
         inside = inside[(inside > low) & (inside < high)]
         if high - low <= 1e-12 * period:
             raise UndercutError(f"what is left of the contour near parameter {low:.9g} is lost in rounding", low)
         runs.append(Run(low, high, tuple(inside.tolist()), closed=False))
     shift = period if runs[0].low >= curve.runs[0].low + period else 0.0
-    return tuple(sorted((_moved(run, -shift) for run in runs), key=lambda run: run.low))
-
-
-def _moved(run: Run, by: float) -> Run:
-    return Run(run.low + by, run.high + by, tuple(b + by for b in run.breaks), run.closed) if by else run
+    if shift:
+        runs = [
+            Run(run.low - shift, run.high - shift, tuple(b - shift for b in run.breaks), run.closed) for run in runs
+        ]
+    return tuple(sorted(runs, key=lambda run: run.low))
 
 
 def _turns(curve: Curve) -> int:
-    """How often the chain of runs goes round the origin, counter-clockwise."""
+    """Number of turns of the chain of runs round the origin, counter-clockwise."""
     points = []
     for run in curve.runs:
         count = max(8, math.ceil(NODES * (run.high - run.low) / curve.shape.period))

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from camgeo.curve.undercut.bottleneck import Neck
     from camgeo.curve.undercut.trim import Lost, Remains
 
-MOST_TOLD = 200  # stretches that run backwards, of which the extent is found: a cam with more is no cam
-LOOKS = 240  # parameters at which a neck is looked for where it is known to exist
+MOST_REPORTED = 200  # stretches that run backwards whose extent is found: a cam with more is no cam
+LOOKS = 240  # parameters at which a neck that exists is sought
 
 
 @dataclass(frozen=True)
@@ -46,31 +46,31 @@ class Undercut:
 
 
 def undercuts(curve: Curve) -> tuple[Undercut, ...]:
-    """Find all undercut of a whole curve, in order of the parameter; empty for a sound contour.
+    """All undercut of a whole curve, in order of the parameter; empty for a sound contour.
 
-    A `Parallel` is a roller's contour inside its pitch curve, or outside it in a ring, which is looked at run through
-    the other way; any other shape is that of a flat face. A stretch that is lost for both reasons is reported for each.
+    A `Parallel` is a roller's contour inside its pitch curve, or outside it in a ring, which is examined in the reverse
+    sense; any other shape is that of a flat face. A stretch that is lost for both reasons is reported for each.
     Raises CurveError where freedom from undercut can be neither proved nor refuted, UndercutError where the extent
-    cannot be found or more than `MOST_TOLD` stretches run backwards.
+    cannot be found or more than `MOST_REPORTED` stretches run backwards.
 
-    What finds the extent is imported where there is one: most contours are sound.
+    The search for the extent is imported where it is needed: most contours are sound.
     """
     if in_ring(curve):
         return _of_ring(curve)
-    why = causes(curve)
-    if not why.necks and all(r.still for r in why.reversals):
+    reasons = causes(curve)
+    if not reasons.necks and all(r.still for r in reasons.reversals):
         return ()
-    reverse = sum(not r.still for r in why.reversals)
-    if reverse > MOST_TOLD * curve.shape.repeats:
-        message = f"{reverse} stretches of the contour run backwards; up to {MOST_TOLD} are reported one by one"
-        raise UndercutError(message, why.reversals[0].start, _free_at(curve, why))
+    reverse = sum(not r.still for r in reasons.reversals)
+    if reverse > MOST_REPORTED * curve.shape.repeats:
+        message = f"{reverse} stretches of the contour run backwards; up to {MOST_REPORTED} are reported one by one"
+        raise UndercutError(message, reasons.reversals[0].start, _free_at(curve, reasons))
     from camgeo.curve.undercut.trim import remains
 
     try:
-        what = remains(curve, why)
+        remainder = remains(curve, reasons)
     except UndercutError as error:
-        raise UndercutError(str(error), error.parameter, _free_at(curve, why)) from error
-    return stretches(curve, why, what)
+        raise UndercutError(str(error), error.parameter, _free_at(curve, reasons)) from error
+    return stretches(curve, reasons, remainder)
 
 
 def _of_ring(curve: Curve) -> tuple[Undercut, ...]:
@@ -78,96 +78,95 @@ def _of_ring(curve: Curve) -> tuple[Undercut, ...]:
     from camgeo.curve.backwards import backwards
 
     try:
-        inside = undercuts(backwards(curve))
+        reverse_cuts = undercuts(backwards(curve))
     except UndercutError as error:
         raise error.mirrored() from error
-    found = []
-    for cut in inside:
+    cuts = []
+    for cut in reverse_cuts:
         turns = math.floor(-cut.end / curve.shape.period) * curve.shape.period
-        found.append(replace(cut, start=-cut.end - turns, end=-cut.start - turns, at=-cut.at - turns))
-    return tuple(sorted(found, key=lambda cut: cut.start))
+        cuts.append(replace(cut, start=-cut.end - turns, end=-cut.start - turns, at=-cut.at - turns))
+    return tuple(sorted(cuts, key=lambda cut: cut.start))
 
 
-def stretches(curve: Curve, why: Causes, what: Remains) -> tuple[Undercut, ...]:
-    """Tell the stretches that undercut of a curve whose causes and remains are found already."""
-    found: list[Undercut] = []
+def stretches(curve: Curve, reasons: Causes, remainder: Remains) -> tuple[Undercut, ...]:
+    """Stretches that undercut, in order of the parameter, by the causes and the contour that is left."""
+    cuts: list[Undercut] = []
     local: list[Undercut | None] = []
     repeats = curve.shape.repeats
-    own = len(what.lost) // repeats if len(what.lost) % repeats == 0 else len(what.lost)
-    for i, lost in enumerate(what.lost):
-        inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
-        necks = [n for n in why.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
+    own = len(remainder.lost) // repeats if len(remainder.lost) % repeats == 0 else len(remainder.lost)
+    for i, lost in enumerate(remainder.lost):
+        inside = [r for r in reasons.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
+        necks = [n for n in reasons.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
         before = local[i - own] if i >= own else None
-        mine = None
+        cut = None
         if inside and before is not None:  # the curve's parts are alike
-            at = before.at + curve.shape.period / repeats
-            mine = replace(before, start=lost.start, end=lost.end, at=at, depth=lost.depth)
+            place = before.at + curve.shape.period / repeats
+            cut = replace(before, start=lost.start, end=lost.end, at=place, depth=lost.depth)
         elif inside:
-            mine = _local(curve, lost, inside)
-        local.append(mine)
-        if mine is not None:
-            found.append(mine)
+            cut = _local(curve, lost, inside)
+        local.append(cut)
+        if cut is not None:
+            cuts.append(cut)
         if necks:
-            found.append(_global(curve, lost, min(necks, key=lambda n: n.half)))
-        if not inside and not necks and not _still(curve, lost, why):
-            found.append(_global(curve, lost, _neck_of(curve, lost)))
-    return tuple(found) if why.open is None else tuple(_no_more(cut, why.open.least) for cut in found)
+            cuts.append(_global(curve, lost, min(necks, key=lambda n: n.half)))
+        if not inside and not necks and not _still(curve, lost, reasons):
+            cuts.append(_global(curve, lost, _neck_of(curve, lost)))
+    least = math.inf if reasons.open is None else reasons.open.least
+    return tuple(replace(cut, free_at=min(cut.free_at, least)) for cut in cuts)
 
 
-def _no_more(cut: Undercut, least: float) -> Undercut:
-    return replace(cut, free_at=min(cut.free_at, least))
-
-
-def _free_at(curve: Curve, why: Causes) -> float:
-    """The value at which all undercut would be free, whatever its extent."""
+def _free_at(curve: Curve, reasons: Causes) -> float:
+    """The value, mm, at which all of the contour would be free of undercut, as `Undercut.free_at`."""
     least, roller = least_radius(curve)[0], follower_radius(curve)
     if math.isinf(roller):
         return -least
-    return min([roller + least, *(n.half for n in why.necks), *([] if why.open is None else [why.open.least])])
+    return min(
+        [roller + least, *(n.half for n in reasons.necks), *([] if reasons.open is None else [reasons.open.least])]
+    )
 
 
 def _within(curve: Curve, lost: Lost, t: float) -> bool:
     return (t - lost.start) % curve.shape.period <= lost.end - lost.start
 
 
-def _still(curve: Curve, lost: Lost, why: Causes) -> bool:
-    return any(r.still and _within(curve, lost, 0.5 * (r.start + r.end)) for r in why.reversals)
+def _still(curve: Curve, lost: Lost, reasons: Causes) -> bool:
+    return any(r.still and _within(curve, lost, 0.5 * (r.start + r.end)) for r in reasons.reversals)
 
 
 def _local(curve: Curve, lost: Lost, inside: list[Reversal]) -> Undercut:
     from camgeo.curve.undercut.self_intersection import all_breaks
 
-    least, at = math.inf, lost.start
+    least, place = math.inf, lost.start
     for r in inside:
         breaks = tuple(all_breaks(curve, r.start, r.end).tolist())
-        radius, where = least_radius(Curve(curve.shape, (Run(r.start, r.end, breaks, closed=False),)))
+        radius, parameter = least_radius(Curve(curve.shape, (Run(r.start, r.end, breaks, closed=False),)))
         if radius < least:
-            least, at = radius, where
+            least, place = radius, parameter
     roller = follower_radius(curve)
-    return Undercut("local", lost.start, lost.end, at, lost.depth, -least if math.isinf(roller) else roller + least)
+    return Undercut("local", lost.start, lost.end, place, lost.depth, -least if math.isinf(roller) else roller + least)
 
 
 def _global(curve: Curve, lost: Lost, neck: Neck) -> Undercut:
-    at = neck.first if _within(curve, lost, neck.first) else neck.second
-    return Undercut("global", lost.start, lost.end, at, lost.depth, neck.half)
+    place = neck.first if _within(curve, lost, neck.first) else neck.second
+    return Undercut("global", lost.start, lost.end, place, lost.depth, neck.half)
 
 
 def _neck_of(curve: Curve, lost: Lost) -> Neck:
-    """Neck for which a stretch is lost that is nowhere bent too much: the least rolling radius on it."""
+    """Neck that costs a stretch nowhere bent too much: the least rolling radius on it."""
     from camgeo.curve.undercut.bottleneck import neck_from, rolling_radius
     from camgeo.curve.undercut.pairs import Pitch
 
     radius = follower_radius(curve)
     if math.isinf(radius):  # a flat face has no necks: a reversal was not found where contact is lost for it
-        where = f"near parameter {lost.start:.9g}"
-        raise UndercutError(f"the stretches of the contour that run backwards cannot be separated {where}", lost.start)
+        place = f"near parameter {lost.start:.9g}"
+        raise UndercutError(f"the stretches of the contour that run backwards cannot be separated {place}", lost.start)
     pitch = Pitch.of(curve)
     t = np.linspace(lost.start, lost.end, LOOKS)
     s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)
-    seen = rolling_radius(pitch, t, s)
+    radii = rolling_radius(pitch, t, s)
     apart = np.abs((t[:, None] - s + 0.5 * curve.shape.period) % curve.shape.period - 0.5 * curve.shape.period)
-    seen[apart < 0.5 * (s[1] - s[0])] = np.inf  # next to each other on the curve: rounding, and no neck
-    first, second = np.unravel_index(int(np.argmin(seen)), seen.shape)
+    radii[apart < 0.5 * (s[1] - s[0])] = np.inf  # next to each other on the curve: rounding, and no neck
+    first, second = np.unravel_index(int(np.argmin(radii)), radii.shape)
     neck = neck_from(pitch, float(t[first]), float(s[second]))
     if neck is None or not neck.half < radius:
         raise UndercutError(f"no neck is found where contact is lost, near parameter {lost.start:.9g}", lost.start)
