@@ -27,20 +27,21 @@ from camgeo.output.job import Job
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
-from camgeo.recipe.recipe import of_source
+from camgeo.recipe.recipe import of_source, root_key
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
+from camgeo.registry.root import CAM, root
 from camgeo.report.page import tables
 from camgeo.schema.change import set_value
 from camgeo.schema.edit import number_text
-from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.quantity import read_quantity, split_unit, units_for
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, join, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, join, keys, scalars
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -50,7 +51,6 @@ if TYPE_CHECKING:
     from camgeo.api.report import Report
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
-    from camgeo.schema.errors import RecipeError
     from camgeo.schema.fields import Field, Form, Table
     from kin.numeric.arrays import Array
 
@@ -97,10 +97,9 @@ def design(name: str, text: str) -> dict[str, Any]:
     """Everything that the page draws of a recipe, its fields, and its faults, each with line and column."""
     output: dict[str, Any] = {"fields": [], "faults": []}
     try:
-        path = Path(FOLDER) / f"{name}.yaml"
-        source = Source.of(text, str(path))
+        source = Source.of(text, f"{FOLDER}/{name}.yaml")
         output["fields"] = fields(source)
-        recipe = of_source(source, path)
+        recipe = _recipe(name, source)
         exact = camgeo.design(recipe)
         scene = dict(exact.scene())
     except RecipeErrors as errors:
@@ -124,12 +123,15 @@ def design(name: str, text: str) -> dict[str, Any]:
     }
 
 
-def _recipe(name: str, text: str) -> Recipe:
-    """The recipe of a text; files that it names stand beside it."""
+def _recipe(name: str, text: str | Source) -> Recipe:
+    """The recipe of one cam, whose tables are in the folder; raises RecipeErrors, for several cams too."""
     path = Path(FOLDER) / f"{name}.yaml"
-    path.write_text(text, "utf-8")
-    recipe: Recipe = camgeo.load(path)
-    return recipe
+    source = text if isinstance(text, Source) else Source.of(text, str(path))
+    if (key := root_key(source)) != CAM and isinstance(source.root, Mapping):
+        problem = f"this page makes no {key}, which the command `camgeo export {name}.yaml` does on a machine"
+        remedy = f"keep the recipe beside the files that it names and give that command; here give {root(key).instead}"
+        raise RecipeErrors([RecipeError(str(path), *keys(source.root)[key].mark, key, problem, None, remedy)])
+    return of_source(source, path)
 
 
 def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> dict[str, Any]:

@@ -61,6 +61,7 @@ RemarkName = Literal[
     "no-motion",
     "pivot-clearance",
     "no-play",
+    "openings",
     "pressure-angle",
     "shaft-outside",
     "sharp-corner",
@@ -105,6 +106,7 @@ def remarks_of(
         "wanted-law": [_law_error(recipe, design)],
         "loose-motion-error": [_implied(recipe, design, checks, files)],
         "no-play": [_stuck(recipe, design, files)],
+        "openings": [_openings(recipe, files)],
         "acceleration-jump": [_acceleration(recipe, design.exact.joints)],
         "output": _output(recipe, design),
         "shaft-outside": [_shaft(recipe, design)],
@@ -294,6 +296,15 @@ def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remar
         f"it sticks there; a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
     )
     return Remark("no-play", play.least, 0.0, play.unit, sentence, play.least_at_deg)
+
+
+def _openings(recipe: Recipe, files: Sequence[FileResult]) -> Remark | None:
+    """That openings of files are passed over, as the recipe asks for."""
+    names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
+    if recipe.verify.openings == "judge" or not names:
+        return None
+    told = f"openings of {' and '.join(names)} that the part does not name are not judged, as verify.openings has it"
+    return Remark("openings", None, None, "", told)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:

@@ -80,6 +80,13 @@ CORE = Table(
                 above=0,
                 at_most=MOST,
             ),
+            Field(
+                "openings",
+                Kind.CHOICE,
+                "what is done about openings of a file that the part does not name",
+                default="judge",
+                choices=("judge", "ignore"),
+            ),
         ),
         LIMITS,
         mapping("dwell", "dwells of the linkage's output", *DWELL),
@@ -176,3 +183,6 @@ def _check(values: Values, reader: Reader) -> None:
     check_cutter(reader)
     check_allowance(values.get("manufacture", {}), reader)
     check_limits(values.get("limits", []), reader)
+    if values.get("verify", {}).get("openings") == "ignore" and "thickness" in values.get("part", {}):
+        problem = "cannot go with part.thickness, as the openings of a solid count in its volume"
+        reader.fault_at("verify.openings", problem, None, "leave one of them out")

@@ -56,12 +56,14 @@ class Verify:
     """How each file is judged: shaft angles, and the greatest errors or None for the implied ones.
 
     `motion_error` (mm, or rad where the follower swings) is that of follower or frame against the cam, `output_error`
-    (rad, or mm where it slides) that of the linkage's output.
+    (rad, or mm where it slides) that of the linkage's output. Openings that the part does not name are faults of a
+    file unless `openings` is "ignore".
     """
 
     angles: int
     motion_error: float | None = None
     output_error: float | None = None
+    openings: Literal["judge", "ignore"] = "judge"
 
 
 class Angle(NamedTuple):

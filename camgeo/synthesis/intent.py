@@ -52,6 +52,7 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
         bore=recipe.part.bore,
         thickness=recipe.part.thickness,
         outline=recipe.part.outer,
+        closed=recipe.verify.openings == "judge",
         linkage=linkage,
         closures=closures_between(design) if len(surfaces) > 1 else (),
     )

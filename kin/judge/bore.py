@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.contour.about import goes_round
 from kin.contour.arcs import dot, left
 from kin.judge.check import ROUNDING, Check, at_most, failed
 from kin.numeric.extrema import extremes, resolution
@@ -18,8 +19,13 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 
-def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -> Check | None:
-    """Check that there is one hole, round and about the shaft, in number, place and diameter; None if none is due."""
+def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float, *, closed: bool = True) -> Check | None:
+    """Check that there is one hole, round and about the shaft, in number, place and diameter; None if none is due.
+
+    Of a part that is not `closed` the widest hole round the shaft is held to the bore, and no other one is due.
+    """
+    if not closed:
+        holes = [] if bore is None else [hole for hole in holes if goes_round(hole)][:1]
     if bore is None:
         if not holes:
             return None

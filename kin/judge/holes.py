@@ -89,11 +89,13 @@ def tally(
     *,
     where: str = "",
     settled: Sequence[Hole] = (),
+    closed: bool = True,
 ) -> None:
     """Match the openings that were found with those that are meant, and take in how far each is off.
 
     Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `settled`
-    that it looks like, else to `holes`, or to `bore` where nothing else is meant.
+    that it looks like, else to `holes`, or to `bore` where nothing else is meant; of a part that is not `closed` it is
+    passed over.
     """
     pairs, left_over = _matched(openings, intended)
     for hole, contour in pairs:
@@ -107,7 +109,7 @@ def tally(
         told.measured(
             off, f"{hole.name}, about {place_words(x, y)}{where}, is off by {length_words(off, '.3g')} {UNIT}"
         )
-    for contour in left_over:
+    for contour in left_over if closed else ():
         x, y = _middle(contour)
         alike = [hole for hole, one in _matched([contour], settled)[0] if one is not None]
         if alike:

@@ -108,6 +108,7 @@ class PartIntent:
     mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
     bore        diameter, mm; None for no hole at all
     thickness   of a solid, mm, z from 0; None where only contours are judged
+    closed      whether it has no opening besides; where False any others in a file are passed over
     outline     diameter of its round outline, mm, such as a ring's; None where the outermost surface is the outline
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
@@ -124,6 +125,7 @@ class PartIntent:
     bore: float | None = None
     thickness: float | None = None
     outline: float | None = None
+    closed: bool = True
     holes: tuple[Hole, ...] = ()
     layers: tuple[Layer, ...] = ()
     cross_holes: tuple[CrossHole, ...] = ()

@@ -30,10 +30,10 @@ def drawn_checks(
     """Check the openings of a drawing, in mm and no longer mirrored: each once at its place, and none besides."""
     through = [hole for hole in part.holes if hole.depth is None]
     tallies: Tallies = {}
-    tally(tallies, holes, through, tolerance, settled=part.holes)
+    tally(tallies, holes, through, tolerance, settled=part.holes, closed=part.closed)
     shallow = [hole for hole in part.holes if hole.depth is not None]
     if shallow:
-        tally(tallies, engraved, shallow, tolerance, where=", engraved", settled=part.holes)
+        tally(tallies, engraved, shallow, tolerance, where=", engraved", settled=part.holes, closed=part.closed)
     return _told(tallies, tolerance)
 
 

@@ -15,6 +15,7 @@ from kin.contour.about import goes_round
 from kin.judge.bore import round_check
 from kin.numeric.angles import TURN
 from kin.read.errors import ReadError
+from kin.read.nesting import MOST_CONTOURS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,12 @@ def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
 
 
 def deepest(part: PartIntent) -> int:
-    """How many others a closed chain of a part may lie inside: holes lie in metal, and nothing in the air."""
+    """How many others a closed chain of a part may lie inside: holes lie in metal, and nothing in the air.
+
+    Where openings are passed over, so is what is drawn in them.
+    """
+    if not part.closed:
+        return MOST_CONTOURS
     ring = 0 if part.outline is None else 1
     return ring + len(part.surfaces) - (1 if outermost_first(part.surfaces)[-1].side < 0 else 0)
 

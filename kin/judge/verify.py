@@ -231,7 +231,7 @@ def _opening_checks(
         from kin.judge.part_checks import drawn_checks  # a plain part does without
 
         return drawn_checks(holes, engraved, part, limits.tolerance)
-    bore = bore_check(holes, part.bore, limits.tolerance)
+    bore = bore_check(holes, part.bore, limits.tolerance, closed=part.closed)
     return [bore] if bore else []
 
 
@@ -368,7 +368,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
         checks += solid_checks(solid, _layered(solid, part, limits, path), part, limits.tolerance)
         checks.append(layers_volume_check(solid.volume, contours, part, limits.tolerance))
     else:
-        bore = bore_check(found.holes, part.bore, limits.tolerance)
+        bore = bore_check(found.holes, part.bore, limits.tolerance, closed=part.closed)
         checks += [] if bore is None else [less_sure(bore, solid.uneven)]
         if part.thickness is not None:
             from kin.judge.volume import volume_check

@@ -166,7 +166,7 @@ def followed(rng: Random, number: int) -> Attack:
         return f'<path d="M {points} Z"/>'
 
     kind = rng.choice([*SOUND, *SOUND, "any"])
-    nested = [[1.0], [1.0, 1.8], [1.0, 1.4, 2.0], [0.3, 1.0], [1.0]]
+    nested = [[1.0], [1.0, 1.8], [1.0, 1.4, 2.0], [0.3, 1.0], [0.1, 0.2, 0.3, 1.0]]
     shapes = [path(radius * scale) for scale in {"ring": nested[1], "groove": nested[2]}.get(kind, rng.choice(nested))]
     size = rng.choice(['width="99mm" height="99mm" viewBox="0 0 99 99"'] * 12 + ['viewBox="0 0 99 99"', ""])
     drawing = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(shapes)}</svg>'

@@ -294,6 +294,16 @@ def test_a_bore_where_none_is_meant(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "plain.dxf", points(EDGES), bores=()), none) == set()
 
 
+@pytest.mark.thin(9)
+@pytest.mark.parametrize(("bore", "faults"), [(None, set()), (10.0, set()), (10.1, {"bore"}), ("elsewhere", {"bore"})])
+def test_openings_that_are_passed_over(tmp_path, cam, bore, faults):
+    """A part that is not closed has its own bore, whatever else there is."""
+    intent, points = cam
+    bores = ((12, 0, 1.0),) if bore == "elsewhere" else ((0, 0, 5.0), (12, 0, 1.0), (0, 0, 2.0))
+    meant = part_of(gauge_of(intent), bore=10.0 if bore == "elsewhere" else bore, closed=False)
+    assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), bores=bores), meant) == faults
+
+
 def test_an_angular_bore(tmp_path):
     """A square as large as the bore: right area at most, wrong everywhere."""
     intent, points = CAMS["yoke"]

@@ -10,7 +10,7 @@ from typing import Any
 from zipfile import ZipFile
 
 import pytest
-from support.places import SHIPPED, script
+from support.places import RECIPES, SHIPPED, script
 from support.starters import OF_CAMS
 
 import camgeo
@@ -96,6 +96,17 @@ def test_faults_have_line_and_column() -> None:
     assert [(fault["line"], fault["column"]) for fault in answer["faults"]] == [(1, 13), (2, 8)]
     assert "did you mean disc" in answer["faults"][0]["text"]
     assert answer["fields"] == [] or all(field["path"] != "cam.kind" for field in answer["fields"])
+
+
+# needs: camshaft
+@pytest.mark.parametrize("call", ["design", "make", "absent"])
+def test_a_camshaft_is_made_by_the_command_which_is_named(call: str) -> None:
+    text = (RECIPES / "camshafts" / "four-cylinder.yaml").read_text("utf-8")
+    answer = json.loads(live.answer(call, json.dumps({"name": "engine", "text": text})))
+    (fault,) = answer["faults"]
+    assert fault["line"] == 2
+    assert "this page makes no camshaft, which the command `camgeo export engine.yaml` does" in fault["text"]
+    assert "here give the recipe of a lobe" in fault["text"]
 
 
 def test_a_fault_of_its_own_is_told_and_not_raised() -> None:

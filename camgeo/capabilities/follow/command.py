@@ -150,6 +150,7 @@ def document(followed: Followed) -> dict[str, Any]:
         "breadth": None if followed.breadth is None else list(followed.breadth),
         "play": None if followed.play is None else [scale * value for value in followed.play],
         "contact_travel": None if travel is None else list(travel),
+        "openings": followed.openings,
     }
 
 
@@ -190,4 +191,7 @@ def summary(followed: Followed) -> str:
     if (travel := figures["contact_travel"]) is not None:
         width = "" if unit == "deg" else f", a centred face is {2.0 * max(map(abs, travel)):.6g} mm wide"
         lines.append(f"  contact on the face from {travel[0]:.6g} to {travel[1]:.6g} mm{width}")
+    if count := figures["openings"]:
+        contours = "1 other closed contour is" if count == 1 else f"{count} other closed contours are"
+        lines.append(f"  {contours} passed over: a bore that is not round, holes, or what is drawn in them")
     return "\n".join(lines)

@@ -83,6 +83,11 @@ class Followed:
         return self._outline.blank
 
     @property
+    def openings(self) -> int:
+        """Number of other closed contours in the file, such as a bore with a keyway: its motion is without them."""
+        return self._outline.openings
+
+    @property
     def theta(self) -> Array:
         """Shaft angles (n,), rad."""
         return self._motion.phi
@@ -200,7 +205,8 @@ class Followed:
     def recipe(self, table: str) -> str:
         """The recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion is within the reading of the rows, and so about is its contour of that of the file. Raises CallError
+        Its motion is within the reading of the rows, and so about is its contour of that of the file. It has no
+        opening but a round bore, and passes over the others when files are judged by it. Raises CallError
         for a yoke whose breadth varies by more than two readings, or with an odd number of steps, and for a ring
         without a round outline.
         """
@@ -219,6 +225,7 @@ class Followed:
             *(f"  {key}: {value}" for key, value in cam.items()),
             f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}, suspect: keep}}",
             *([f"part: {{{keys}}}"] if keys else []),
+            *(["verify: {openings: ignore}"] if self.openings else []),
             "export:",
             f"  tolerance: {self.reading:.6g}",
             "  files: [dxf, csv, html]",

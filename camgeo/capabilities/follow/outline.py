@@ -11,7 +11,7 @@ from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of, suffixes
-from kin.read.nesting import scaled
+from kin.read.nesting import MOST_CONTOURS, scaled
 from kin.read.size import oversize
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.read.nesting import Chain
 
 MOST_NAMED = 3  # holes that a message offers for the shaft
-DEEPEST = {"external": 1, "internal": 1, "groove": 3}  # a groove's bore lies within two flanks and the blank
+DEEPEST = {"external": MOST_CONTOURS, "internal": 1, "groove": MOST_CONTOURS}  # what is drawn in a bore is passed over
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +34,14 @@ class Outline:
     outer    outer flank of a groove; None of any other track
     bore     diameter of a round hole about the shaft, mm; None without one
     blank    diameter of a round outline of a ring or of a groove's blank, mm; None without one
+    openings how many other closed contours there are: bores of other shapes, holes, and what is drawn in them
     """
 
     contour: Contour
     outer: Contour | None = None
     bore: float | None = None
     blank: float | None = None
+    openings: int = 0
 
 
 def read_outline(path: Path, units: float | None, at: tuple[float, float], track: Track, *, mirrored: bool) -> Outline:
@@ -73,13 +75,17 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
         raise CallError(f"{name}: one closed contour goes round {where}, and a groove has two flanks: leave track out")
     outer, inner = (contours[0], contours[1]) if track == "groove" else (None, contours[-1])
     contour = contours[0] if track == "external" else inner
-    circles = [
-        (circle_about(other), abs(other.area)) for other in shifted if goes_round(other) and other is not contour
-    ]
-    bores = [width for width, area in circles if width is not None and area < abs(contour.area)]
-    blanks = [width for width, area in circles if width is not None and area > abs(contour.area)]
+    if track == "external" and contour is not shifted[0]:
+        remedy = "of a ring's opening give track internal, of a groove track groove"
+        raise CallError(f"{name}: what goes round {where} lies within another contour: {remedy}")
+    others = [other for other in shifted if other is not contour and other is not outer]
+    around = sorted((other for other in others if goes_round(other)), key=lambda other: -abs(other.area))
+    within = [circle_about(other) for other in around if abs(other.area) < abs(contour.area)]
+    beyond = [circle_about(other) for other in around if abs(other.area) > abs(contour.area)]
+    bore, blank = (circles[0] if circles else None for circles in (within, beyond))
     clockwise = [other if other is None or not mirrored else other.mirrored() for other in (contour, outer)]
-    return Outline(clockwise[0] or contour, clockwise[1], max(bores, default=None), max(blanks, default=None))
+    rest = len(others) - sum(circle is not None for circle in (bore, blank))
+    return Outline(clockwise[0] or contour, clockwise[1], bore, blank, rest)
 
 
 def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Chain]:

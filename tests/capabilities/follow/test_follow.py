@@ -13,6 +13,7 @@ from support.heavy import ezdxf
 from support.places import RECIPES
 
 import camgeo
+from camgeo.capabilities.follow.command import summary
 from camgeo.capabilities.follow.library import judged_by_recipe
 from camgeo.cli.exit_status import OK, WRONG
 from camgeo.cli.main import main
@@ -237,6 +238,55 @@ def test_its_recipe_makes_the_file_again(drawings: dict[str, Path], tmp_path: Pa
     assert "exists already and is left as it is" in capsys.readouterr().err
 
 
+OPENINGS: dict[str, tuple[list[list[tuple[float, float, float]]], int, float | None]] = {
+    "keyway": ([[(4, 3, 0), (-4, 3, 0), (-4, -3, 0), (4, -3, 0), (5, -1, 0), (5, 1, 0)]], 1, None),
+    "D": ([[(3.0, 4.0, 1.6), (3.0, -4.0, 0.0)]], 1, None),
+    "round": ([[(5, 0, 1), (-5, 0, 1)]], 0, 10.0),
+    "round and four holes": (
+        [[(5, 0, 1), (-5, 0, 1)], *([(x + 1, y, 1), (x - 1, y, 1)] for x in (-9, 9) for y in (-9, 9))],
+        4,
+        10.0,
+    ),
+    "counterbore": ([[(8, 0, 1), (-8, 0, 1)], [(5, 0, 1), (-5, 0, 1)]], 1, 16.0),
+    "keyway round a circle": ([[(6, 5, 0), (-6, 5, 0), (-6, -5, 0), (6, -5, 0)], [(4, 0, 1), (-4, 0, 1)]], 2, None),
+    "no shaft": ([[(12, 0, 1), (9, 0, 1)]], 1, None),
+}
+
+
+@pytest.mark.parametrize("name", OPENINGS)
+def test_openings_are_passed_over_and_said(drawings: dict[str, Path], tmp_path: Path, name: str) -> None:
+    openings, count, bore = OPENINGS[name]
+    document = ezdxf.readfile(drawings["disc-roller"])
+    for bored in [one for one in document.modelspace() if one.dxf.layer.upper() == "BORE"]:
+        document.modelspace().delete_entity(bored)
+    for points in openings:
+        document.modelspace().add_lwpolyline(points, "xyb", close=True, dxfattribs={"layer": "0"})
+    path = tmp_path / "foreign.dxf"
+    document.saveas(path)
+    followed, plain = (camgeo.follow(file, **asked("disc-roller")) for file in (path, drawings["disc-roller"]))
+    np.testing.assert_array_equal(followed.position, plain.position)
+    assert (followed.openings, followed.bore) == (count, bore and pytest.approx(bore))
+    assert ("passed over" in summary(followed)) == (count > 0)
+    (tmp_path / "lift.csv").write_text(followed.lifts(), "utf-8")
+    (tmp_path / "again.yaml").write_text(followed.recipe("lift.csv"), "utf-8")
+    recipe = camgeo.load(tmp_path / "again.yaml")
+    assert (recipe.verify.openings, recipe.part.bore) == ("ignore" if count else "judge", bore and pytest.approx(bore))
+    report = judged_by_recipe(followed)
+    assert report.ok, str(report)
+    assert [remark.name for remark in report.remarks if remark.name == "openings"] == ["openings"] * (count > 0)
+
+
+def test_a_contour_within_a_round_outline_is_no_outer_one(tmp_path: Path) -> None:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 4
+    for radius, x in ((40.0, 0.0), (20.0, 5.0)):
+        document.modelspace().add_circle((x, 0.0), radius)
+    document.saveas(tmp_path / "ring.dxf")
+    with pytest.raises(camgeo.CallError, match=r"lies within another contour: of a ring's opening give track internal"):
+        camgeo.follow(tmp_path / "ring.dxf", roller=3.0)
+    assert camgeo.follow(tmp_path / "ring.dxf", roller=3.0, track="internal").lift == pytest.approx(10.0)
+
+
 @pytest.mark.parametrize("turned", [0.0, 50.0, 180.0])
 def test_a_yokes_recipe_begins_where_the_cam_stands(tmp_path: Path, turned: float) -> None:
     """An eccentric circle, by hand, whose lift begins anywhere between its least and its greatest."""
@@ -329,7 +379,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         document.modelspace().add_circle((5.0, 0.0), radius, dxfattribs={"layer": "0"})
     document.saveas(tmp_path / "nested.dxf")
     with pytest.raises(camgeo.CallError, match="lies inside a hole; it is 24 x 24 mm; of a groove give track groove"):
-        camgeo.follow(tmp_path / "nested.dxf", roller=5.0)
+        camgeo.follow(tmp_path / "nested.dxf", roller=5.0, track="internal")
     groove = camgeo.follow(tmp_path / "nested.dxf", roller=5.0, track="groove")
     assert groove.play == pytest.approx((0.0, 0.0), abs=1e-9)
     (tmp_path / "empty.svg").write_text("", encoding="utf-8")
