@@ -243,7 +243,7 @@ OPENINGS: dict[str, tuple[list[list[tuple[float, float, float]]], int, float | N
     "D": ([[(3.0, 4.0, 1.6), (3.0, -4.0, 0.0)]], 1, None),
     "round": ([[(5, 0, 1), (-5, 0, 1)]], 0, 10.0),
     "round and four holes": (
-        [[(5, 0, 1), (-5, 0, 1)], *([(x + 1, y, 1), (x - 1, y, 1)] for x in (-9, 9) for y in (-9, 9))],
+        [[(5, 0, 1), (-5, 0, 1)], *([(x + 1.0, 9.0, 1.0), (x - 1.0, 9.0, 1.0)] for x in (-9.0, -3.0, 3.0, 9.0))],
         4,
         10.0,
     ),
