@@ -73,12 +73,16 @@ class MadeMotion(NamedTuple):
     """The motion of a follower on a made part, beside the intended one: shaft angles (n,), rad; mm or rad.
 
     `errors` are made less intended position, velocity and acceleration by the shaft angle (3, n), without the offset
-    that is set on assembly; nan where acceleration jumps. `sds` are their standard deviations (3, n).
+    that is set on assembly; nan where acceleration jumps. `sds` are their standard deviations (3, n). `deviation` gives
+    the standard deviation of a sum of position errors by its weights (n,). `gap` is how much more room than intended
+    two opposite contacts have, with its standard deviation (2, n); None of a single contact.
     """
 
     shaft: Array
     errors: Array
     sds: Array
+    deviation: Callable[[Array], float]
+    gap: Array | None = None
 
 
 class MadeFigure(NamedTuple):

@@ -42,6 +42,11 @@ class Elastic(NamedTuple):
         """Share of the stiffness along the travel that is left while both bear (n,): all of it."""
         return np.ones_like(self.preload)
 
+    def apart(self, gap: Array) -> Elastic:
+        """Give the pair on metal that leaves it more room, `gap` (n,) along the travel; a preload that is gone is 0."""
+        compliance = 1.0 / self.first + 1.0 / self.second
+        return self._replace(preload=np.maximum(self.preload - gap / compliance, 0.0))
+
     def split(self, force: Array) -> Array:
         """P1 and P2 (2, n) at forces F (n,): a contact that is lost bears nothing, the other all of it."""
         share = self.first / (self.first + self.second)

@@ -22,7 +22,7 @@ import numpy as np
 
 from kin.dynamics.oscillator import Oscillator
 from kin.dynamics.peaks import Peaks, ResponseFigure
-from kin.dynamics.response import Forcing, Response, response
+from kin.dynamics.response import Forcing, Response, Samples, response
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.dynamics.drive import Drive
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Complexes
 
 
 _LEAST_DETUNING = 1e-9  # below, the amplitude at resonance is a matter of rounding
@@ -136,6 +136,14 @@ class Running:
         k, c = self.train.stiffness, self.train.damping * self.speed
         return ResponseFigure.of(response, -side * k, -side * c)
 
+    def transfer(self, count: int) -> Complexes:
+        """Contact force by the cam's position, N/m or N m/rad, complex: of waves 0 to count // 2 a turn, in contact."""
+        train, waves = self.train, self.speed * np.arange(count // 2 + 1)
+        link = train.stiffness + 1j * train.damping * waves
+        rest = train.rate - train.mass * waves**2
+        transfer: Complexes = link * rest / (link + rest)
+        return transfer
+
     def static(self, position: float) -> float:
         """Place z at rest on a face that stands still at a position."""
         train = self.train
@@ -174,6 +182,13 @@ class Steady:
     def starts(self) -> Array:
         """States at the starts of all stretches of the response (2, m)."""
         return self.response.starts(np.array(self.state), 0, len(self.response))
+
+    def force_at(self, running: Running, shaft: Array) -> Array:
+        """Contact force (n,), N or N m, at shaft angles (n,), rad."""
+        knots = self.response.drive.knots
+        at = np.mod(shaft, TURN)
+        stretch = np.minimum(np.searchsorted(knots, at, side="right") - 1, len(self.response) - 1)
+        return running.force(self.response).at(self.starts, Samples(stretch, at - knots[stretch]))
 
 
 def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = ()) -> Steady:

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from kin.dynamics.drive import Drive
     from kin.dynamics.excitation import Faces
     from kin.dynamics.impacts import Course
-    from kin.dynamics.train import Steady, Train
+    from kin.dynamics.train import Running, Steady, Train
     from kin.follower.drive import Excitation
+    from kin.numeric.arrays import Array
 
 TURNS = 20  # that are followed from rest, unless one repeats the one before
 _DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
@@ -77,17 +78,16 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     that asks for no dynamics.
     """
     from kin.dynamics.drive import DriveError
-    from kin.dynamics.train import DynamicsError, Train
+    from kin.dynamics.train import DynamicsError
     from kin.follower.motion_error import ContactError
 
     asked = recipe.of(Dynamics)
-    if asked is None or asked.stiffness is None:
+    if asked is None:
         raise ValueError("the recipe has no elastic train")
     sources: list[FileResult | None] = [None]
     if recipe.linkage is None:
         sources += [file for file in files if file.contour is not None]
-    elastic = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
-    scene = _scene(recipe, asked, elastic, design, len(sources))
+    scene = _scene(recipe, asked, design, len(sources))
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for file in sources:
@@ -115,8 +115,30 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     return DynamicsResult(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, dynamics: Dynamics, train: Train, design: Design, runs: int) -> _Scene:
+def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Array) -> tuple[Running, Array]:
+    """The intended train under a spring at its speed, and its contact force (n,) at shaft angles (n,), N or N m.
+
+    Raises RecipeErrors where it has no steady state.
+    """
+    from kin.dynamics.drive import DriveError
+    from kin.dynamics.train import DynamicsError, steady
+
+    scene = _scene(recipe, dynamics, design, 1)
+    try:
+        found = steady(scene.train, _drives(scene, design, None)[0], dynamics.rpm)
+    except (DynamicsError, DriveError) as error:
+        raise recipe.error("dynamics", str(error)) from error
+    running = scene.train.at(dynamics.rpm)
+    return running, found.force_at(running, shaft)
+
+
+def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Scene:
+    from kin.dynamics.train import Train
     from kin.law.contacts import METRE
+
+    if dynamics.stiffness is None:
+        raise ValueError("the recipe has no elastic train")
+    train = Train(dynamics.mass, dynamics.damping, dynamics.stiffness, dynamics.preload or 0.0, dynamics.rate)
 
     if design.driven is None:
         follower = design.exact.gauge
@@ -151,6 +173,15 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
 
 def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
     """One run: entry of the report, and its check."""
+    found = _drives(scene, design, file)
+    entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
+    if len(found) > 1:
+        return _with_backlash(scene, entry, found[0], found[1])
+    return _with_spring(scene, entry, found[0])
+
+
+def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Drive]:
+    """What drives the follower from each face, the lower one first; dwells end at their knots."""
     from kin.dynamics.drive import drives
     from kin.dynamics.excitation import Faces
     from kin.follower.drive import Shifted
@@ -159,11 +190,7 @@ def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[s
     if scene.asked.rate:  # the spring's force is given at the lowest place
         faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
-    found = drives([face for face in faces if face is not None], ends)
-    entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
-    if len(found) > 1:
-        return _with_backlash(scene, entry, found[0], found[1])
-    return _with_spring(scene, entry, found[0])
+    return drives([face for face in faces if face is not None], ends)
 
 
 def _lowest(motion: Excitation) -> float:

@@ -1,7 +1,11 @@
-"""Forces, pressures and the float speed of a rigid follower in the motion that a made part gives it.
+"""Forces, pressures and float speeds of a follower train in the motion that a made part gives it.
 
-They follow from position, velocity and acceleration as those of the intended motion do, curvature of the contour
-included. Their uncertainty is that of these three, each by what a standard deviation more of it adds.
+Those of a rigid follower follow from position, velocity and acceleration as those of the intended motion do, curvature
+of the contour included, and under preload from the room that the metal leaves the contacts. Their uncertainty is that
+of these, each by what a standard deviation more of it adds.
+
+An elastic train is linear while contact holds: to its intended steady force comes its response to the error of the
+motion, whose uncertainty is that of the sum of errors that the response is.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.dynamics.elastic import steady_force
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.capabilities.dynamics.running_forces import FollowerRunning, follower_running
 from camgeo.registry.capability import MadeFigure, MadeFigures
@@ -24,11 +29,12 @@ if TYPE_CHECKING:
 
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 LINKAGE = "forces on the made part are not found under a linkage"
-ELASTIC = "forces on the made part are those of a rigid follower: an elastic train is not followed on it"
-NO_FORCES = "of an elastic train no forces on the made part are found; with dynamics.material those of a rigid one are"
-LEAST_FORCE, FLOAT_SPEED = ("least contact force", "N"), ("float speed", "rpm")
-LEAST = {LEAST_FORCE, FLOAT_SPEED}
-PRELOADED = "forces on the made part have the preload of the intended one"
+BACKLASH = "impacts of a train with backlash are not followed on the made part: which face bears is not settled by it"
+SECOND = "of an elastic train whose follower has two contacts under a spring no forces on the made part are found"
+ELASTIC_SPEED = (
+    "the speed from which an elastic train floats is not searched on the made part, whose motion is a sum of waves"
+)
+LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD = "least contact force", "float speed", "least preload"
 
 
 def figures_on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> MadeFigures:
@@ -38,23 +44,45 @@ def figures_on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> Made
         return MadeFigures()
     if design.driven is not None:
         return MadeFigures(remarks=(LINKAGE,))
-    if train.stiffness is not None and train.material is None:
-        return MadeFigures(remarks=(NO_FORCES,))
+    if train.stiffness is None:
+        return MadeFigures(_rigid(recipe, design, train, motion))
+    figures = [] if train.material is None else _rigid(recipe, design, train, motion)
+    if train.backlash is not None or len(design.follower.contacts) > 1:
+        return MadeFigures(figures, (BACKLASH if train.backlash is not None else SECOND,))
+    return MadeFigures([*figures, *_elastic(recipe, design, train, motion)], (ELASTIC_SPEED,))
+
+
+def _rigid(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion) -> list[MadeFigure]:
     running = follower_running(recipe, design, train)
-    if running.jam_deg is not None:  # which a check tells
-        return MadeFigures()
-    remarks = [ELASTIC] if train.stiffness is not None else []
-    remarks += [PRELOADED] if design.exact.preload is not None else []
-    return MadeFigures(_figures(running, motion), remarks)
+    return [] if running.jam_deg is not None else _figures(running, motion)  # a check tells of a stem that jams
+
+
+def _elastic(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion) -> list[MadeFigure]:
+    """Greatest and least contact force of the steady state at the recipe's speed."""
+    running, intended = steady_force(recipe, design, train, motion.shaft)
+    count = len(motion.shaft)
+    transfer = design.exact.gauge.si * running.transfer(count)
+    made = intended + np.fft.irfft(transfer * np.fft.rfft(motion.errors[0]), count)
+    row = np.roll(np.fft.irfft(transfer, count)[::-1], 1)  # weights of the errors in the force at the first angle
+    row -= row.mean()  # the offset is none
+    unit = "N m" if design.follower.arrangement.unit == "deg" else "N"
+    figures = []
+    for name, pick in (("contact force, elastic", np.argmax), ("least contact force, elastic", np.argmin)):
+        at = int(pick(made))
+        unsure = COVERAGE * motion.deviation(np.roll(row, at))
+        meant = float(intended[pick(intended)])
+        figures.append(MadeFigure(name, unit, meant, float(made[at]), unsure, degrees(float(motion.shaft[at]))))
+    return figures
 
 
 def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
-    """Greatest force and pressure of each contact; of a single one its least force and its float speed as well."""
-    intended = running.turn.rows(motion.shaft)
-    made = intended + motion.errors
+    """Greatest force and pressure of each contact; least force and float speed of a single one, preload of two."""
+    gap, gap_sd = np.zeros((2, len(motion.shaft))) if motion.gap is None else motion.gap
+    intended = np.vstack([running.turn.rows(motion.shaft), np.zeros_like(gap)])
+    made = intended + np.vstack([motion.errors, gap])
     first, rows = (_rows(running, motion.shaft, each) for each in (intended, made))
     square = {name: np.zeros_like(row) for name, row in rows.items()}
-    for order, sd in enumerate(motion.sds):
+    for order, sd in enumerate([*motion.sds, gap_sd]):
         more = made.copy()
         more[order] += sd
         with np.errstate(invalid="ignore"):  # speeds that nothing takes it off at
@@ -64,7 +92,7 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
     for figure, row in rows.items():
         if not np.isfinite(row).any():  # nothing takes the follower off at any speed
             continue
-        least = figure in LEAST
+        least = figure[0] in {LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD}
         at = int(np.nanargmin(row) if least else np.nanargmax(row))
         meant = float(np.nanmin(first[figure]) if least else np.nanmax(first[figure]))
         unsure = COVERAGE * math.sqrt(float(square[figure][at]))
@@ -73,16 +101,19 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
 
 
 def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str, str], Array]:
-    """Forces, pressures and torque (n,) at shaft angles (n,), rad, by name and unit, of a motion (3, n)."""
-    state, names = running.in_motion(shaft, rows), running.turn.names
+    """Forces and pressures (n,) at shaft angles (n,), rad, by name and unit, of a motion and its gap (4, n)."""
+    state, names = running.in_motion(shaft, rows[:3], rows[3]), running.turn.names
     of = [f", {name}" if len(names) > 1 else "" for name in names]
     found = {(f"contact force{ending}", "N"): row for ending, row in zip(of, state.normal, strict=True)}
     if state.pressure is not None:
         each = zip(of, state.pressure, strict=True)
         found |= {(f"pressure{ending}", "N/mm^2"): row for ending, row in each}
     if len(names) == 1:
-        found[LEAST_FORCE] = state.normal[0]
-        found[FLOAT_SPEED] = _float_speed(running, shaft, state.rows)
+        found[LEAST_FORCE, "N"] = state.normal[0]
+        found[FLOAT_SPEED, "rpm"] = _float_speed(running, shaft, state.rows)
+    preload = running.preload_force(rows[:3], rows[3])
+    if preload is not None:
+        found[LEAST_PRELOAD, running.turn.unit] = preload
     return found
 
 

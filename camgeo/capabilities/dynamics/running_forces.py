@@ -71,23 +71,26 @@ class FollowerRunning(Running):
         """All of it at shaft angles (n,)."""
         return self.in_motion(t, self.turn.rows(t))
 
-    def in_motion(self, t: Array, rows: Array) -> State:
-        """All of it at shaft angles (n,) where position and two derivatives are these, mm or rad (3, n)."""
+    def in_motion(self, t: Array, rows: Array, gap: Array | None = None) -> State:
+        """All of it at shaft angles (n,) where position and two derivatives are these, mm or rad (3, n).
+
+        `gap` (n,), mm or rad, is how much more room than intended the metal leaves contacts under preload.
+        """
         lines = self.turn.lines(rows)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
-        normal = self._normal(force, rows, lines)
+        normal = self._normal(force, rows, lines, gap)
         shaft = np.array([side * line.shaft for side, line in zip(self.sides, lines, strict=True)])
         torque: Array = PER_MM * np.sum(normal * shaft, axis=0)
         pressure, speeds = self._pressure(normal, lines), self._roller_rpm(lines)
         return State(force, y, normal, torque, pressure, self._guide_forces(y, normal, lines), lines, speeds)
 
-    def _normal(self, force: Array, rows: Array, lines: Sequence[ContactLine]) -> Array:
+    def _normal(self, force: Array, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None) -> Array:
         """Normal force of each contact, N (m, n). Not a number where a stem jams in its guide."""
         scale = PER_MM if self.turn.swings else 1.0
         levers = scale * np.array([line.lever for line in lines])
         if self.held_by is not None:
-            normal: Array = self._pressed(self.held_by, rows, lines).split(force / scale) * scale / levers
+            normal: Array = self._pressed(self.held_by, rows, lines, gap).split(force / scale) * scale / levers
             return normal
         if len(lines) > 1:
             force = np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
@@ -102,9 +105,20 @@ class FollowerRunning(Running):
         preload = self.design.exact.preload
         return None if preload is None or preload.stiffness is None else preload
 
-    def _pressed(self, preload: Preload, rows: Array, lines: Sequence[ContactLine]) -> Elastic | Guided:
+    def preload_force(self, rows: Array, gap: Array) -> Array | None:
+        """Force of the preload along the travel (n,), N or N m, as `in_motion`; None without one."""
+        if self.held_by is None:
+            return None
+        scale = PER_MM if self.turn.swings else 1.0
+        force: Array = scale * elastic_contacts(self.turn, self.held_by, rows).apart(gap).preload
+        return force
+
+    def _pressed(
+        self, preload: Preload, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None
+    ) -> Elastic | Guided:
         """Both contacts under preload, N and mm or N mm and rad."""
         pair = elastic_contacts(self.turn, preload, rows)
+        pair = pair if gap is None else pair.apart(gap)
         if self.train.guide is None:
             return pair
         y = self.position(rows)

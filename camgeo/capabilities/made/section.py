@@ -76,7 +76,8 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
     """Add to a section what other capabilities make of the part's motion; raises RecipeErrors as they do."""
     errors = result.motion
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
-    motion = MadeMotion(errors.shaft, rows, errors.sds)
+    gap = None if result.play is None else np.stack([result.play.gap, result.play.sds])
+    motion = MadeMotion(errors.shaft, rows, errors.sds, lambda weights: errors.influence(weights).sd, gap)
     made = [capability.on_metal(recipe, design, motion) for capability in registry.in_order(recipe.uses)]
     if figures := [figure._asdict() for one in made for figure in one.figures]:
         entry["figures"] = figures
