@@ -37,10 +37,10 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.formats.stl import write_stl
 from camgeo.output.job import Job
 from camgeo.output.pipeline import export
-from camgeo.recipe.part import Part
+from camgeo.part.part import Part
+from camgeo.part.shapes import disc
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, intents, permitted
-from camgeo.synthesis.part.shapes import disc
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
 from kin.read.nesting import Chain

@@ -29,9 +29,9 @@ from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.formats.stl import write_stl
+from camgeo.part.shapes import disc
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.part.shapes import disc
 from kin.contour.contour import Contour
 from kin.follower.follower import follower_of
 from kin.law.contacts import Flat, Roller, on_one_arm, opposite

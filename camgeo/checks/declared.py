@@ -9,9 +9,10 @@ declared here by the same names.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.checks import remedies
+from camgeo.part import chamfer, hub, lightening, mark, set_screw
 from camgeo.recipe.figures import (
     BACKLASH,
     CONTACT_TRAVEL,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.cams.follower import Follower
+    from camgeo.part.feature import Feature
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
@@ -137,9 +139,7 @@ def _ground(scene: Scene) -> bool:
 
 
 def _walled(scene: Scene) -> bool:
-    part = scene.recipe.part
-    drilled = part.bolts is not None or part.dowel is not None or part.lightening is not None
-    return part.bore is not None or part.outer is not None or part.hub is not None or drilled or part.mark is not None
+    return scene.recipe.part.walled
 
 
 def _contour(_: Scene, file: FileRequest) -> bool:
@@ -188,13 +188,18 @@ def _drilled(scene: Scene, file: FileRequest) -> bool:
     return _contour(scene, file) and file.format.drilled(scene.recipe)
 
 
-def _with(name: str) -> OfFile:
+def _has(feature: Feature[Any]) -> Exact:
+    """Whether the part has a feature."""
+    return lambda scene: scene.recipe.part.of(feature.kind) is not None
+
+
+def _with(feature: Feature[Any]) -> OfFile:
     """Of solids, a feature of the part."""
-    return lambda scene, file: _solid(scene, file) and getattr(scene.recipe.part, name) is not None
+    return lambda scene, file: _solid(scene, file) and scene.recipe.part.of(feature.kind) is not None
 
 
 def _marked(scene: Scene, file: FileRequest) -> bool:
-    return _contour(scene, file) and not file.format.program and scene.recipe.part.mark is not None
+    return _contour(scene, file) and not file.format.program and scene.recipe.part.of(mark.Mark) is not None
 
 
 def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
@@ -322,9 +327,7 @@ WALL = Declared(
     remedy=remedies.smaller_bore,
     strict_at=(0.0,),
 )
-LIGHTENING = Declared(
-    "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
-)
+LIGHTENING = Declared(lightening.FEATURE.name, ("holes",), _has(lightening.FEATURE), field="part.lightening")
 
 # --- of files ---------------------------------------------------------------------------------------------------------
 
@@ -336,19 +339,19 @@ WATERTIGHT = Declared("watertight", ("", "faults"), of_file=_solid)
 BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
-MARK = Declared("mark", ("mm",), of_file=_marked, field="part.mark")
+MARK = Declared(mark.FEATURE.name, ("mm",), of_file=_marked, field="part.mark")
 THICKNESS = Declared("thickness", ("mm",), of_file=_solid, field="part.thickness")
-HUB = Declared("hub", ("mm",), of_file=_with("hub"), field="part.hub")
+HUB = Declared(hub.FEATURE.name, ("mm",), of_file=_with(hub.FEATURE), field="part.hub")
 CHAMFER = Declared(
-    "chamfer",
+    chamfer.FEATURE.name,
     ("mm",),
-    lambda scene: scene.recipe.part.chamfer is not None,
-    _with("chamfer"),
+    _has(chamfer.FEATURE),
+    _with(chamfer.FEATURE),
     field="part.chamfer",
     remedy=remedies.smaller_chamfer,
     strict=True,
 )
-SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="part.set_screw")
+SET_SCREW = Declared("set-screw", ("mm",), of_file=_with(set_screw.FEATURE), field="part.set_screw")
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)

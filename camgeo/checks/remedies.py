@@ -116,7 +116,7 @@ NO_CHAMFER = "no chamfer, or a contour without corners"
 def lone_ring(recipe: Recipe) -> bool:
     """Whether the part is a ring or a blank without holes: its one wall is that between opening and outline."""
     part = recipe.part
-    return part.outer is not None and part.bore is None and part.bolts is None and part.dowel is None
+    return part.outer is not None and part.bore is None and not part.openings
 
 
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from camgeo.files.errors import demand_package
 from camgeo.fit.pieces import BSpline, Outline, Polygon
 from camgeo.formats.drawings import drawing_format
+from camgeo.part.hub import Hub
 from camgeo.schema.fields import Field, Kind
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
@@ -340,13 +341,14 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerO
 def _reference(job: Job, tolerance: float) -> list[Reference]:
     """Centre, base or prime circle, the pitch curve, and paths of points of links: to look at, not to cut."""
     from camgeo.fit.arcs import fit_arcs
-    from camgeo.synthesis.part.walls import Looks, distance_inside
+    from camgeo.part.walls import Looks, distance_inside
 
     recipe, exact = job.recipe, job.design.exact
     pitches = {id(surface.base): surface for surface, _ in job.design.contours}.values()
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
-    if recipe.part.hub is not None:
-        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
+    hub = recipe.part.of(Hub)
+    if hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * hub.diameter))
     for surface in pitches:
         for name, radius in exact.circles(surface.name):
             if radius is not None:

@@ -17,19 +17,20 @@ from camgeo.common.errors import CallError
 from camgeo.curve.curvature import least_radius
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
+from camgeo.part.feature import NothingLeftError, narrowed
+from camgeo.part.features import FEATURES
 from camgeo.registry.formats import alteration
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
-from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.part.body import Body
+    from camgeo.part.part import Part
+    from camgeo.part.shapes import Opening
     from camgeo.recipe.machining import Compensation
-    from camgeo.recipe.part import Part
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
-    from camgeo.synthesis.part.body import Body
-    from camgeo.synthesis.part.shapes import Opening
     from kin.judge.check import Check
 
 FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are left out
@@ -45,10 +46,6 @@ class CompensatedPart:
     recipe: Recipe
     design: Design
     checks: tuple[Check, ...]
-
-
-class NothingLeftError(CamgeoError, ValueError):
-    """An opening that is no wider than what is taken from it."""
 
 
 def compensate(recipe: Recipe, design: Design, compensation: Compensation, field: str) -> CompensatedPart:
@@ -70,8 +67,8 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
         remedy = f"leave kerf out, give a clearance of at least {least} too, or a roller"
         raise recipe.error(field, problem, None, remedy) from error
     try:
-        bodies = [None if disc.body is None else _body(disc.body, growth, scale) for disc in design.discs]
         part = _part(recipe.part, growth, scale)
+        bodies = [None if disc.body is None else _body(disc.body, part, growth, scale) for disc in design.discs]
     except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {growth / recipe.mm:.6g}: {error}") from error
     try:
@@ -99,43 +96,32 @@ def _with_body(disc: Disc, body: Body | None) -> Disc:
 
 
 def _part(part: Part, growth: float, scale: float) -> Part:
-    """The part with its edges moved and scaled."""
-    hub = part.hub
-    if hub is not None:
-        hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * growth), height=scale * hub.height)
+    """Lengths of the part that the files are given directly."""
     return replace(
         part,
-        bore=None if part.bore is None else _across(part.bore, growth, scale),
+        bore=None if part.bore is None else narrowed(part.bore, growth, scale),
         outer=None if part.outer is None else scale * (part.outer + 2.0 * growth),
         thickness=None if part.thickness is None else scale * part.thickness,
-        hub=hub,
+        features=_features(part, growth, scale),
     )
 
 
-def _across(width: float, growth: float, scale: float) -> float:
-    remaining = width - 2.0 * growth
-    if not remaining > 0.0:
-        raise NothingLeftError(f"it is {width:.6g} mm across")
-    return scale * remaining
-
-
-def _body(body: Body, growth: float, scale: float) -> Body:
-    hub, screw = body.hub, body.screw
-    if hub is not None:
-        hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * growth), height=scale * hub.height)
-    if screw is not None:
-        height = None if screw.height is None else scale * screw.height
-        screw = replace(screw, diameter=_across(screw.diameter, growth, scale), height=height)
+def _body(body: Body, part: Part, growth: float, scale: float) -> Body:
     return replace(
         body,
-        thickness=None if body.thickness is None else scale * body.thickness,
+        thickness=part.thickness,
         openings=tuple(_opening(opening, growth, scale) for opening in body.openings),
-        bore=None if body.bore is None else _across(body.bore, growth, scale),
-        outer=None if body.outer is None else scale * (body.outer + 2.0 * growth),
-        hub=hub,
-        screw=screw,
-        chamfer=None if body.chamfer is None else scale * body.chamfer,
+        bore=part.bore,
+        outer=part.outer,
+        features=part.features,
     )
+
+
+def _features(part: Part, growth: float, scale: float) -> tuple[object, ...]:
+    """Features with their metal grown, and scaled; those that are openings alone as they are."""
+    given = ((feature.grown, part.of(feature.kind)) for feature in FEATURES)
+    values = ((value if grown is None or value is None else grown(value, growth, scale)) for grown, value in given)
+    return tuple(value for value in values if value is not None)
 
 
 def _opening(opening: Opening, growth: float, scale: float) -> Opening:
@@ -143,7 +129,7 @@ def _opening(opening: Opening, growth: float, scale: float) -> Opening:
     depth = None if opening.depth is None else scale * opening.depth
     if opening.circle is not None:
         (x, y), radius = opening.circle
-        radius = 0.5 * _across(2.0 * radius, growth, scale)
+        radius = 0.5 * narrowed(2.0 * radius, growth, scale)
         points = np.array([[scale * x + radius, scale * y], [scale * x - radius, scale * y]])
         outline = ArcSpline(points, np.ones(2), EXACT)
         return replace(opening, outline=outline, circle=((scale * x, scale * y), radius), depth=depth)

@@ -17,9 +17,9 @@ from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.part.body import Body
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
-    from camgeo.synthesis.part.body import Body
     from kin.judge.layers import Layer
     from kin.numeric.arrays import Array
 
@@ -71,7 +71,7 @@ def balances_of(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
 
 
 def _balance(disc: Disc, body: Body, density: float, mirror: float) -> Balance:
-    from camgeo.synthesis.part.as_intent import layers_of
+    from camgeo.part.as_intent import layers_of
 
     volume, error = np.zeros(5), np.zeros(4)  # integrals of 1, x, y, r^2 and z
     for layer in layers_of(body):

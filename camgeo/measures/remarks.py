@@ -14,6 +14,7 @@ from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.figures import design_figures
 from camgeo.measures.units import UNIT_NAMES, displacement_unit
+from camgeo.part.keyway import Keyway
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
@@ -451,7 +452,7 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """A shaft outside the contour of a part without a bore; with one the wall is a check."""
     if recipe.part.bore is not None or not design.contours:
         return None
-    from camgeo.synthesis.part.walls import Looks, distance_inside, winds
+    from camgeo.part.walls import Looks, distance_inside, winds
 
     distances = []
     for surface, contour in design.contours:
@@ -471,7 +472,7 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
 
 def _keyway(recipe: Recipe) -> Remark | None:
     """A bore by the inch with a keyway of a metric standard."""
-    bore, keyway = recipe.part.bore, recipe.part.keyway
+    bore, keyway = recipe.part.bore, recipe.part.of(Keyway)
     if bore is None or keyway is None or not keyway.standard:
         return None
     by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF_MM)

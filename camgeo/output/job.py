@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.fit.pieces import Bound, Outline
+    from camgeo.part.body import Body
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import Design
-    from camgeo.synthesis.part.body import Body
     from kin.judge.check import Check
 
 STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.pieces import Polygon
+from camgeo.part.features import FEATURES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
     from camgeo.files.precision import Precision
     from camgeo.files.solid import Solid
     from camgeo.fit.pieces import Outline
+    from camgeo.part.body import Body
     from camgeo.synthesis.design import Design
-    from camgeo.synthesis.part.body import Body
 
 
 def contours_of(design: Design, fitted: Iterable[Outline]) -> list[LayerOutline]:
@@ -36,14 +37,8 @@ def openings_of(body: Body) -> list[LayerOutline]:
 
 def remarks(body: Body, mm: float) -> list[str]:
     """What a drawing does not show: told in its comments, in drawing units of `mm` mm."""
-    found = []
-    if body.hub is not None:
-        hub = body.hub
-        found.append(f"camgeo hub: diameter {hub.diameter / mm:.9g}, height {hub.height / mm:.9g}, side {hub.side}")
-    if body.screw is not None:
-        found.append(f"camgeo set screw: radial hole through the hub, diameter {body.screw.diameter / mm:.9g}")
-    if body.chamfer is not None:
-        found.append(f"camgeo chamfer: {body.chamfer / mm:.9g} at 45 degrees, both edges of CUT")
+    given = ((feature.remark, body.of(feature.kind)) for feature in FEATURES)
+    found = [f"camgeo {remark(value, mm)}" for remark, value in given if remark is not None and value is not None]
     found += [
         f"camgeo {opening.name}: {opening.depth / mm:.9g} deep"
         for opening in body.openings

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.part.features import FEATURES
+
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
@@ -18,6 +20,8 @@ def check_discs(values: Values, reader: Reader) -> None:
     if not is_pair(values):
         return
     part = values.get("part", {})
-    for name in ("hub", "set_screw"):
-        if name in part:
-            reader.fault_at(f"part.{name}", "belongs to a cam of one disc", None, "leave it out, or cam.conjugate")
+    for feature in FEATURES:
+        if not feature.of_pair and feature.name in part:
+            reader.fault_at(
+                f"part.{feature.name}", "belongs to a cam of one disc", None, "leave it out, or cam.conjugate"
+            )

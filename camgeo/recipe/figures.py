@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, TypeVar
 
+from camgeo.part.feature import WALL
+from camgeo.part.features import FEATURES
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, Kind
 from kin.numeric.records import KW_ONLY, dataclass
@@ -49,7 +51,7 @@ OF_SWING = Need("a cam of kind double-roller or flat-pair", _offered("swings"))
 OF_FACE = Need("a cam for a flat face that is pushed along its normal", _offered("face"))
 OF_WALL = Need(
     "a part with openings or a hub",
-    _given(*(f"part.{name}" for name in ("bore", "hub", "bolts", "dowel", "lightening", "mark"))),
+    _given("part.bore", *(f"part.{each.name}" for each in FEATURES if each.holes or each.walled)),
 )
 OF_GUIDED = Need("a cam of kind disc or constant-diameter", _offered("guided"))
 OF_ROLLING = Need("a roller that a cam of kind disc or constant-diameter turns", _offered("rolling"))
@@ -61,7 +63,7 @@ OF_STIFFNESS = Need("cam.preload.stiffness", _given("cam.preload.stiffness"))
 OF_DENSITY = Need("part.density, and in a sweep no linkage", _given("part.density"), part=True)
 
 # Names that stand in programs too.
-DWELL, DWELL_RELATIVE, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "dwell-relative", "size", "contact-travel", "wall"
+DWELL, DWELL_RELATIVE, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "dwell-relative", "size", "contact-travel", WALL
 
 
 RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"

@@ -6,13 +6,13 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
+from camgeo.part.part import PART, check_part
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.export import EXPORT, check_files, export_of
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
-from camgeo.recipe.part import PART, check_part
 from camgeo.recipe.preload import check_preload
 from camgeo.recipe.track import check_track
 from camgeo.registry import registry

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeVar, overlo
 
 from camgeo.common.arguments import is_a
 from camgeo.common.errors import CallError
+from camgeo.part.part import build_part
 from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export
@@ -21,7 +22,6 @@ from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.limits import Limit, build_limits
 from camgeo.recipe.linkage import DwellAsked, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
-from camgeo.recipe.part import build_part
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry import root as roots
@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from typing import Self
 
     from camgeo.cams.family import Cam
+    from camgeo.part.part import Part
     from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
-    from camgeo.recipe.part import Part
     from camgeo.schema.change import Value
     from camgeo.schema.reader import Values
     from camgeo.schema.yaml_source import Source

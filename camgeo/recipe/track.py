@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.part.features import FEATURES
 from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
-OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+OF_A_DISC = ("bore", *(feature.name for feature in FEATURES if not feature.of_ring))
 """Keys of a part that a ring cannot have."""
 SAME = 1e-12  # share by which a cutter may be wider than the groove through rounding
 

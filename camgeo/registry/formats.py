@@ -45,9 +45,8 @@ def designed_intent(recipe: Recipe, design: Design, /) -> PartIntent:
 
 
 def has_holes(recipe: Recipe, /) -> bool:
-    """Whether the part has round holes besides its bore."""
-    part = recipe.part
-    return part.bolts is not None or part.dowel is not None or part.lightening is not None
+    """Whether the part has holes besides its bore."""
+    return recipe.part.holed
 
 
 class Run(NamedTuple):
@@ -179,7 +178,7 @@ class Format:
               is missing that makes its files, which are then left out
     intent    intent by which kin judges its files
     bored     whether a file has the bore of the part
-    drilled   whether a file has round holes besides the bore
+    drilled   whether a file has holes besides the bore
     unmade    pairs of a feature of the part that its files leave out and the reason
     numbers   precision of the numbers of a mesh
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)

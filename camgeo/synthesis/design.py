@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut
     from camgeo.motions.position import Position
-    from camgeo.recipe.part import Part
+    from camgeo.part.body import Body
+    from camgeo.part.part import Part
+    from camgeo.part.shapes import Opening
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven
-    from camgeo.synthesis.part.body import Body
-    from camgeo.synthesis.part.shapes import Opening
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -344,9 +344,9 @@ def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[
     """The disc with its body, and the checks of its walls; without its least walls there is no part to draw."""
     if not disc.contours:
         return disc, []
-    from camgeo.synthesis.part.body import Body, body_of
-    from camgeo.synthesis.part.checks import bore_check, part_checks
-    from camgeo.synthesis.part.walls import Looks
+    from camgeo.part.body import Body, body_of
+    from camgeo.part.checks import bore_check, part_checks
+    from camgeo.part.walls import Looks
 
     part, shaft_deg = recipe.part, exact.motion.shaft_deg
     if part.plain and part.bore is None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.heavy import shapely
 
-from camgeo.synthesis.part.shapes import flattened, keyed, polygonal, slot
+from camgeo.part.shapes import flattened, keyed, polygonal, slot
 from kin.contour.contour import Contour
 from kin.contour.offset import TightError, chain_of, parallel
 

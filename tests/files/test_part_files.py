@@ -16,7 +16,7 @@ from camgeo.files.prism import bore_polygon, loop_polygon
 from camgeo.files.sides import sides
 from camgeo.files.solid import inset
 from camgeo.files.triangulate import region
-from camgeo.synthesis.part.shapes import disc, flattened, keyed, polygonal, slot
+from camgeo.part.shapes import disc, flattened, keyed, polygonal, slot
 from kin.contour.contour import Contour
 
 AREA = math.pi * (25**2 - 4 * 8 / 2)  # of p = 25 + 2 cos 3t: pi (m^2 + (1 - k^2) a^2/2)

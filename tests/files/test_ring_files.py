@@ -15,10 +15,10 @@ from camgeo.fit.pieces import ArcSpline
 from camgeo.formats.dxf import write_dxf
 from camgeo.machining.compensation import compensate
 from camgeo.output import pipeline
+from camgeo.part.shapes import disc
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.machining import Compensation
 from camgeo.synthesis.intent import intended
-from camgeo.synthesis.part.shapes import disc
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 

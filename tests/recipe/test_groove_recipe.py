@@ -6,6 +6,7 @@ import pytest
 
 from camgeo.cams.groove import Groove
 from camgeo.output.pipeline import export
+from camgeo.part.hub import Hub
 from camgeo.recipe.loading import read
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
@@ -96,7 +97,7 @@ def test_each_is_one_fault():
 
 
 def test_a_hub_below_goes_with_it():
-    assert recipe(GROOVE.replace("bore: 10", f"bore: 10, {HUB}, side: bottom}}")).part.hub.side == "bottom"
+    assert recipe(GROOVE.replace("bore: 10", f"bore: 10, {HUB}, side: bottom}}")).part.of(Hub).side == "bottom"
 
 
 def test_a_groove_is_sized_as_the_disc_within_it():

@@ -28,12 +28,12 @@ from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, Re
 from camgeo.curve.moving_frame import Displacement
 from camgeo.motions.motion import Segments
 from camgeo.motions.segments import MotionSegment, SccaLaw
+from camgeo.part.part import Part
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load, read
 from camgeo.recipe.machining import Compensation, Manufacture
-from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.starter import starter
 from camgeo.registry.formats import MODULES

@@ -10,6 +10,7 @@ import pytest
 from support.cases import few
 
 from camgeo.output import pipeline
+from camgeo.part.hub import Hub
 from camgeo.recipe.loading import load_text
 from kin.judge.check import at_most, less_sure
 from kin.numeric.lengths import UNIT, in_unit, length_words, place_words, span_words
@@ -77,7 +78,7 @@ def test_details_of_an_inch_recipe_are_in_inches(name: str) -> None:
         if found and value:
             figures = [float(number) for number in found.groups()]
             assert value(*figures) == pytest.approx(check["value"], rel=1e-2, abs=1e-7), (check["name"], detail)
-        elif found and check["name"] == "thickness" and not recipe.part.hub:
+        elif found and check["name"] == "thickness" and not recipe.part.of(Hub):
             assert float(found[2]) == pytest.approx(recipe.part.thickness / INCH, abs=1e-3)
         elif found and check["name"] == "bore":
             assert max(abs(float(number)) for number in found.groups()) < 0.2  # about the shaft, 3 and 2 mm off at most

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.files.layer_outline import LayerOutline
-from camgeo.synthesis.part.shapes import disc
+from camgeo.part.shapes import disc
 
 if TYPE_CHECKING:
     from camgeo.fit.pieces import Outline

@@ -14,12 +14,12 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
-from camgeo.recipe.din6885 import TABLE, key_for
+from camgeo.part.checks import ROUNDING, thinnest, walls
+from camgeo.part.din6885 import TABLE, key_for
+from camgeo.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
+from camgeo.part.walls import Looks, contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.part.checks import ROUNDING, thinnest, walls
-from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
-from camgeo.synthesis.part.walls import Looks, contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from kin.contour.contour import Contour
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 

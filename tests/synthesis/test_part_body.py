@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from support.parts import CAM, found, recipe_of
 
+from camgeo.part.body import body_of
+from camgeo.part.walls import Looks
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
-from camgeo.synthesis.part.body import body_of
-from camgeo.synthesis.part.walls import Looks
 
 
 def opening(design, name):

@@ -17,7 +17,7 @@ from camgeo.capabilities.budget.words import (
     traits,
     words_of,
 )
-from camgeo.recipe.din6885 import key_for
+from camgeo.part.din6885 import key_for
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.schema.json_schema import number_schema

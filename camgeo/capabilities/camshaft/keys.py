@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.lift_table import read_path
+from camgeo.part.bore import LEAST_SIZE
+from camgeo.part.chamfer import Chamfer
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, export_of
 from camgeo.recipe.keys import CORE, UNITS, recipe_table
 from camgeo.recipe.machining import COARSEST, FINEST
-from camgeo.recipe.part import LEAST_SIZE
 from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.errors import RecipeErrors, suggestion
@@ -93,7 +94,7 @@ class Lobe:
     def made(self) -> Recipe:
         """Recipe of the cam as it is made on the shaft: as long as the lobe is, and without chamfers."""
         long = round(self.high - self.low, DECIMALS)
-        return replace(self.recipe, part=replace(self.recipe.part, thickness=long, chamfer=None))
+        return replace(self.recipe, part=replace(self.recipe.part.without(Chamfer), thickness=long))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from camgeo.capabilities.camshaft.keys import ROUNDING, of_a_lobe
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.lobe import moved_by
-from camgeo.recipe.part import THINNEST
+from camgeo.part.part import THINNEST
 from camgeo.registry.capability import ShaftCam
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed

@@ -6,6 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.made.runs import POINTS, places_of
+from camgeo.part.dowel import Dowel
+from camgeo.part.flat import Flat
+from camgeo.part.keyway import Keyway
 from camgeo.schema.fields import Field, Kind, either, length, mapping
 from kin.numeric.records import dataclass, replace
 
@@ -13,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.made.runs import Run
+    from camgeo.part.part import Part
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.part import Part
     from camgeo.registry.formats import Form, Format
     from camgeo.schema.reader import Reader, Values
     from kin.made.points import Datum
@@ -97,5 +100,5 @@ def datum_of(made: Made | None, part: Part) -> Datum:
     """Datum of a recipe: what it gives, or what its bore fixes."""
     if made is not None and made.datum is not None:
         return made.datum
-    fixed = part.keyway is not None or part.flat is not None or bool(part.sides) or part.dowel is not None
+    fixed = bool(part.sides) or any(part.of(kind) is not None for kind in (Keyway, Flat, Dowel))
     return "part" if fixed else "none" if part.bore is None else "bore"

@@ -15,7 +15,10 @@ from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member, Plate
 from camgeo.capabilities.mechanism.shapes import disc, retainer
 from camgeo.capabilities.mechanism.sizes import THIN, BodyError, require_thickness
 from camgeo.fit.pieces import ArcSpline
-from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
+from camgeo.part.flat import Flat
+from camgeo.part.hub import Hub
+from camgeo.part.keyway import Keyway
+from camgeo.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
 from kin.numeric.records import dataclass
 
@@ -25,8 +28,8 @@ if TYPE_CHECKING:
     from camgeo.capabilities.mechanism.assembly import Place
     from camgeo.capabilities.mechanism.sizes import Sizes
     from camgeo.fit.pieces import Polygon
-    from camgeo.recipe.part import Part
-    from camgeo.synthesis.part.body import Body
+    from camgeo.part.body import Body
+    from camgeo.part.part import Part
 
 CAM = "cam"
 KNOB_SIDES = 8
@@ -75,9 +78,10 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
             Plate(inner, island, floor, part.thickness),
             Plate(blank, (_arcs(outer), *outside), floor, part.thickness),
         ]
-    if part.hub is None:
+    hub = part.of(Hub)
+    if hub is None:
         return Disk(tuple(plates), part.thickness, 0.0, part.thickness, pocket=body.pocket)
-    radius = 0.5 * part.hub.diameter
+    radius = 0.5 * hub.diameter
     inside = tuple(opening.outline for opening in through if math.hypot(*opening.middle) < radius)
     if body.bottom < 0.0:
         plates.append(Plate(disc(radius), inside, body.bottom, 0.0))
@@ -123,13 +127,12 @@ def shaft_in(part: Part, s: Sizes) -> Shaft:
     if part.sides:
         drive = polygonal(part.sides, bore - s.clearance, part.bore_at)
         across = radius / math.cos(math.pi / part.sides)
-    elif part.keyway is not None:
-        key = part.keyway
+    elif (key := part.of(Keyway)) is not None:
         drive = keyed(radius, key.width - s.clearance, key.depth, key.at)
         across = math.hypot(radius + key.depth, 0.5 * key.width)
-    elif part.flat is not None:
-        drive = flattened(radius, part.flat.across - s.clearance, part.flat.at)
-        journal = part.flat.across - s.clearance - radius
+    elif (flat := part.of(Flat)) is not None:
+        drive = flattened(radius, flat.across - s.clearance, flat.at)
+        journal = flat.across - s.clearance - radius
     else:
         across = 0.5 * (bore + s.press)
         drive = disc(across)
@@ -150,8 +153,9 @@ def require_drive(part: Part, clearance: float, off: float) -> None:
     widths = _turning_widths(part, clearance)
     if widths is None:
         return
-    if part.keyway is not None:
-        key = part.keyway.width - clearance
+    keyway = part.of(Keyway)
+    if keyway is not None:
+        key = keyway.width - clearance
         if key < THIN:
             message, remedy = "leaves a key of {key} on the shaft", "give a width of {least} or more"
             lengths = {"key": max(key, 0.0), "least": clearance + THIN}
@@ -165,10 +169,10 @@ def require_drive(part: Part, clearance: float, off: float) -> None:
         corner = 1.0 / math.cos(math.pi / part.sides)
         such = (least + clearance * corner) / (corner - 1.0)
         field, remedy, most = "part.bore", "give a bore of {such} or more", bore - (bore + least) / corner
-    elif part.keyway is not None:
+    elif keyway is not None:
         radius = 0.5 * (bore - clearance)
-        such = math.sqrt((bore + least - radius) ** 2 - 0.25 * (part.keyway.width - clearance) ** 2) - radius
-        field, remedy, most = "part.keyway.depth", "give a depth of {such} or more", part.keyway.depth - least
+        such = math.sqrt((bore + least - radius) ** 2 - 0.25 * (keyway.width - clearance) ** 2) - radius
+        field, remedy, most = "part.keyway.depth", "give a depth of {such} or more", keyway.depth - least
     else:
         field, remedy, such = "part.flat.across", "give at most {such}", bore - clearance - least
         most = bore - opening - least
@@ -185,11 +189,11 @@ def _turning_widths(part: Part, clearance: float) -> tuple[float, float] | None:
     bore = part.bore or 0.0
     if part.sides:
         return (bore - clearance) / math.cos(math.pi / part.sides), bore
-    if part.keyway is not None:
+    if (keyway := part.of(Keyway)) is not None:
         radius = 0.5 * (bore - clearance)
-        return radius + math.hypot(radius + part.keyway.depth, 0.5 * (part.keyway.width - clearance)), bore
-    if part.flat is not None:
-        return bore - clearance, part.flat.across
+        return radius + math.hypot(radius + keyway.depth, 0.5 * (keyway.width - clearance)), bore
+    if (flat := part.of(Flat)) is not None:
+        return bore - clearance, flat.across
     return None
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.milling.keys import check_hub, check_milling, check_slight
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
+from camgeo.part.hub import Hub
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Table
 
@@ -62,7 +64,7 @@ def _unmade(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 def _bored(recipe: Recipe) -> bool:
     """Whether the bore is a round one that is milled."""
     part, asked = recipe.part, recipe.manufacture
-    if part.bore is None or asked is None or not asked.holes or part.sides or part.keyway or part.flat or part.hub:
+    if part.bore is None or asked is None or not asked.holes or not part.round_bore or part.of(Hub) is not None:
         return False
     return part.bore >= _least_hole(asked)
 
@@ -72,9 +74,10 @@ def _drilled(recipe: Recipe) -> bool:
     part, asked = recipe.part, recipe.manufacture
     if asked is None or not asked.holes:
         return False
-    hub = 0.0 if part.hub is None else part.hub.diameter
-    holes = [hole for hole in (part.bolts, part.dowel) if hole is not None]
-    return any(hole.circle >= hub and hole.hole >= _least_hole(asked) for hole in holes)
+    hub = part.of(Hub)
+    reach, least = 0.0 if hub is None else 0.5 * hub.diameter, 0.5 * _least_hole(asked)
+    circles = [opening.circle for opening in part.openings if opening.circle is not None]
+    return any(math.hypot(*centre) >= reach and radius >= least for centre, radius in circles)
 
 
 def _least_hole(manufacture: Manufacture) -> float:

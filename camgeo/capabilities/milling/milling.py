@@ -7,8 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.machining.reach import milled_contours, reach_checks
+from camgeo.part.as_intent import holes_of
+from camgeo.part.features import FEATURES
+from camgeo.part.hub import Hub
 from camgeo.synthesis.intent import intended
-from camgeo.synthesis.part.as_intent import holes_of
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -53,19 +55,15 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
         found.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
     elif pocket_of(design) is not None:
         found.append(("outline", "the stock comes with it"))
-    if part.hub is not None:
-        found.append(("hub", "the stock comes with it, its disc as thick as part.thickness"))
-    if part.set_screw is not None:
-        found.append(("set screw", "it runs across the shaft"))
-    if part.chamfer is not None:
-        found.append(("chamfer", "the cutter goes straight down"))
-    return found
+    given = (feature for feature in FEATURES if part.of(feature.kind) is not None)
+    return [*found, *((feature.name.replace("_", " "), feature.unmilled) for feature in given if feature.unmilled)]
 
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
     _, asked = milled_contours(recipe, design)
-    hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
+    stock = recipe.part.of(Hub)
+    hub = 0.0 if stock is None else 0.5 * stock.diameter
     found: list[RoundHole] = []
     others: list[tuple[str, str]] = []
     for opening in design.openings:
@@ -93,7 +91,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     trimmed = [each.trimmed or less for each, less in zip(meant.surfaces, lost, strict=True)]
     found, _ = milled_holes(recipe, design)
     names = {hole.name for hole in found}
-    hub = recipe.part.hub
+    hub = recipe.part.of(Hub)
     top = None if hub is None or hub.side == "bottom" else hub
     (disc,) = design.discs
     shaped = () if disc.body is None or recipe.part.plain else holes_of(disc.body)

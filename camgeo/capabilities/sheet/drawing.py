@@ -20,6 +20,7 @@ from camgeo.formats.dxf import write_dxf
 from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.part_geometry import contours_of, openings_of, remarks, rim_of
+from camgeo.part.keyway import Keyway
 from camgeo.recipe.export import FileRequest, name_of_disc
 from kin.numeric.records import replace
 
@@ -85,7 +86,7 @@ def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
         what = f"{other} in line {recipe.locate(other)[0]} makes it {number(width / recipe.mm)}"
         raise recipe.error(f"{field}.profile", what, number(own / recipe.mm), "leave it out, or make them the same")
     part = recipe.part
-    turning = part.keyway is not None or part.flat is not None
+    turning = not part.sides and not part.round_bore
     datums = {"A": part.bore is not None, "B": part.bore is not None and turning}
     return Tolerance(own if stated is None else stated[1], tuple(letter for letter, there in datums.items() if there))
 
@@ -180,7 +181,8 @@ def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str
         notes.append(f"Edges of the contour: chamfer {number(body.chamfer)} × 45°, both sides.")
     if body.thickness is None:
         notes.append("The thickness is not stated.")
-    if part.keyway is not None and part.keyway.standard:
+    keyway = part.of(Keyway)
+    if keyway is not None and keyway.standard:
         notes.append("Keyway: width and depth of DIN 6885-1.")
     if body.pocket is not None:
         notes.append("The groove is milled from the upper face; both flanks are contours of the table.")

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.pieces import ArcSpline
+from camgeo.part.feature import View
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.files.layer_outline import LayerOutline
-    from camgeo.recipe.part import Part
-    from camgeo.synthesis.part.body import Body
+    from camgeo.part.body import Body
+    from camgeo.part.part import Part
     from kin.numeric.arrays import Array
 
 SAGITTA = 2e-3  # of an arc's radius and more: chords by which arcs are drawn, far below the width of a line
@@ -51,6 +52,12 @@ class Drawn:
     def depth(self) -> float:
         """Length along the shaft."""
         return self.body.top - self.body.bottom
+
+    @property
+    def view(self) -> View:
+        """What the features' own sizes are written by."""
+        openings = {opening.name: opening for opening in self.body.openings}
+        return View(self.part, openings, number, self.degrees, self.direction)
 
     def direction(self, at: float) -> float:
         """Direction of a feature in the drawing, rad, from that in the recipe."""

@@ -30,6 +30,10 @@ from camgeo.capabilities.sheet.marks import (
 )
 from camgeo.capabilities.sheet.options import SCALES
 from camgeo.capabilities.sheet.part import hatching, number, sections
+from camgeo.part.features import FEATURES
+from camgeo.part.flat import Flat
+from camgeo.part.hub import Hub
+from camgeo.part.keyway import Keyway
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
@@ -158,14 +162,10 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
         column.append(
             Callout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
         )
-    column += _holes(drawn)
-    if part.mark is not None:
-        column += [_mark(drawn, k) for k, opening in enumerate(body.openings) if opening.name == "mark"]
-    if part.set_screw is not None and part.hub is not None:
-        screw, height = part.set_screw, part.set_screw.height or 0.5 * part.hub.height
-        at = drawn.direction(screw.at)
-        note = f"at {drawn.degrees(screw.at)}, {number(height)} up"
-        column.append(Callout(f"Ø{number(screw.diameter)} set screw", note, origin, 0.5 * part.hub.diameter, at))
+    view = drawn.view
+    given = ((feature.callouts, part.of(feature.kind)) for feature in FEATURES)
+    sizes = (callouts(value, view) for callouts, value in given if callouts is not None and value is not None)
+    column += [Callout(*size) for each in sizes for size in each]
     thick = body.thickness
     plain = part.bore is not None and not part.sides
     if thick is None:
@@ -179,8 +179,8 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
     if body.pocket is not None:
         under.append(Along(thick - body.pocket, thick, f"{number(body.pocket)} groove"))
     right = []
-    if part.hub is not None:
-        hub = part.hub
+    hub = part.of(Hub)
+    if hub is not None:
         both = "2 × " if hub.side == "both" else ""
         ends = (-hub.height, 0.0) if hub.side == "bottom" else (thick, body.top)
         under.append(Along(*ends, f"{both}{number(hub.height)} hub"))
@@ -195,50 +195,6 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
     return Sizes(
         tuple(column), tuple(sorted(under, key=lambda length: length.high - length.low)), tuple(right), bore, tolerance
     )
-
-
-def _holes(drawn: Drawn) -> list[Callout]:
-    """Bolt holes, the dowel's, and those that lighten the disc."""
-    part, callouts = drawn.part, list[Callout]()
-    places = {opening.name: opening.circle for opening in drawn.body.openings if opening.circle is not None}
-    if part.bolts is not None:
-        bolts = part.bolts
-        centre, radius = min(circle for name, circle in places.items() if name.startswith("bolt hole"))
-        text, note = f"{bolts.count} × Ø{number(bolts.hole)}", f"first at {drawn.degrees(bolts.start)}"
-        callouts.append(Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole))
-        callouts.append(_pitch_circle("bolt circle", bolts.circle, 0.93))
-    if part.dowel is not None:
-        dowel = part.dowel
-        centre, radius = places["dowel hole"]
-        note = f"dowel at {drawn.degrees(dowel.at)}"
-        callouts.append(Callout(f"Ø{number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole))
-        callouts.append(_pitch_circle("dowel circle", dowel.circle, 1.07))
-    holes = [circle for name, circle in places.items() if name.startswith("lightening hole")]
-    if holes and part.lightening is not None and part.lightening.ring is not None:
-        centre, radius = min(holes)
-        text, note = f"{len(holes)} × Ø{number(2.0 * radius)}", f"first at {drawn.degrees(part.lightening.start)}"
-        callouts.append(Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius))
-        callouts.append(_pitch_circle("hole circle", 2.0 * math.hypot(*centre), 1.13))
-    elif holes:
-        for centre, radius in holes:
-            note = f"at X{number(centre[0])} Y{number(centre[1])}"
-            callouts.append(Callout(f"Ø{number(2.0 * radius)}", note, centre, radius, math.pi, 2.0 * radius))
-    return callouts
-
-
-def _pitch_circle(name: str, diameter: float, half_turns: float) -> Callout:
-    return Callout(f"Ø{number(diameter)}", name, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
-
-
-def _mark(drawn: Drawn, k: int) -> Callout:
-    """The mark, as a note: it lies on the ray at 0."""
-    mark, opening = drawn.part.mark, drawn.body.openings[k]
-    if mark is None:
-        raise ValueError("there is no mark")
-    outer = opening.outline.box()[2]
-    deep = "through" if opening.depth is None else f"{number(opening.depth)} deep"
-    text = f"mark {number(mark.width)} × {number(mark.length)}"
-    return Callout(text, f"R{number(outer)}, {deep}", (outer - mark.length, 0.0), 0.0, 0.0)
 
 
 # --- the layout -------------------------------------------------------------------------------------------------------
@@ -312,13 +268,13 @@ class BoreView(NamedTuple):
 def _bore_view(drawn: Drawn, k: float) -> BoreView:
     """Give the size of the bore's own view at a scale; none for a round bore."""
     part = drawn.part
-    if part.bore is None or not (part.sides or part.keyway or part.flat):
+    if part.bore is None or part.round_bore:
         return BoreView(0.0, 0.0, 0.0)
     reach = k * next(opening.reach for opening in drawn.body.openings if opening.name == "bore")
     above, below = reach + 4.0, reach + LANE + 2.0
-    if part.keyway is not None:
-        above = max(above, 0.5 * k * part.keyway.width + 2.0 * ARROW + width(number(part.keyway.width), SMALL) + 4.0)
-        below = max(below, 0.5 * k * part.keyway.width + DATUM + 2.0)
+    if (keyway := part.of(Keyway)) is not None:
+        above = max(above, 0.5 * k * keyway.width + 2.0 * ARROW + width(number(keyway.width), SMALL) + 4.0)
+        below = max(below, 0.5 * k * keyway.width + DATUM + 2.0)
     return BoreView(
         max(2.0 * reach + 4.0 * LANE + 8.0, width(_bore_label(drawn)[1], SMALL) + 4.0), above, below + UNDER
     )
@@ -328,10 +284,10 @@ def _bore_label(drawn: Drawn) -> tuple[float, str]:
     """Direction of a bore's keyway, flat or side in the recipe, rad, and the words under its own view."""
     part = drawn.part
     at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
-    if part.keyway is not None:
-        at, what = part.keyway.at, "keyway"
-    elif part.flat is not None:
-        at, what = part.flat.at, "flat"
+    if (keyway := part.of(Keyway)) is not None:
+        at, what = keyway.at, "keyway"
+    elif (flat := part.of(Flat)) is not None:
+        at, what = flat.at, "flat"
     return at, f"bore, {what} at {drawn.degrees(at)}"
 
 
@@ -550,8 +506,8 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
     page.line((x + left - 3.0, y), (x + right + 3.0, y), layer="CENTRE", pattern="chain")
     page.line((x, y + low - 3.0), (x, y + high + 3.0), layer="CENTRE", pattern="chain")
     base = y + low - LANE
-    if part.keyway is not None:
-        key, corner = part.keyway, 0.5 * bore + part.keyway.depth
+    if (key := part.of(Keyway)) is not None:
+        corner = 0.5 * bore + key.depth
         value = bore + key.depth
         ends = (x + left, y), (x + k * corner, y - 0.5 * k * key.width)
         page.marks.append(across(*ends, base, value, number(value), before=True))
@@ -561,8 +517,8 @@ def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -
         if "B" in tolerance.datums:
             half = 0.5 * k * key.width
             _draw_datum(page, (lane, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "B")
-    elif part.flat is not None:
-        across_flat = part.flat.across
+    elif (flat := part.of(Flat)) is not None:
+        across_flat = flat.across
         ends = (x + left, y), (x + k * (across_flat - 0.5 * bore), y)
         page.marks.append(across(*ends, base, across_flat, number(across_flat), before=True))
         if "B" in tolerance.datums:

@@ -10,9 +10,9 @@ from camgeo.capabilities.sweep.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDE
 from camgeo.capabilities.sweep.keys import varied_fields
 from camgeo.capabilities.sweep.linkages import angles
 from camgeo.checks.declared import BENT, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
+from camgeo.part.part import Part
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import dataclass, replace
 

@@ -11,11 +11,11 @@ from camgeo.capabilities.sweep.figures import Evaluator, Scene, estimable_figure
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Sweep
 from camgeo.capabilities.sweep.plan import Axis, Plan, steps
+from camgeo.part.part import Part
 from camgeo.recipe.export import Export
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import output_slides
-from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.schema.errors import RecipeErrors, quote
 from camgeo.schema.fields import Kind, field_at

@@ -9,24 +9,24 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import CHAMFER, LIGHTENING, MARK, WALL
 from camgeo.common.rounding import downward, upward
-from camgeo.curve.curvature import least_radius
 from camgeo.curve.measures import farthest
-from camgeo.curve.support import is_sharp
-from camgeo.synthesis.part.shapes import Opening, disc, strip
-from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
+from camgeo.part.chamfer import chamfer_check
+from camgeo.part.feature import WALL
+from camgeo.part.features import FEATURES
+from camgeo.part.shapes import Opening, disc, strip
+from camgeo.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
 from kin.judge.check import Check
-from kin.numeric.lengths import UNIT, amount_words, length_words, place_words
+from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from camgeo.curve.curve import Curve
-    from camgeo.synthesis.part.body import Body, Unmarked
+    from camgeo.part.body import Body
 
 MOST_NAMED = 6  # pairs named in a message
-ROUND = {"bore": "part.bore", "bolt hole": "part.bolts.hole", "dowel": "part.dowel.hole"}  # openings and their keys
+ROUND = {"bore": "part.bore", **dict(feature.round for feature in FEATURES if feature.round is not None)}
+"""Beginnings of the names of round openings, and the fields that state their diameters."""
 OPENING, OUTLINE = "opening", "outline"  # as edges: a surface, and the round outline about it
 ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
 
@@ -61,7 +61,7 @@ def bore_check(
     wall, at = max(least_wall(looks, bore) for looks in surfaces)
     ok = wall > 0.0 if least is None else wall >= least
     told = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
-    return Check(WALL.name, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=told)
+    return Check(WALL, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=told)
 
 
 def part_checks(
@@ -82,41 +82,12 @@ def part_checks(
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
         told += more + _free_of_thin_walls(thin, body, limit)
-        checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
+        checks.append(Check(WALL, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
-        chamfers = ((looks.name, _chamfer_check(body, looks.contour, shaft_deg)) for looks in surfaces)
+        chamfers = ((looks.name, chamfer_check(body.chamfer, looks.contour, shaft_deg)) for looks in surfaces)
         checks += [replace(check, surface=name) for name, check in chamfers]
-    if body.unmarked is not None:
-        checks.append(_mark_check(body.unmarked))
-    if body.placed is not None:
-        placed = body.placed
-        count = len(placed.diameters)
-        sizes = (
-            f", {length_words(min(placed.diameters))} to {length_words(max(placed.diameters))} {UNIT} across"
-            if count
-            else ""
-        )
-        wall, area = f"{length_words(placed.wall)} {UNIT}", f"{length_words(placed.area, '.4g', 2)} {UNIT}^2"
-        detail = f"{count} of {placed.asked} holes{sizes}, {wall} from every edge, {area}"
-        least_count = placed.asked if placed.exactly else 1
-        checks.append(
-            Check(LIGHTENING.name, count >= least_count, count, least_count, "holes", None, "at_least", detail=detail)
-        )
+    checks += body.checks
     return checks
-
-
-def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], float]) -> Check:
-    """Check that the contour is nowhere sharper than its chamfer: its parallel inside has no corners then."""
-    chamfer = body.chamfer or 0.0
-    if not contour.closed:
-        of = "sharp" if is_sharp(contour) else "trimmed"
-        detail = f"a {of} contour has corners, along which no chamfer runs; leave it out"
-        if of == "sharp":
-            detail += f", or give a reuleaux.rounding above {chamfer:.6g} mm"
-        return Check(CHAMFER.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
-    radius, at = least_radius(contour)
-    sharp = "the contour's least radius of curvature must be above the chamfer"
-    return Check(CHAMFER.name, radius > chamfer, radius, chamfer, "mm", shaft_deg(at), "at_least", detail=sharp)
 
 
 def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
@@ -147,20 +118,6 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     if outer:
         told.append(f"a part.outer larger by more than {upward(outer)} mm")
     return f"; {' and '.join(told)} would do"
-
-
-def _mark_check(unmarked: Unmarked) -> Check:
-    """The check that fails as there is no room for a mark: how large it may be, or how large the wall."""
-    mark, fits = unmarked.mark, unmarked.fits
-    width = 0.0 if fits is None else fits.width
-    would = "; no other has any, leave it out"
-    if fits is not None:
-        would = f"; {{width: {downward(fits.width)} mm, length: {downward(fits.length)} mm}} has"
-    elif unmarked.wall > 0.0:
-        would = f"; a part.wall of {downward(unmarked.wall)} mm leaves some"
-    wide, long = (amount_words(size, "mm") for size in (mark.width, mark.length))
-    detail = f"no room on the ray at 0 for a mark {wide} wide and {long} long{would}"
-    return Check(MARK.name, ok=False, value=mark.width, limit=width, unit="mm", sense="at_most", detail=detail)
 
 
 def _holds(wall: float, least: float | None) -> bool:
@@ -243,7 +200,7 @@ def _hub_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
     yield _to_surface(round_hub, body, surfaces)
     for opening in body.openings:
-        within = opening.name == "bore" or (opening.depth is None and _is_within(opening, hub.diameter))
+        within = opening.name == "bore" or (opening.depth is None and hub.holds(opening.middle))
         gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)
         yield _sure(opening.name, "hub", gap)
     height = body.screw_height
@@ -253,12 +210,7 @@ def _hub_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     radius = 0.5 * body.screw.diameter
     along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, body.screw.diameter, body.screw.at))
     for opening in body.openings:
-        if opening.name != "bore" and opening.depth is None and _is_within(opening, hub.diameter):
+        if opening.name != "bore" and opening.depth is None and hub.holds(opening.middle):
             yield _sure("set screw", opening.name, outside_gap(opening.chain, along.chain))
     yield _sure("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
     yield _sure("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
-
-
-def _is_within(opening: Opening, diameter: float) -> bool:
-    x, y = opening.middle
-    return x * x + y * y < 0.25 * diameter * diameter

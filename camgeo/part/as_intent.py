@@ -5,12 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from camgeo.part.chamfer import inset
 from kin.judge.holes import Hole, round_hole
 from kin.judge.layers import CrossHole, Layer
 
 if TYPE_CHECKING:
-    from camgeo.synthesis.part.body import Body
-    from camgeo.synthesis.part.shapes import Opening
+    from camgeo.part.body import Body
+    from camgeo.part.shapes import Opening
 
 KINDS = {"BORE": "bore", "HOLES": "holes", "MARK": "mark", "ENGRAVE": "mark"}
 
@@ -43,14 +44,14 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
             for opening in body.openings
             if opening.depth is not None and thickness - opening.depth <= low
         )
-        inset = (_inset(low, thickness, chamfer), _inset(high, thickness, chamfer))
+        insets = (inset(low, thickness, chamfer), inset(high, thickness, chamfer))
         blank = round_hole("outline", "thickness", (0.0, 0.0), body.outer) if body.outer and high <= floor else None
-        layers.append(Layer(low, high, (*through, *shallow), blank, inset))
+        layers.append(Layer(low, high, (*through, *shallow), blank, insets))
     hub = body.hub
     if hub is not None:
         outline = round_hole("hub", "hub", (0.0, 0.0), hub.diameter)
         inside = tuple(
-            _hole(opening) for opening in body.openings if opening.depth is None and _is_within(opening, hub.diameter)
+            _hole(opening) for opening in body.openings if opening.depth is None and hub.holds(opening.middle)
         )
         if body.bottom < 0.0:
             layers.insert(0, Layer(body.bottom, 0.0, inside, outline))
@@ -65,17 +66,6 @@ def cross_holes_of(body: Body) -> tuple[CrossHole, ...]:
     if body.screw is None or height is None:
         return ()
     return (CrossHole("set screw", body.screw.at, body.screw.diameter, height),)
-
-
-def _inset(z: float, thickness: float, chamfer: float) -> float:
-    """How far inside the contour the chamfers take the outline at a height; exactly 0 between them."""
-    upper = thickness - chamfer
-    return max(chamfer - z, 0.0) if z <= upper else z - upper
-
-
-def _is_within(opening: Opening, diameter: float) -> bool:
-    x, y = opening.middle
-    return 4.0 * (x * x + y * y) < diameter * diameter
 
 
 def _hole(opening: Opening) -> Hole:

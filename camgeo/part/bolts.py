@@ -1,0 +1,64 @@
+"""A bolt circle: equal round holes at equal angles."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.part.feature import Callout, Feature, angle, check_below, count, optional
+from camgeo.part.pitch_circle import pitch_circle, round_hole
+from camgeo.schema.fields import length
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.part.feature import View
+    from camgeo.part.shapes import Opening
+    from camgeo.schema.reader import Reader, Values
+
+
+@dataclass(frozen=True)
+class Bolts:
+    """Equal round holes at equal angles; `circle` is the diameter that their centres lie on, `hole` their own."""
+
+    count: int
+    circle: float
+    hole: float
+    start: float = 0.0
+
+
+def _check(part: Values, reader: Reader) -> None:
+    bolts = part.get("bolts", {})
+    if bolts.keys() >= {"count", "circle", "hole"} and bolts["count"] > 1:
+        apart = bolts["circle"] * math.sin(math.pi / bolts["count"])
+        check_below(reader, "part.bolts.hole", bolts["hole"], apart, "the distance between two of them")
+
+
+def _openings(bolts: Bolts) -> list[Opening]:
+    step = 2.0 * math.pi
+    angles = (bolts.start + step * k / bolts.count for k in range(bolts.count))
+    return [round_hole(f"bolt hole {k + 1}", bolts.circle, bolts.hole, at) for k, at in enumerate(angles)]
+
+
+def _callouts(bolts: Bolts, view: View) -> tuple[Callout, ...]:
+    centre, radius = min(view.named("bolt hole"))
+    text, note = f"{bolts.count} × Ø{view.number(bolts.hole)}", f"first at {view.degrees(bolts.start)}"
+    hole = Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole)
+    return hole, pitch_circle(view, "bolt circle", bolts.circle, 0.93)
+
+
+FEATURE = Feature(
+    Bolts,
+    optional(
+        "bolts",
+        "bolt circle",
+        count("count", "number of holes", required=True),
+        length("circle", "diameter of the circle about the shaft that their centres lie on", required=True),
+        length("hole", "diameter of each hole", required=True),
+        angle("start", "direction of the first hole"),
+    ),
+    holes=True,
+    check=_check,
+    openings=_openings,
+    round=("bolt hole", "part.bolts.hole"),
+    callouts=_callouts,
+)

@@ -1,0 +1,45 @@
+"""A dowel hole."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.part.feature import Callout, Feature, angle, optional
+from camgeo.part.pitch_circle import pitch_circle, round_hole
+from camgeo.schema.fields import length
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.part.feature import View
+
+
+@dataclass(frozen=True)
+class Dowel:
+    """One round hole of diameter `hole`, its centre on a circle of diameter `circle`."""
+
+    circle: float
+    hole: float
+    at: float = 0.0
+
+
+def _callouts(dowel: Dowel, view: View) -> tuple[Callout, ...]:
+    ((centre, radius),) = view.named("dowel hole")
+    note = f"dowel at {view.degrees(dowel.at)}"
+    hole = Callout(f"Ø{view.number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole)
+    return hole, pitch_circle(view, "dowel circle", dowel.circle, 1.07)
+
+
+FEATURE = Feature(
+    Dowel,
+    optional(
+        "dowel",
+        "dowel hole",
+        length("circle", "diameter of the circle about the shaft that its centre lies on", required=True),
+        length("hole", "diameter of the hole", required=True),
+        angle("at", "direction of the hole"),
+    ),
+    holes=True,
+    openings=lambda dowel: [round_hole("dowel hole", dowel.circle, dowel.hole, dowel.at)],
+    round=("dowel", "part.dowel.hole"),
+    callouts=_callouts,
+)

@@ -1,0 +1,13 @@
+"""The features there are: a new one is its file and its name here."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from camgeo.part.feature import Feature
+
+NAMES = ("keyway", "flat", "hub", "set_screw", "bolts", "dowel", "chamfer", "mark", "lightening")
+"""In the order of the keys, and in that in which they take their place."""
+FEATURES: tuple[Feature[Any], ...] = tuple(import_module(f"camgeo.part.{name}").FEATURE for name in NAMES)

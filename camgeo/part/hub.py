@@ -1,0 +1,67 @@
+"""A round hub about the shaft, on one side of the disc or on both."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.common.rounding import upward
+from camgeo.part.bore import LEAST_SIZE, diameter_of
+from camgeo.part.feature import Feature, optional, size_words
+from camgeo.schema.fields import Field, Kind, length
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+
+@dataclass(frozen=True)
+class Hub:
+    """A round hub about the shaft: `height` beyond the face of the disc, on one side or on both."""
+
+    diameter: float
+    height: float
+    side: Literal["top", "bottom", "both"] = "top"
+
+    def holds(self, point: tuple[float, float]) -> bool:
+        """Whether a point of the disc's face lies within the hub."""
+        x, y = point
+        return x * x + y * y < 0.25 * self.diameter * self.diameter
+
+
+def _check(part: Values, reader: Reader) -> None:
+    bore, diameter = diameter_of(part), part.get("hub", {}).get("diameter")
+    if bore is None or diameter is None or diameter > bore + 2.0 * LEAST_SIZE:
+        return
+    problem = "not above the bore" if diameter <= bore else "no wall round the bore"
+    remedy = f"give more than {upward((bore + 2.0 * LEAST_SIZE) / reader.mm)} {reader.units}"
+    reader.fault_at("part.hub.diameter", problem, size_words(diameter, reader), remedy)
+
+
+def _grown(hub: Hub, out: float, scale: float) -> Hub:
+    return replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)
+
+
+FEATURE = Feature(
+    Hub,
+    optional(
+        "hub",
+        "hub about the shaft",
+        length("diameter", "diameter of the hub", required=True),
+        length("height", "height beyond the face of the disc", required=True),
+        Field(
+            "side",
+            Kind.CHOICE,
+            "which side of the disc: top is the side that the drawing shows",
+            default="top",
+            choices=("top", "bottom", "both"),
+        ),
+    ),
+    needs=(("thickness", "a hub stands on the disc"),),
+    of_ring=False,
+    of_pair=False,
+    walled=True,
+    check=_check,
+    grown=_grown,
+    remark=lambda hub, mm: f"hub: diameter {hub.diameter / mm:.9g}, height {hub.height / mm:.9g}, side {hub.side}",
+    unmilled="the stock comes with it, its disc as thick as part.thickness",
+)

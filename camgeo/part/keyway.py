@@ -1,0 +1,99 @@
+"""A keyway in a round bore, by a standard or by its own sizes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.part.bore import diameter_of
+from camgeo.part.din6885 import LEAST, MOST, key_for
+from camgeo.part.feature import Feature, angle, check_below, size_words
+from camgeo.schema.errors import quote
+from camgeo.schema.fields import Field, Form, Kind, Table, length
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Scalar
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.fit.pieces import ArcSpline
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
+
+STANDARDS = ("din6885", "jis-b1301")  # which have the same widths and depths
+
+
+@dataclass(frozen=True)
+class Keyway:
+    """A keyway in a round bore: `depth` is t2 of DIN 6885, from the bore's circle to the floor; `at` its middle.
+
+    `standard` is whether width and depth are those of that standard by the bore.
+    """
+
+    width: float
+    depth: float
+    at: float = 0.0
+    standard: bool = False
+
+
+TABLE = Table(
+    (
+        Field("standard", Kind.CHOICE, "width and depth by the bore, from DIN 6885-1 or JIS B 1301", choices=STANDARDS),
+        length("width", "width b of the key"),
+        length("depth", "depth t2 into the hub, from the bore's circle to the floor"),
+        angle("at", "direction of the keyway's middle"),
+    ),
+    alternatives=(("standard", ()), ("width", ("depth",))),
+)
+
+
+def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
+    """Read the word for the standard's keyway, or its mapping."""
+    if isinstance(node, Scalar):
+        if node.text in STANDARDS:
+            return {"standard": node.text}
+        reader.fault(node.mark, path, "unknown keyway", quote(node.text), reader.wanted(field))
+        return None
+    return reader.mapping(field, node, path)
+
+
+FORM = Form(
+    "a keyway",
+    "din6885, jis-b1301, or a mapping such as {width: 4, depth: 1.8}",
+    read_keyway,
+    lambda field: {"anyOf": [{"enum": list(STANDARDS)}, table_schema(field.inner)]},
+)
+
+
+def _check(part: Values, reader: Reader) -> None:
+    keyway, bore = part.get("keyway", {}), diameter_of(part)
+    if bore is None:
+        return
+    if "standard" in keyway and key_for(bore) is None:
+        low, high = LEAST / reader.mm, MOST / reader.mm
+        remedy = f"the standard has bores from {low:.6g} to {high:.6g} {reader.units}; give width and depth"
+        reader.fault_at("part.keyway", "no key of DIN 6885 for this bore", size_words(bore, reader), remedy)
+    check_below(reader, "part.keyway.width", keyway.get("width"), bore, "the bore's diameter")
+
+
+def _make(values: Values, part: Values) -> Keyway | None:
+    if "width" in values:
+        return Keyway(**values)
+    bore = diameter_of(part)
+    row = None if bore is None else key_for(bore)
+    return None if row is None else Keyway(row.width, row.hub, values.get("at", 0.0), standard=True)
+
+
+def _bore(keyway: Keyway, radius: float) -> ArcSpline:
+    from camgeo.part.shapes import keyed
+
+    return keyed(radius, keyway.width, keyway.depth, keyway.at)
+
+
+FEATURE = Feature(
+    Keyway,
+    Field("keyway", Kind.OWN, "keyway in a round bore", default="none", table=TABLE, form=FORM),
+    needs=(("bore", "a keyway is cut into a bore"),),
+    of_ring=False,
+    check=_check,
+    make=_make,
+    bore=_bore,
+)

@@ -1,0 +1,96 @@
+"""Round holes that lighten the disc, placed where there is room."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.part.feature import Callout, Feature, Placed, angle, count, optional
+from camgeo.part.pitch_circle import pitch_circle
+from camgeo.schema.fields import length
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.part.feature import Site, View
+    from camgeo.schema.reader import Reader, Values
+
+
+@dataclass(frozen=True)
+class Lightening:
+    """Round holes that are placed where there is room, `wall` from every edge; none smaller than `least` across.
+
+    `ring` equal ones at equal angles from `start`, or up to `largest` of them, each the largest that still fits.
+    """
+
+    wall: float
+    ring: int | None = None
+    largest: int | None = None
+    least: float | None = None
+    start: float = 0.0
+
+
+def _check(part: Values, reader: Reader) -> None:
+    lightening = part.get("lightening", {})
+    if "largest" in lightening and "start" in lightening:
+        reader.fault_at("part.lightening.start", "needs a ring", None, "leave it out")
+
+
+def _place(lightening: Lightening, site: Site) -> Placed:
+    """Holes in a contour round openings and hub that are there."""
+    from camgeo.part.largest_holes import Space, largest, ring
+    from camgeo.part.shapes import disc
+    from kin.judge.check import Check
+    from kin.numeric.lengths import UNIT, length_words
+
+    space = Space(site.looks, site.openings, lightening.wall, site.edge)
+    least = 2.0 * lightening.wall if lightening.least is None else lightening.least
+    if lightening.ring is not None:
+        circles, wanted = ring(space, lightening.ring, lightening.start, least), lightening.ring
+    else:
+        circles, wanted = largest(space, lightening.largest or 0, least), lightening.largest or 0
+    holes = [disc(f"lightening hole {k + 1}", "HOLES", centre, 0.5 * d) for k, (centre, d) in enumerate(circles)]
+    across = [diameter for _, diameter in circles]
+    sizes = f", {length_words(min(across))} to {length_words(max(across))} {UNIT} across" if across else ""
+    area = 0.25 * math.pi * sum(d * d for d in across)
+    detail = (
+        f"{len(holes)} of {wanted} holes{sizes}, {length_words(lightening.wall)} {UNIT} from every edge, "
+        f"{length_words(area, '.4g', 2)} {UNIT}^2"
+    )
+    enough = wanted if lightening.ring is not None else 1
+    ok = len(holes) >= enough
+    return Placed(holes, Check(FEATURE.name, ok, len(holes), enough, "holes", None, "at_least", detail=detail))
+
+
+def _callouts(lightening: Lightening, view: View) -> list[Callout]:
+    holes = view.named("lightening hole")
+    if holes and lightening.ring is not None:
+        centre, radius = min(holes)
+        note = f"first at {view.degrees(lightening.start)}"
+        text = f"{len(holes)} × Ø{view.number(2.0 * radius)}"
+        hole = Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius)
+        return [hole, pitch_circle(view, "hole circle", 2.0 * math.hypot(*centre), 1.13)]
+    callouts = []
+    for centre, radius in holes:
+        text, note = f"Ø{view.number(2.0 * radius)}", f"at X{view.number(centre[0])} Y{view.number(centre[1])}"
+        callouts.append(Callout(text, note, centre, radius, math.pi, 2.0 * radius))
+    return callouts
+
+
+FEATURE = Feature(
+    Lightening,
+    optional(
+        "lightening",
+        "round holes placed where there is room",
+        count("ring", "that many equal holes at equal angles about the shaft", least=2),
+        count("largest", "up to that many holes, each the largest that still fits"),
+        length("wall", "wall left to every edge", required=True),
+        length("least", "least diameter of a hole", default="twice the wall"),
+        angle("start", "direction of the first hole of a ring"),
+        alternatives=("ring", "largest"),
+    ),
+    of_ring=False,
+    holes=True,
+    check=_check,
+    place=_place,
+    callouts=_callouts,
+)

@@ -1,0 +1,137 @@
+"""The part round the contour: its disc, its bore, and the features that a recipe gives it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from camgeo.common.rounding import NOISE, upward
+from camgeo.part import bore
+from camgeo.part.features import FEATURES
+from camgeo.schema.fields import Field, Kind, length, mapping
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from camgeo.part.shapes import Opening
+    from camgeo.schema.reader import Reader, Values
+
+T = TypeVar("T")
+DENSEST = 30_000  # kg/m^3; osmium has 22 590
+THINNEST = 1e-6  # mm: of a body; the kernel of STEP takes points within 1e-7 mm as one
+_NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as little as one likes
+
+
+@dataclass(frozen=True)
+class Part:
+    """The part round the contour, mm.
+
+    `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
+    given; `bore_at` is then the direction of one flat's normal. `fit` is the tolerance class of a round one, empty
+    where none is stated; files have the nominal size. `wall` is the least that may be left between any two
+    edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
+    the cam. `density` is in kg/m^3. `features` are the values of those in FEATURES that the recipe gives.
+    """
+
+    thickness: float | None = None
+    bore: float | None = None
+    sides: int = 0
+    bore_at: float = 0.0
+    fit: str = ""
+    wall: float | None = None
+    outer: float | None = None
+    density: float | None = None
+    features: tuple[object, ...] = ()
+
+    def of(self, kind: type[T]) -> T | None:
+        """Give the feature of this class, None where the part has none."""
+        return next((value for value in self.features if isinstance(value, kind)), None)
+
+    def without(self, kind: type) -> Part:
+        """Give the part without the feature of this class."""
+        return replace(self, features=tuple(value for value in self.features if not isinstance(value, kind)))
+
+    @property
+    def plain(self) -> bool:
+        """Whether there is nothing but a round bore or none."""
+        return not self.sides and self.outer is None and not self.features
+
+    @property
+    def round_bore(self) -> bool:
+        """Whether its bore is a circle."""
+        shaped = any(feature.bore is not None and self.of(feature.kind) is not None for feature in FEATURES)
+        return self.bore is not None and not self.sides and not shaped
+
+    @property
+    def holed(self) -> bool:
+        """Whether it has holes besides its bore."""
+        return any(feature.holes and self.of(feature.kind) is not None for feature in FEATURES)
+
+    @property
+    def walled(self) -> bool:
+        """Whether there are edges with a wall between them besides the contour."""
+        features = any(feature.walled and self.of(feature.kind) is not None for feature in FEATURES)
+        return self.bore is not None or self.outer is not None or self.holed or features
+
+    @property
+    def openings(self) -> list[Opening]:
+        """What is cut where the recipe says, besides the bore; what looks for its place is not among it."""
+        given = ((feature.openings, self.of(feature.kind)) for feature in FEATURES)
+        return [each for cut, value in given if cut is not None and value is not None for each in cut(value)]
+
+
+OF_BLANKS = "diameter of the outline of a ring, with `track: internal`, or of a groove's blank"
+PART = mapping(
+    "part",
+    "the part round the contour",
+    length("thickness", "thickness of the disc along the shaft; solids need it"),
+    bore.FIELD,
+    *(feature.field for feature in FEATURES),
+    length("outer", OF_BLANKS, default="none"),
+    length("wall", "least wall between any two edges", default="reported, and above 0"),
+    Field(
+        "density",
+        Kind.NUMBER,
+        "density of the material, kg/m³, for mass, inertia and unbalance",
+        default="none",
+        above=0,
+        at_most=DENSEST,
+    ),
+)
+
+
+def check_part(part: Values, reader: Reader) -> None:
+    """Note the faults between the fields of `part` that were read."""
+    _check_needs(reader, "density", "thickness", "the mass is that of a solid")
+    bore.check_bore(part, reader, [each.name for each in FEATURES if each.bore is not None and each.name in part])
+    for feature in FEATURES:
+        for key, why in feature.needs:
+            _check_needs(reader, feature.name, key, why)
+        if feature.name in part:
+            feature.check(part, reader)
+    _check_sizes(part, reader)
+
+
+def _check_needs(reader: Reader, name: str, other: str, why: str) -> None:
+    if f"part.{name}" in reader.marks and f"part.{other}" not in reader.marks:
+        reader.fault_at(f"part.{name}", f"needs part.{other}: {why}", None, f"give part.{other}, or leave it out")
+
+
+def _check_sizes(part: Values, reader: Reader) -> None:
+    """Note what is too small to be told from nothing in a file."""
+    for path, field in reader.numbers.items():
+        top, *names = path.split(".")
+        if top != "part" or field.kind is not Kind.LENGTH or field.above is None or names[-1] in _NO_SIZES:
+            continue
+        value: Any = part
+        for name in names:
+            value = value.get(name, {})
+        least = THINNEST if path == "part.thickness" else bore.LEAST_SIZE
+        if isinstance(value, float) and value < least * (1.0 - NOISE):
+            remedy = f"give at least {upward(least / reader.mm)} {reader.units}"
+            reader.fault_at(path, "smaller than a file can hold", f"{value / reader.mm:g}", remedy)
+
+
+def build_part(values: Values) -> Part:
+    """Make the part of values in which there is no fault."""
+    features = tuple(value for feature in FEATURES if (value := feature.build(values)) is not None)
+    own = {name: values[name] for name in ("thickness", "wall", "outer", "density") if name in values}
+    return Part(features=features, **bore.build_bore(values), **own)

@@ -1,1 +1,0 @@
-"""The part round the contour: openings, hub, chamfer, and the walls that they leave."""
