@@ -289,7 +289,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         "note": "",
         "drawing": str(scene["drawing"]),
         "recipe": escaped(text),
-        "scene": page.encoded(scene),
+        "scene": page.script_json(scene),
         "version": camgeo.__version__,
         **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
     }

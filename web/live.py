@@ -117,7 +117,7 @@ def design(name: str, text: str) -> dict[str, Any]:
         "scene": scene,
         "ok": exact.ok,
         "name": recipe.name,
-        "verdict": "every check of the design holds" if exact.ok else tables.failing(report["checks"]),
+        "verdict": "every check of the design holds" if exact.ok else tables.failing_count(report["checks"]),
         "checks": tables.checks({**report, "checks": held}),
         "failed": [_explained(check, report, recipe) for check in failed],
     }

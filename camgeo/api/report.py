@@ -140,9 +140,9 @@ class Report(Mapping[str, JSON]):
 
     def to_json(self) -> str:
         """Write the report as report.json has it."""
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
-        return encoded(self._document)
+        return as_json(self._document)
 
     def table(self) -> str:
         """Every check and file as aligned text, as `camgeo export -v` prints it."""

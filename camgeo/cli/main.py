@@ -306,11 +306,11 @@ def _told(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, argum
         if found.report is None:
             entries.append(unmade(recipes[len(entries)].name, found.message, found.errors))
     if arguments.json:
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
         for place in sorted(refused):
             entries.insert(place, refused[place])
-        say_json(encoded(entries))
+        say_json(as_json(entries))
     return status
 
 
@@ -339,7 +339,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.cli.progress import Progress
     from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.loading import load_order
-    from camgeo.report.document import encoded
+    from camgeo.report.document import as_json
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
@@ -378,7 +378,7 @@ def _verify(arguments: argparse.Namespace) -> int:
         _complain(str(error))
         return SURROUNDINGS
     if arguments.json:
-        say_json(encoded(report))
+        say_json(as_json(report))
     elif name := registry.judge_of(paths[0], options):
         say(registry.judges()[name].shown(report, arguments.verbose))
     else:
@@ -453,10 +453,10 @@ def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str
 
 def _schema(arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
-    from camgeo.report.document import encoded
+    from camgeo.report.document import as_json
     from camgeo.schema.json_schema import json_schema
 
-    say_json(encoded(json_schema(root.root(arguments.order).table())))
+    say_json(as_json(json_schema(root.root(arguments.order).table())))
     return OK
 
 

@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from camgeo.cli.recipes import in_one_folder
     from camgeo.recipe.loading import load
-    from camgeo.report.document import encoded
+    from camgeo.report.document import as_json
     from camgeo.schema.errors import RecipeErrors
 
     recipes: list[Recipe | RecipeErrors] = []
@@ -73,9 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
         status = max(status, code)
         entries.append(entry)
     if arguments.json and len(entries) > 1:
-        say_json(encoded(entries))
+        say_json(as_json(entries))
     elif arguments.json and status <= FAILED:
-        say_json(encoded(entries[0]))
+        say_json(as_json(entries[0]))
     return status
 
 
@@ -139,15 +139,14 @@ def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) ->
     Pictures of an earlier call stay as they are, as files do that `export --only` leaves out.
     """
     from camgeo.output.output_folder import Family, RunFolder
-    from camgeo.report.document import encoded
-    from camgeo.report.listed import listed
+    from camgeo.report.document import as_json, file_entry
 
-    report: Entry = {"recipe": recipe.name, "ok": ok, "files": [listed(*item) for item in files.items()]}
+    report: Entry = {"recipe": recipe.name, "ok": ok, "files": [file_entry(*item) for item in files.items()]}
     with RunFolder(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
         kept = run_.kept()
         report["files"] += [{"path": name, "stale": True} for name in kept]
-        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        (run_.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
         run_.commit(list(files), keep=kept)
     return report

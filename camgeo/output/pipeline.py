@@ -16,7 +16,7 @@ from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.registry import registry
 from camgeo.registry.formats import Run
-from camgeo.report.document import Findings, document, encoded
+from camgeo.report.document import Findings, as_json, document
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
 from kin.numeric.records import dataclass, replace
@@ -69,7 +69,7 @@ def export(
         demand_any(recipe.path, found)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
-        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        (run.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
         names = [file.path.name for file in found.files]
         folder = run.commit(names, keep=kept) if found.ok else run.reject()
     return Outcome(report, found.ok, folder)

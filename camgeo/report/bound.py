@@ -1,4 +1,4 @@
-"""How a check is titled and its limit reported: whether the limit itself is allowed, in words and as a sign."""
+"""Title of a check, and its limit in words and as a sign, which say whether the limit itself is allowed."""
 
 from __future__ import annotations
 
@@ -11,14 +11,16 @@ if TYPE_CHECKING:
 
 
 def title(check: Mapping[str, object]) -> str:
-    """Give the name of a check, with the surface that it is of where a cam has several: `motion, outer`."""
+    """Name of a check, with its surface where a cam has several: `motion, outer`."""
     return f"{check['name']}, {check['surface']}" if check.get("surface") else str(check["name"])
 
 
 def unit_text(check: Mapping[str, Any]) -> str:
-    """Give the unit of a check, behind it its value in pounds where the report has that: `N (115.2 lbf)`."""
-    told = check.get("pounds")
-    return str(check["unit"]) if told is None else f"{check['unit']} ({told['value']:.6g} {told['unit']})"
+    """Unit of a check, with its value in pounds where the report has it: `N (115.2 lbf)`."""
+    in_pounds = check.get("pounds")
+    return (
+        str(check["unit"]) if in_pounds is None else f"{check['unit']} ({in_pounds['value']:.6g} {in_pounds['unit']})"
+    )
 
 
 def is_strict(check: dict[str, Any]) -> bool:
@@ -28,16 +30,16 @@ def is_strict(check: dict[str, Any]) -> bool:
 
 
 def words(check: dict[str, Any]) -> str:
-    """Say on which side of its limit the figure must lie: `at least`, `more than`, `at most`, `less than`."""
+    """Side of the limit on which the figure must lie: `at least`, `more than`, `at most`, `less than`."""
     below, least = ("less than", "more than") if is_strict(check) else ("at most", "at least")
     return least if check["sense"] == "at_least" else below
 
 
 def verb(check: dict[str, Any]) -> str:
-    """Say what its limit is behind those words: `needed` where the limit itself fails, else `allowed`."""
+    """Verb for the limit: `needed` where the limit itself fails, else `allowed`."""
     return "needed" if is_strict(check) else "allowed"
 
 
 def sign(check: dict[str, Any]) -> str:
-    """Give the same as a sign."""
+    """Side of the limit on which the figure must lie, as a sign: `>=`, `>`, `<=`, `<`."""
     return {"at least": ">=", "more than": ">", "at most": "<=", "less than": "<"}[words(check)]

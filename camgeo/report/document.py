@@ -1,7 +1,8 @@
-"""The report as a document: checks, files, errors, times, what was left out and why. In the recipe's units."""
+"""The report as plain data and as text: checks, files, errors, times, things left out. In the recipe's units."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,6 @@ from camgeo.measures.units import UNIT_NAMES, in_units, pounds
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import sign, title, unit_text, verb, words
-from camgeo.report.listed import listed
 from camgeo.version import __version__
 from kin.judge.verdict import UNREAD
 from kin.numeric.lengths import in_unit
@@ -33,16 +33,16 @@ if TYPE_CHECKING:
     from kin.law.sources.motion import Kept
 
 BELOW = "below rounding"
-ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
+ROUNDING = 1e-11  # mm, in or degrees: rounding of sums of doubles of some hundred
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything a run found, before it is put in the recipe's units; all sections already are.
+    """Results of a run in mm and degrees; sections are in the recipe's units already.
 
-    `displacements` are factor and unit in which those of the follower are told. `missing` names the files that could
-    not be made, each with the package that is missing and how to get it.
+    `displacements` are factor and unit of the follower's displacements in the report. `missing` has pairs of a file
+    that could not be made and the missing package with the command that installs it.
     """
 
     checks: tuple[Check, ...]
@@ -69,7 +69,7 @@ class Findings:
 
 
 def document(recipe: Order, findings: Findings) -> dict[str, Any]:
-    """The report as plain data, keys and units as the report contract fixes them."""
+    """Report as plain data, with the keys and units of docs/report.md."""
     linkage = {} if findings.linkage is None else {"linkage": findings.linkage}
     preload = {} if findings.preload is None else {"preload": findings.preload}
     return {
@@ -82,11 +82,11 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         "ok": findings.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
         "contour": _contours(recipe, findings.contours),
-        **({"balance": [_balance(recipe, one) for one in findings.balances]} if findings.balances else {}),
+        **({"balance": [_balance(recipe, disc) for disc in findings.balances]} if findings.balances else {}),
         "checks": [_check(recipe, check) for check in findings.checks],
         "remarks": [_remark(recipe, remark) for remark in findings.remarks],
         "joints": [entry for joint in findings.joints for entry in _jumps(findings, joint)],
-        **_kept(findings),
+        **_table_entry(findings),
         "files": [_file(recipe, file) for file in findings.files]
         + [{"path": name, "stale": True} for name in findings.kept],
         **linkage,
@@ -98,9 +98,14 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
     }
 
 
-def encoded(report: object) -> str:
-    """A report, or several, as JSON text; strict JSON, so an infinite figure is null."""
+def as_json(report: object) -> str:
+    """JSON text of a report or of several; strict JSON, so an infinite figure is null."""
     return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def file_entry(name: str, data: bytes) -> dict[str, Any]:
+    """Entry of a file in a report: its path, size in bytes and checksum."""
+    return {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
 
 
 def _check(recipe: Order, check: Check) -> dict[str, Any]:
@@ -115,9 +120,13 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
         "sense": check.sense,
         "at_deg": check.at_deg,
     }
-    if (other := pounds(recipe.units, unit)) is not None and value is not None:
-        name, many = other
-        entry["pounds"] = {"value": value * many, "limit": None if limit is None else limit * many, "unit": name}
+    if (conversion := pounds(recipe.units, unit)) is not None and value is not None:
+        pound_unit, factor = conversion
+        entry["pounds"] = {
+            "value": value * factor,
+            "limit": None if limit is None else limit * factor,
+            "unit": pound_unit,
+        }
     if check.file is not None:
         entry["file"] = check.file
     if check.surface:
@@ -141,7 +150,7 @@ def _remark(recipe: Order, remark: Remark) -> dict[str, Any]:
 
 
 def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
-    """What jumps at a joint of the motion: an entry for each derivative."""
+    """Entries for the jumps at a joint of the motion, one for each derivative."""
     scale, unit = findings.displacements
     per = ("", "/rad", "/rad^2", "/rad^3")
     at_deg = math.degrees(joint.at)
@@ -151,17 +160,17 @@ def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
     ]
 
 
-def _kept(findings: Findings) -> dict[str, Any]:
-    """How the motion keeps the rows of its table; nothing where it is made of none."""
-    kept, (scale, unit) = findings.table, findings.displacements
-    if kept is None or kept.distance is None:
+def _table_entry(findings: Findings) -> dict[str, Any]:
+    """Entry on how closely the motion follows the rows of its table; empty for a motion without a table."""
+    table, (scale, unit) = findings.table, findings.displacements
+    if table is None or table.distance is None:
         return {}
-    return {"table": {"distance": kept.distance * scale, "unit": unit, "line": kept.line or None}}
+    return {"table": {"distance": table.distance * scale, "unit": unit, "line": table.line or None}}
 
 
 def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
-    told = listed(file.path.name, file.path.read_bytes())
-    entry: dict[str, Any] = {"path": told.pop("path"), "kind": file.request.kind, **told}
+    listing = file_entry(file.path.name, file.path.read_bytes())
+    entry: dict[str, Any] = {"path": listing.pop("path"), "kind": file.request.kind, **listing}
     if file.units is not None:
         named = (name for name, mm in UNIT_MM.items() if math.isclose(mm, file.units, rel_tol=1e-6))
         entry["units"] = next(named, f"{file.units:.9g} mm")
@@ -181,23 +190,23 @@ def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
         "geometry_outward": None if file.bound is None else file.bound.outward / mm,
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
     }
-    rows = [(one.name, _surface(recipe, one)) for one in file.surfaces or (UNREAD,)]
+    rows = [(surface.name, _surface(recipe, surface)) for surface in file.surfaces or (UNREAD,)]
     if len(rows) > 1:
         entry["surfaces"] = [{"name": name, **row} for name, row in rows]
     for name, row in rows if len(rows) == 1 else ():  # flat keys, where there is one
         entry |= row | ({"surface": name} if name else {})
     if file.closures or "surfaces" in entry:
-        entry["play"] = [_between(recipe, one) for one in file.closures]
+        entry["play"] = [_closure_entry(recipe, surface) for surface in file.closures]
     return entry
 
 
-def _between(recipe: Order, closure: ClosureVerdict) -> dict[str, Any]:
-    """What is left to the follower between two surfaces of a file."""
+def _closure_entry(recipe: Order, closure: ClosureVerdict) -> dict[str, Any]:
+    """Entry on the play of the follower between two surfaces of a file."""
     return {"between": [closure.pushes, closure.stops], **_play(recipe, closure.play)}
 
 
 def _play(recipe: Order, play: Play) -> dict[str, Any]:
-    """What is left to a follower that is held from both sides, over the whole turn; negative: interference."""
+    """Least and greatest play of a follower that is held from both sides, over a turn; negative: interference."""
     least, unit = in_units(recipe, play.least, play.unit)
     most, _ = in_units(recipe, play.most, play.unit)
     place = {"min_at_deg": play.least_at_deg, "max_at_deg": play.most_at_deg}
@@ -205,7 +214,7 @@ def _play(recipe: Order, play: Play) -> dict[str, Any]:
 
 
 def _surface(recipe: Order, surface: SurfaceVerdict) -> dict[str, Any]:
-    """What the judge measured of a surface of a file."""
+    """Measurements of a surface of a file by the judge."""
     return {
         "measured_error": None if surface.measured_error is None else surface.measured_error / recipe.mm,
         "motion": None if surface.motion is None else _motion(recipe, surface.motion),
@@ -216,8 +225,8 @@ def _surface(recipe: Order, surface: SurfaceVerdict) -> dict[str, Any]:
 
 def _contours(recipe: Order, measures: Mapping[str, Measures]) -> dict[str, Any] | None:
     """Perimeter and area of the exact contour, of several by the names of their surfaces."""
-    told = {name: _measures(recipe, one.perimeter, one.area) for name, one in measures.items()}
-    return told.get("", told) or None
+    entries = {name: _measures(recipe, contour.perimeter, contour.area) for name, contour in measures.items()}
+    return entries.get("", entries) or None
 
 
 def _balance(recipe: Order, disc: Balance) -> dict[str, Any]:
@@ -248,8 +257,8 @@ def _motion(recipe: Order, motion: MotionError) -> dict[str, Any]:
     ):
         entry[key], unit = in_units(recipe, value, motion.unit)
     remainder, _ = in_units(recipe, motion.remainder, motion.unit)
-    found = {"extremes": motion.extremes, "remainder": remainder}
-    return {**entry, "unit": unit, "at_deg": motion.at_deg, "increment_deg": motion.step_deg, **found}
+    extremes = {"extremes": motion.extremes, "remainder": remainder}
+    return {**entry, "unit": unit, "at_deg": motion.at_deg, "increment_deg": motion.step_deg, **extremes}
 
 
 def finite(value: Any) -> Any:  # noqa: ANN401 - plain JSON data of any shape
@@ -266,24 +275,24 @@ def finite(value: Any) -> Any:  # noqa: ANN401 - plain JSON data of any shape
 
 
 def summary(report: dict[str, Any]) -> str:
-    """One line for a terminal: name, verdict, files with pieces and worst motion error, and what failed."""
+    """Text for a terminal: a line with name, verdict, files and worst motion errors, and one for each failed check."""
     parts = []
     for file in report["files"]:
         if file.get("stale"):
             continue
-        own = (report["recipe"] + ".", report["recipe"] + "-")
-        text = escaped(file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"])
+        prefixes = (report["recipe"] + ".", report["recipe"] + "-")
+        text = escaped(file["path"][len(prefixes[0]) :] if file["path"].startswith(prefixes) else file["path"])
         if file.get("pieces"):
             text += f" {file['pieces']} {pieces_word(file)}"
         motion, on = _worst(file)
         if motion:
-            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}{on}"
+            text += f", motion {error_text(motion['max'], motion['unit'], 3, file.get('tolerance'))}{on}"
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
-    parts += _of_linkage(report.get("linkage"))
+    parts += _linkage_parts(report.get("linkage"))
     parts += [f"remark: {remark['sentence']}" for remark in report.get("remarks", ())]
-    failed = [_told(check) for check in report["checks"] if not check["ok"]]
+    failed = [_failure_text(check) for check in report["checks"] if not check["ok"]]
     verdict = "ok" if report["ok"] else "FAILED"
     line = f"{report['recipe']}: {verdict}"
     if parts:
@@ -294,38 +303,38 @@ def summary(report: dict[str, Any]) -> str:
 
 
 def _worst(file: dict[str, Any]) -> tuple[dict[str, Any] | None, str]:
-    """The greatest motion error of a file, and on which of several surfaces it is."""
-    found = [
-        (one["motion"], f" on {one['name']}" if "name" in one else "")
-        for one in file.get("surfaces") or [file]
-        if one.get("motion") and one["motion"]["max"] is not None
+    """Greatest motion error of a file, and ` on ` with its surface where the file has several."""
+    motions = [
+        (surface["motion"], f" on {surface['name']}" if "name" in surface else "")
+        for surface in file.get("surfaces") or [file]
+        if surface.get("motion") and surface["motion"]["max"] is not None
     ]
-    return max(found, key=lambda each: each[0]["max"], default=(None, ""))
+    return max(motions, key=lambda pair: pair[0]["max"], default=(None, ""))
 
 
-def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
-    """The linkage's worst output error, and the dwell that was asked for: as the files have it, where there are any."""
+def _linkage_parts(linkage: dict[str, Any] | None) -> list[str]:
+    """The linkage's worst output error and the shortest dwell of the files; without files the intended dwell."""
     if linkage is None:
         return []
     parts = []
     error = linkage.get("error")
     if error is not None:
-        parts.append(f"output {measured(error['max'], error['unit'], digits=3)}")
-    made = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
-    meant = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
-    if made or meant:
-        parts.append(f"dwell {min(made or meant):.2f} deg")
+        parts.append(f"output {error_text(error['max'], error['unit'], digits=3)}")
+    lengths = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
+    intended = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
+    if lengths or intended:
+        parts.append(f"dwell {min(lengths or intended):.2f} deg")
     return parts
 
 
 def pieces_word(file: dict[str, Any]) -> str:
-    """What the pieces of a file's contour are called."""
+    """Noun for the pieces of a file's contour: `arcs`."""
     form = FORMATS[file["kind"]].forms.get(file.get("as") or "")
     return "pieces" if form is None else form.pieces
 
 
 def table(report: dict[str, Any]) -> str:
-    """Every check and file of a report as aligned text."""
+    """Table of every check and file of a report, as aligned text."""
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
     rows += [
         (
@@ -342,14 +351,16 @@ def table(report: dict[str, Any]) -> str:
     for remark in report.get("remarks", ()):
         rule, place = remark["rule"], remark["at_deg"]
         side = "" if rule is None else ">=" if remark["value"] < rule else "<="
-        at = "" if place is None else f"{place:.2f} deg"
+        place_text = "" if place is None else f"{place:.2f} deg"
         value, usual = _number(remark["value"]), f"{side} {_number(rule)}".strip()
-        rows.append((remark["name"], "remark", value, usual, remark["unit"], at, ""))
-    text = aligned(rows)
+        rows.append((remark["name"], "remark", value, usual, remark["unit"], place_text, ""))
+    text = align(rows)
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
-    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
+    for file in (
+        {**file_entry, **surface} for file_entry in report["files"] for surface in file_entry.get("surfaces") or [{}]
+    ):
         motion = file.get("motion") or {}
         rows.append(
             (
@@ -358,13 +369,13 @@ def table(report: dict[str, Any]) -> str:
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
                 _number(file.get("geometry_error")),
-                measured(file.get("measured_error"), limit=file.get("tolerance")),
-                measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
-                measured(motion.get("rms"), limit=file.get("tolerance")),
+                error_text(file.get("measured_error"), limit=file.get("tolerance")),
+                error_text(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
+                error_text(motion.get("rms"), limit=file.get("tolerance")),
                 "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
             )
         )
-    text += "\n\n" + aligned(rows)
+    text += "\n\n" + align(rows)
     tables = (capability.lines(report) for capability in registry.in_order(registry.names_loaded()))
     text += "".join(f"\n\n{lines}" for lines in tables if lines)
     if report["skipped"]:
@@ -373,7 +384,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """What `summary` says with the verdict's line last, so that it stays in sight under a table."""
+    """Lines of `summary` with the verdict last, so that it stays in sight under a table."""
     first, *failed = summary(report).split("\n")
     return "\n".join([*failed, first])
 
@@ -385,12 +396,12 @@ def _times(stages: Sequence[dict[str, Any]]) -> str:
         word = stage["name"].split()[0]
         group = "design" if stage["name"] in DESIGN else word
         groups[group] = groups.get(group, 0.0) + stage["seconds"]
-    told = ", ".join(f"{group} {1e3 * seconds:.1f}" for group, seconds in groups.items())
-    return f"{1e3 * sum(groups.values()):.1f} ms: {told}"
+    group_texts = ", ".join(f"{group} {1e3 * seconds:.1f}" for group, seconds in groups.items())
+    return f"{1e3 * sum(groups.values()):.1f} ms: {group_texts}"
 
 
-def _told(check: dict[str, Any]) -> str:
-    """A failed check as a sentence."""
+def _failure_text(check: dict[str, Any]) -> str:
+    """Sentence on a failed check."""
     text = title(check)
     if check.get("file"):
         text += f" ({escaped(check['file'])})"
@@ -410,13 +421,13 @@ def _number(value: float | None) -> str:
 
 
 def value_text(check: dict[str, Any]) -> str:
-    """A check's figure; of an error that holds, without the digits that only rounding made."""
+    """Figure of a check; an error that holds and is only rounding is `below rounding`."""
     holds = check["ok"] and check["sense"] == "at_most"
-    return measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
+    return error_text(check["value"], limit=check["limit"]) if holds else _number(check["value"])
 
 
-def measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
-    """A measured error with its unit; one that rounding made, far from its limit, has no digits worth telling."""
+def error_text(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
+    """Measured error with its unit; `below rounding` for one that is only rounding, far from its limit."""
     if value is None:
         return ""
     if 0.0 < abs(value) < ROUNDING and (not limit or abs(value) < 1e-3 * limit):
@@ -424,7 +435,7 @@ def measured(value: float | None, unit: str = "", digits: int = 6, limit: float 
     return f"{value + 0.0:.{digits}g} {unit}".rstrip()
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> str:
+def align(rows: Sequence[Sequence[str]]) -> str:
     """Rows of cells as text in columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     padded = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)

@@ -1,4 +1,4 @@
-"""A check of a report that does not hold, in words for an engineer: figure, limit, place, and what would do."""
+"""Text of a failed check for an engineer: figure, limit, place, remedy."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
 
 INDENT = "\n  "
-UNKNOWN = Declared("", ())  # of a check that none declares
+UNKNOWN = Declared("", ())  # of a check without a declaration
 
 
 def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None = None) -> str:
-    """Tell a failed check of a report over several lines; `shown` names the recipe's file in place of its path."""
-    return placed(check, recipe, _field(check, recipe), remedy(check, report, recipe), shown)
+    """Text of several lines on a failed check of a report; `shown` names the recipe's file in place of its path."""
+    return failure_at(check, recipe, _field(check, recipe), remedy(check, report, recipe), shown)
 
 
-def placed(check: dict[str, Any], recipe: Order, field: str, would_do: str = "", shown: str | None = None) -> str:
-    """Tell a failed check over several lines, with the place of a recipe's field and what would let it hold."""
+def failure_at(check: dict[str, Any], recipe: Order, field: str, would_do: str = "", shown: str | None = None) -> str:
+    """Text of several lines on a failed check, with the place of a recipe's field and the remedy `would_do`."""
     line, column = recipe.locate(field)
     place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
     rows = [
@@ -36,7 +36,7 @@ def placed(check: dict[str, Any], recipe: Order, field: str, would_do: str = "",
 
 
 def headline(check: dict[str, Any]) -> str:
-    """Tell a failed check on one line."""
+    """Text of one line on a failed check."""
     file = check.get("file")
     text = f"{title(check)} of {file}" if file else title(check)
     if check["value"] is None:
@@ -48,7 +48,7 @@ def headline(check: dict[str, Any]) -> str:
 
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would let the check hold; empty where nothing would, or where the check itself says it."""
+    """Change of the recipe that would let the check hold; empty where none is known or the check itself says it."""
     declared = declaration(check["name"])
     return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 
@@ -57,8 +57,10 @@ def _field(check: dict[str, Any], recipe: Recipe) -> str:
     declared = declaration(check["name"]) or UNKNOWN
     if check["name"].startswith(LIMIT):
         figure = check["name"].removeprefix(LIMIT)
-        own = [one for one in recipe.limits if one.figure == figure and getattr(one, check["sense"]) is not None]
-        return next((one.field(check["sense"]) for one in own), f"limits.{figure}.{check['sense']}")
+        limits = [
+            limit for limit in recipe.limits if limit.figure == figure and getattr(limit, check["sense"]) is not None
+        ]
+        return next((limit.field(check["sense"]) for limit in limits), f"limits.{figure}.{check['sense']}")
     return declared.place(recipe, check.get("file"))
 
 

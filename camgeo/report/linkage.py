@@ -1,4 +1,4 @@
-"""The linkage in the report: mobility, figures of the intended motion, dwells, and what the files make of them.
+"""The linkage in the report: mobility, figures of the intended motion, dwells, and the errors of the files.
 
 Angles in degrees, lengths in the recipe's unit, velocities and accelerations by radian of shaft or relative angle. A
 place has both angles: of the shaft, and the relative one between cam and frame, over which AS plot.
@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 
 def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult]) -> dict[str, Any]:
-    """Everything about the linkage of a recipe, the worst of the files in `error`, as plain data."""
+    """Section of the report on the linkage of a recipe, as plain data; `error` is that of the worst file."""
     mechanism, mobility = driven.mechanism, driven.mechanism.mobility()
-    scale, unit = _output_unit(recipe, mechanism.unit)
+    length_unit = in_units(recipe, None, "mm")[1]
+    scale, unit = (math.degrees(1.0), "deg") if mechanism.unit == "deg" else (1.0 / recipe.mm, length_unit)
     judged = [(file.path.name, file.linkage) for file in files if file.linkage is not None]
     section: dict[str, Any] = {
         "kind": None if recipe.linkage is None else recipe.linkage.kind,
-        "margin": {"value": mobility.margin / recipe.mm, "unit": _length(recipe), "loop": mobility.loop},
+        "margin": {"value": mobility.margin / recipe.mm, "unit": length_unit, "loop": mobility.loop},
         "binds_at_deg": _spans(mobility.binds),
         "reverses_at_deg": _spans(mobility.reverses),
         "shaft_rate": {"min": mobility.least_rate, "relative_deg": math.degrees(mobility.rate_at)},
@@ -48,15 +49,6 @@ def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult])
         section["error"]["file"] = name
         section["files"] = [_file(recipe, name, verdict) for name, verdict in judged]
     return section
-
-
-def _output_unit(recipe: Recipe, unit: str) -> tuple[float, str]:
-    """Factor from rad or mm to the unit of the report, and its name."""
-    return (math.degrees(1.0), "deg") if unit == "deg" else (1.0 / recipe.mm, _length(recipe))
-
-
-def _length(recipe: Recipe) -> str:
-    return in_units(recipe, None, "mm")[1]
 
 
 def _spans(spans: Sequence[tuple[float, float]]) -> list[list[float]]:
@@ -108,11 +100,11 @@ def _figures(figures: Figures, scale: float, unit: str) -> dict[str, Any]:
 def _dwells(
     recipe: Recipe, driven: Driven, judged: Sequence[tuple[str, LinkageVerdict]], scale: float
 ) -> list[dict[str, Any]]:
-    """Rows of the dwells, those over the angle that the recipe asks for first."""
-    asked = recipe.dwell
-    if asked is None:
+    """Rows of the dwells; those over the angle that the recipe names come first."""
+    demanded = recipe.dwell
+    if demanded is None:
         return []
-    band = asked.band * scale
+    band = demanded.band * scale
     rows: list[dict[str, Any]] = [
         {
             "over": over,
@@ -121,14 +113,14 @@ def _dwells(
             "length_deg": math.degrees(dwell.length),
             "from": "intended",
         }
-        for over in sorted(OVER, key=lambda over: over != asked.over)
+        for over in sorted(OVER, key=lambda over: over != demanded.over)
         for dwell in driven.dwells[over]
     ]
     # of the ways in which a frame with play can rest, that in which the dwell is shortest
     rows += [
-        {"over": d.over, "band": band, "start_deg": d.start_deg, "length_deg": d.length_deg, "from": name}
+        {"over": dwell.over, "band": band, "start_deg": dwell.start_deg, "length_deg": dwell.length_deg, "from": name}
         for name, verdict in judged
-        for d in verdict.dwells[:1]
+        for dwell in verdict.dwells[:1]
     ]
     return rows
 

@@ -27,7 +27,7 @@ from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.starter import starter
-from camgeo.report.document import encoded
+from camgeo.report.document import as_json
 from camgeo.report.failure import failure
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
@@ -296,7 +296,7 @@ def test_a_contour_without_a_hollow_keeps_any_least_radius_of_one() -> None:
     least, most = held(ellipse, "{hollow-radius: {at_least: 5, at_most: 6}}")
     assert least["ok"]
     assert not most["ok"]
-    assert json.loads(json.dumps(encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
+    assert json.loads(json.dumps(as_json(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
 
 
 def told(text: str, limits: str) -> list[str]:

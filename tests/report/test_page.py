@@ -33,8 +33,8 @@ from camgeo.report.page import curves, svg, tables
 from camgeo.report.page.asset import asset
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read
-from camgeo.report.page.pack import packed
-from camgeo.report.page.page import LOCAL, RELOAD, encoded, page, scene
+from camgeo.report.page.pack import pack_numbers
+from camgeo.report.page.page import LOCAL, RELOAD, page, scene, script_json
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
@@ -215,7 +215,7 @@ def test_of_many_checks_those_of_files_that_hold_are_folded_up(made: Made, monke
     ],
 )
 def test_packed_rows_come_back_within_a_hundred_thousandth(values: np.ndarray, kind: str) -> None:
-    row = json.loads(json.dumps(packed(values)))
+    row = json.loads(json.dumps(pack_numbers(values)))
     assert kind in row
     back = unpacked(row, STEPS + 1)
     span = np.nanmax(values) - np.nanmin(values)
@@ -556,7 +556,7 @@ def test_the_page_imports_nothing_heavy() -> None:
 
 
 def test_the_data_is_small_and_holds_no_infinity(made: Made) -> None:
-    text = encoded(scene(made.recipe, made.content, made.outcome.report))
+    text = script_json(scene(made.recipe, made.content, made.outcome.report))
     assert len(text) < 300_000
     assert "Infinity" not in text
     assert "NaN" not in text
@@ -719,13 +719,13 @@ def test_what_is_the_same_is_plotted_once() -> None:
             ("Error of b.dxf", wave, ((1.0, ""),)),
         )
     ]
-    titles = [plot.title for plot in curves.once(plots)]
+    titles = [plot.title for plot in curves.merge_alike(plots)]
     assert titles == ["Error of a.dxf and a.svg", "Error of a.stl", "Error of b.dxf"]
-    assert curves.joined(["Radius, inner", "Radius, outer", "Radius, third"]) == "Radius, inner, outer and third"
+    assert curves.join_titles(["Radius, inner", "Radius, outer", "Radius, third"]) == "Radius, inner, outer and third"
     twice = curves.Plot("Preload", "N", tuple(curves.Series(name, np.full(9, 450.0)) for name in ("face A", "face B")))
-    assert [row.name for row in curves.once([twice])[0].series] == ["face A and face B"]
+    assert [row.name for row in curves.merge_alike([twice])[0].series] == ["face A and face B"]
     assert curves.short(130534.2) == "130500"
-    assert curves.joined(["Output", "Output of the first loop"]) == "Output and Output of the first loop"
+    assert curves.join_titles(["Output", "Output of the first loop"]) == "Output and Output of the first loop"
 
 
 def test_files_that_draw_the_same_are_one_error(tmp_path: Path) -> None:

@@ -41,9 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
         complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
-        say_json(encoded(entry))
+        say_json(as_json(entry))
     else:
         say(table(recipe, entry))
     return OK if entry["ok"] else FAILED

@@ -107,4 +107,4 @@ def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
 def failed(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:
     """Tell a failed check of a report over several lines, with the lobe's place in the recipe of the camshaft."""
     fields = {lobe.name: f"camshaft.lobes[{i}].recipe" for i, lobe in enumerate(recipe.lobes)}
-    return failure.placed(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)
+    return failure.failure_at(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)

@@ -55,7 +55,10 @@ def page(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], report: dict[str, 
     parts.append(_section(f"Lobes: {UNIT_NAMES[recipe.units]} and degrees of the cam", _table(section["lobes"], LOBES)))
     if section.get("cylinders"):
         parts.append(_section("Valve events, crank degrees", _table(section["cylinders"], CYLINDERS)))
-    parts += [_section("Checks", TURNING.sub(r"\1", tables.checks(report))), _section("Files", tables.written(report))]
+    parts += [
+        _section("Checks", TURNING.sub(r"\1", tables.checks(report))),
+        _section("Files", tables.file_table(report)),
+    ]
     source = f"<details><summary>Recipe</summary><pre>{escape(recipe.text)}</pre></details>"
     parts.append(f'<section class="tables">{source}</section>')
     return "\n".join([*parts, f"</main>\n{RELOAD}\n</body>\n</html>\n"])

@@ -16,7 +16,7 @@ from camgeo.measures.file_result import FileResult
 from camgeo.output.pipeline import REPORT, Outcome, demand_any
 from camgeo.registry import registry
 from camgeo.registry.formats import numbers_of
-from camgeo.report.document import Findings, document, encoded
+from camgeo.report.document import Findings, as_json, document
 from camgeo.schema.fields import either
 from camgeo.synthesis.intent import intended, permitted
 from kin.numeric.records import dataclass, field, replace
@@ -72,7 +72,7 @@ def export(
         demand_any(recipe.path, findings.found)
         kept = run.kept() if only else ()
         report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)
-        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        (run.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
         names = [file.path.name for file in findings.found.files]
         folder = run.commit(names, keep=kept) if findings.found.ok else run.reject()
     return Outcome(report, findings.found.ok, folder)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, PRESSURE, TORQUE
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.report.page.curves import Plot, Series, limits, short, shown_in
+from camgeo.report.page.curves import Plot, Series, limits, short, shown_unit
 from camgeo.report.page.followers import SHAFT
 from kin.numeric.records import replace
 
@@ -29,7 +29,7 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
     state, note = running.state(SHAFT), f"at {running.train.rpm:g} rpm, of a rigid follower"
 
     def plot(title: str, axis: str, si: str, rows: Mapping[str, Array], sides: Mapping[str, Sequence[float]]) -> Plot:
-        factor, unit = shown_in(recipe, si)
+        factor, unit = shown_unit(recipe, si)
         series = tuple(Series(name, factor * row) for name, row in rows.items())
         lines = limits(recipe, sides, series, factor)
         return Plot(title, unit, series, limits=lines, dwells=True, note=note, axis=axis, holds=(0.0,))
@@ -53,7 +53,7 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
             found.append(plot("Forces at joint D", "force", "N", dict(joints), {}))
     if state.pressure is not None:
         pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
-        most, (factor, _) = running.most_pressure, shown_in(recipe, "N/mm^2")
+        most, (factor, _) = running.most_pressure, shown_unit(recipe, "N/mm^2")
         borne = () if most is None else ((factor * most, f"material {short(factor * most)}"),)
         found += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
     return found

@@ -115,9 +115,9 @@ def run(arguments: argparse.Namespace) -> int:
         complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
-        say_json(encoded(document(followed)))
+        say_json(as_json(document(followed)))
     else:
         say(summary(followed))
     return OK

@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.terminal import escaped
-from camgeo.report.document import aligned
+from camgeo.report.document import align
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,7 +49,7 @@ def lines(report: dict[str, Any]) -> str:
     if section is None:
         return ""
     rows = [tuple(map(escaped, row)) for row in rows_of(section)]
-    return aligned([(f"{HEAD[0]}, {section['unit']}", *HEAD[1:]), *rows])
+    return align([(f"{HEAD[0]}, {section['unit']}", *HEAD[1:]), *rows])
 
 
 def panel(report: dict[str, Any]) -> str:

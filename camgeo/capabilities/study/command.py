@@ -81,9 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
         complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
-        say_json(encoded(study))
+        say_json(as_json(study))
     else:
         say(f"{recipe.name}\n{table(study)}")
     return OK if ok else FAILED
@@ -112,8 +112,7 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
     good one. A ladder that ends at a refused tolerance, or for its time, is no failure.
     """
     from camgeo.output.output_folder import Family, RunFolder
-    from camgeo.report.document import encoded
-    from camgeo.report.listed import listed
+    from camgeo.report.document import as_json, file_entry
 
     files: dict[str, bytes] = {}
     with RunFolder(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
@@ -126,8 +125,8 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
         except ModuleNotFoundError as error:
             why = f"the package {error.name} is missing: {install('study')}"
             study["skipped"].append({"what": PICTURE, "why": why})
-        study["files"] = [listed(name, data) for name, data in files.items()]
-        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8", newline="\n")
+        study["files"] = [file_entry(name, data) for name, data in files.items()]
+        (run.folder / REPORT).write_text(as_json(study), encoding="utf-8", newline="\n")
         if ok:
             run.commit(files)
         else:

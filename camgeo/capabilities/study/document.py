@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.study.tolerance_ladder import End, Rung
 from camgeo.measures.units import in_units
-from camgeo.report.document import aligned
+from camgeo.report.document import align
 from camgeo.version import __version__
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def table(study: Entry) -> str:
         ratio = "" if row["ratio"] is None else f"{row['ratio']:.3f}"
         failed = "" if row["ok"] else f"FAILED {', '.join(row['failed'])}"
         rows.append([row["form"], *errors, *times, str(row["pieces"]), least, ratio, str(row["bytes"]), failed])
-    text = aligned(rows)
+    text = align(rows)
     if study["surfaces"]:
         text += f"\n\nerrors are the greatest, pieces, bytes and seconds the sums of {' and '.join(study['surfaces'])}"
     ends = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
@@ -116,7 +116,7 @@ def table(study: Entry) -> str:
         text += "\n\n" + "\n".join(f"FAILED before any file: {line}" for line in checks)
     margins: list[Sequence[str]] = [("margin", "value", "", "at 0; or what grows by it")]
     margins += [(m["name"], f"{m['value']:.6g}", m["unit"], m["of"]) for m in study["margins"]]
-    text += "\n\n" + aligned(margins)
+    text += "\n\n" + align(margins)
     if study["skipped"]:
         text += "\n\n" + "\n".join(f"skipped {item['what']}: {item['why']}" for item in study["skipped"])
     return text

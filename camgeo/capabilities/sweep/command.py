@@ -65,9 +65,9 @@ def run(arguments: argparse.Namespace) -> int:
     if report["screen"] and report["screen"].get("why") and task.plan.count > EXACT:
         _complain(task, f"every design was worked out exactly, as none can be estimated: {report['screen']['why']}")
     if arguments.json:
-        from camgeo.report.document import encoded
+        from camgeo.report.document import as_json
 
-        say_json(encoded(report))
+        say_json(as_json(report))
     else:
         say(summary(report, outcome.folder))
         if arguments.verbose:

@@ -15,8 +15,7 @@ from camgeo.capabilities.sweep.table import as_csv, as_parquet, columns, with_po
 from camgeo.files.errors import install
 from camgeo.recipe.figures import FIGURES, OF_DWELL
 from camgeo.recipe.loading import read
-from camgeo.report.document import encoded
-from camgeo.report.listed import listed
+from camgeo.report.document import as_json, file_entry
 from camgeo.version import __version__
 from kin.numeric.records import dataclass, field
 
@@ -79,10 +78,10 @@ def outputs(
     for design in best:
         if design.why:
             files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
-    report["files"] = [listed(name, data) for name, data in files.contents.items()]
+    report["files"] = [file_entry(name, data) for name, data in files.contents.items()]
     report["skipped"] = files.skipped
     report["run"] = run
-    files.contents[REPORT] = encoded(report).encode()
+    files.contents[REPORT] = as_json(report).encode()
     return files.contents, report
 
 

@@ -1,4 +1,4 @@
-"""The files beside this one that a page is made of: style, script and frame."""
+"""Files of this folder: style, script and frames of a page."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ from importlib.resources import files
 
 
 def asset(name: str) -> str:
-    """Return a file of this folder."""
+    """Return the text of a file of this folder."""
     return (files("camgeo.report.page") / name).read_text("utf-8")

@@ -1,4 +1,4 @@
-"""Everything a page shows of one recipe, gathered from the design and the files: scene, plots, dwells, errors."""
+"""Content of the page of one recipe, from the design and the files: scene, plots, dwells, errors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camgeo.curve.ring import Ring, disc
 from camgeo.registry import registry
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
-from camgeo.report.page.overlays import Stage, overlaid
+from camgeo.report.page.overlays import Stage, overlay_bodies
 from camgeo.report.page.scene import CONTACTS, Body, Scene, Shape, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
@@ -18,7 +18,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -34,10 +34,10 @@ PUSHED = "above 0 where a disc pushes its own contact outwards"
 
 @dataclass(frozen=True, eq=False)
 class FileError:
-    """How far a file lies outside an exact contour in each step: least and greatest (STEPS,), negative inside.
+    """Distance of a file's contour outside the exact one in each step: least and greatest (STEPS,), negative inside.
 
-    `surface` is the contour's, empty of a cam that has one. Files that show the same are one, under their names
-    together; `tolerance` is theirs.
+    `surface` is the contour's name, empty where the cam has one. Files with the same error share an entry, under all
+    their names. Lengths, `tolerance` too, are in the recipe's unit.
     """
 
     name: str
@@ -47,14 +47,14 @@ class FileError:
     tolerance: float
 
     def like(self, other: FileError) -> bool:
-        """Whether another file's error is the same, to what a picture shows."""
+        """Whether another file's error is the same within what a picture shows."""
         alike = curves.equal(self.low, other.low) and curves.equal(self.high, other.high)
         return (self.surface, self.tolerance) == (other.surface, other.tolerance) and alike
 
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """An exact contour in the cam's axes at the middle of each step, where errors are looked at: (STEPS, 2) each."""
+    """Points and outward normals (STEPS, 2) of an exact contour in the cam's axes, at the middle of each step."""
 
     point: Array
     normal: Array
@@ -62,10 +62,10 @@ class Traced:
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """What a page shows; lengths in the recipe's unit, the drawing as the shaft turns.
+    """Drawing, plots and errors of a page; lengths in the recipe's unit, the scene for the recipe's sense of rotation.
 
-    `relative` (STEPS + 1,) is the angle between cam and frame over the shaft's, rad; without a linkage they are one.
-    `contours` are those of the surfaces by their names, `errors` those of the files.
+    `relative` (STEPS + 1,) is the angle between cam and frame, rad, at the steps of the shaft angle, to which it is
+    equal without a linkage. `contours` are the exact ones by the names of their surfaces; `errors` are of the files.
     """
 
     scene: Scene
@@ -77,22 +77,26 @@ class Content:
 
 
 def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Content:
-    """Gather what a page shows; `results` are those of the drawings and solids that were made."""
-    files = [found for result in results if (found := outline.read(recipe, result)) is not None]
+    """Content of a page; `results` are the judged files, of which those with a contour are drawn."""
+    files = [file for result in results if (file := outline.read(recipe, result)) is not None]
     per = outline.Exact.looks(files)
-    exacts = {made.surface.name: outline.Exact.of(design, made, per) for made in design.surfaces}
-    groups = outline.together(files, len(design.discs))
-    drawn = [_drawn(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
+    exacts = {profile.surface.name: outline.Exact.of(design, profile, per) for profile in design.surfaces}
+    groups = outline.group_files(files, len(design.discs))
+    drawn = [_drawing_of(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
     plots += curves.preload(recipe, design)
     for capability in registry.in_order(recipe.uses):
         plots += capability.plots(recipe, design)
-    plots += [curves.curvature(recipe, design, made, exacts[made.surface.name]) for made in design.surfaces]
+    plots += [curves.curvature(recipe, design, profile, exacts[profile.surface.name]) for profile in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     measured = ((file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items())
-    errors = _together(
+    errors = [
         FileError(file.name, surface, low / recipe.mm, high / recipe.mm, file.tolerance / recipe.mm)
         for file, surface, (low, high) in measured
+    ]
+    merged = tuple(
+        replace(alike[0], name=", ".join(error.name for error in alike))
+        for alike in curves.group_alike(errors, FileError.like)
     )
     scene, flip = scene.scaled(1.0 / recipe.mm), np.array([1.0, 1.0])
     if recipe.rotation == "ccw":
@@ -103,55 +107,43 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         for name, exact in exacts.items()
     }
     rests = tuple(curves.rests(recipe, design))
-    return Content(scene, tuple(curves.once(plots)), rests, relative, contours, errors)
-
-
-def _together(errors: Iterable[FileError]) -> tuple[FileError, ...]:
-    """Return errors, of those that are the same the first under the names of all."""
-    kept: list[FileError] = []
-    for error in errors:
-        same = next((rank for rank, first in enumerate(kept) if first.like(error)), None)
-        if same is None:
-            kept.append(error)
-        else:
-            kept[same] = replace(kept[same], name=f"{kept[same].name}, {error.name}")
-    return tuple(kept)
+    return Content(scene, tuple(curves.merge_alike(plots)), rests, relative, contours, merged)
 
 
 Drawn: TypeAlias = "tuple[str, tuple[tuple[Ring, ...], ...]]"
-"""What a contour is drawn by: a name, and the rings of each disc."""
+"""Drawing of a contour: its name, and the rings of each disc."""
 
 
-def _drawn(group: Sequence[outline.Read]) -> Drawn:
+def _drawing_of(group: Sequence[outline.Read]) -> Drawn:
     return ", ".join(file.name for file in group), tuple(rings for file in group for rings in file.rings)
 
 
 def _on_face(disc_design: Disc) -> list[Shape]:
-    """Hub and timing mark of a disc; a file's outline shows neither, or does not tell which hole is the mark."""
+    """Hub and timing mark of a disc, which a file's outline lacks or does not tell from other holes."""
     body = disc_design.body
     if body is None:
         return []
-    found = [] if body.hub is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * body.hub.diameter),), "hub")]
+    shapes = [] if body.hub is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * body.hub.diameter),), "hub")]
     for opening in body.openings:
         if opening.name == "mark":
             ring = Ring(opening.outline.points, opening.outline.bulges)
-            found.append(Shape("timing mark", (ring,), "zero of the motion"))
-    return found
+            shapes.append(Shape("timing mark", (ring,), "zero of the motion"))
+    return shapes
 
 
 def _exact_rings(recipe: Recipe, design: Design) -> tuple[tuple[Ring, ...], ...]:
     rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
-    found = []
-    for each in design.discs:
-        contours = [outline.exact(contour) for _, contour in each.contours] if design.contours else []
+    rings = []
+    for disc_design in design.discs:
+        contours = [outline.exact(contour) for _, contour in disc_design.contours] if design.contours else []
         if not contours:
-            contours = [outline.exact(made.surface.curve, whole=True) for made in each.surfaces]
-        found.append((*rim, *contours, *_openings(recipe, each)))
-    return tuple(found)
+            contours = [outline.exact(profile.surface.curve, whole=True) for profile in disc_design.surfaces]
+        rings.append((*rim, *contours, *_openings(recipe, disc_design)))
+    return tuple(rings)
 
 
 def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
-    """Return what is cut through a disc; of one that is not made the bore."""
+    """Return the rings of the openings through a disc, mm; of a disc without a body its bore alone."""
     if disc_design.body is None:
         return (disc(0.0, 0.0, 0.5 * recipe.part.bore),) if recipe.part.bore else ()
     cut = [opening.outline for opening in disc_design.body.openings if opening.depth is None]
@@ -159,7 +151,7 @@ def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
 
 
 def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
-    """Return each disc with what stands on it, the lowest first, and those above it drawn through."""
+    """Return each disc with its hub and mark, the lowest first; discs above it are drawn translucent."""
     several = len(design.discs) > 1
     return [
         cam(
@@ -167,51 +159,51 @@ def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, 
             bore,
             size,
             turned,
-            on_it=_on_face(each),
-            name=each.name if several else "cam",
+            on_it=_on_face(disc_design),
+            name=disc_design.name if several else "cam",
             role="metal upper" if rank else "metal",
         )
-        for rank, each in enumerate(design.discs)
+        for rank, disc_design in enumerate(design.discs)
     ]
 
 
 def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
-    _, shown = drawn[0]
-    reach = max(float(np.hypot(*rings[0].flattened().T).max()) for rings in shown)
+    _, rings_of_discs = drawn[0]
+    reach = max(float(np.hypot(*rings[0].flattened().T).max()) for rings in rings_of_discs)
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contours else "The cam is not made: a check of the exact contour fails."
     if len(design.discs) > 1:
-        *lower, upper = (each.name for each in design.discs)
+        *lower, upper = (disc_design.name for disc_design in design.discs)
         note = f"{upper.capitalize()} stands in front of {' and '.join(lower)} and is drawn through. {note}".rstrip()
     first = design.exact.surfaces[0]
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     if design.driven is not None and design.driven.turns:
-        from camgeo.report.page.linked import Driven, linked, traced
+        from camgeo.report.page.linked import Driven, linkage_bodies, path_bodies
 
         driven = Driven.of(design.driven.mechanism)
         discs = _discs(design, drawn, bore, size, driven.cam)
-        bodies = linked(driven, size)
+        bodies = linkage_bodies(driven, size)
         if recipe.linkage is not None:
-            bodies += traced(driven, recipe.linkage.traces, recipe.mm, size)
+            bodies += path_bodies(driven, recipe.linkage.traces, recipe.mm, size)
         stage = Stage(view_of(recipe, design), driven.cam, driven.theta, reach, size)
-        bodies = _under_contacts(overlaid(recipe.export.overlays, stage), bodies)
+        bodies = _under_contacts(overlay_bodies(recipe.export.overlays, stage), bodies)
         return (
             Scene((*discs, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
             curves.output(recipe, driven),
             driven.theta,
         )
     if design.driven is not None:
-        where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
+        details = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
         slides = "The mechanism does not make a full turn: the cam is shown in a frame that only slides. "
-        note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
+        note = f"{slides}{details[0].upper()}{details[1:]}. {note}" if details else slides + note
     view = view_of(recipe, design)
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
     discs = _discs(design, drawn, bore, size, -SHAFT)
     stage = Stage(view, -SHAFT, SHAFT, reach, size)
-    bodies = _under_contacts(overlaid(recipe.export.overlays, stage), bodies)
+    bodies = _under_contacts(overlay_bodies(recipe.export.overlays, stage), bodies)
     return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
 
 
@@ -240,8 +232,8 @@ def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing
     return bodies, [curves.levers(view.recipe, lever)]
 
 
-def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
-    """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
+def _round_contact(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
+    """Return roller, shoe or edge, the displacement (STEPS + 1,), mm or rad, the contact, and the plot of its angle."""
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
@@ -249,50 +241,52 @@ def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array
 
 
 def _contacts(view: View[Guide, Touch], size: float, within: float = 0.0) -> list[Body]:
-    """Return where each surface is touched."""
+    """Return the contact of each surface; the arrow is longer by `within`, mm."""
     surfaces = view.design.exact.surfaces
     names = [f"contact, {surface.name}" if surface.name else "contact" for surface in surfaces]
-    return [guided.touched(*each, size, within) for each in zip(surfaces, names, strict=True)]
+    return [
+        guided.contact_body(*surface_and_name, size, within) for surface_and_name in zip(surfaces, names, strict=True)
+    ]
 
 
 def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Drawing:
-    touch, s, found, plots = _pressed(view, size)
-    return [*guided.on_stem(touch, view.datum + s, view.guide.offset, reach, size), *found], plots
+    touch, s, contacts, plots = _round_contact(view, size)
+    return [*guided.on_stem(touch, view.datum + s, view.guide.offset, reach, size), *contacts], plots
 
 
 def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
-    touch, s, found, plots = _pressed(view, size)
-    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *found], plots
+    touch, s, contacts, plots = _round_contact(view, size)
+    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *contacts], plots
 
 
-def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
-    """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
+def _face_contact(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
+    """Return the displacement (STEPS + 1,), ends of the contact's run along the face, mm, the contact, and plots."""
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
     plots = [
         curves.pressure(view.recipe, {view.touch.word: angle}),
         curves.along(view.recipe, {"contact": place}, view.touch.width),
     ]
     margin = guided.MARGIN * size
-    found = _contacts(view, size)
-    return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
+    contacts = _contacts(view, size)
+    return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, contacts, plots
 
 
 def _face_on_stem(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
-    s, low, high, found, plots = _faced(view, size)
+    s, low, high, contacts, plots = _face_contact(view, size)
     if view.touch.width is not None:
         low, high = -0.5 * view.touch.width, 0.5 * view.touch.width
     face = guided.face(view.touch.tilt, low, high, size)
-    return [*guided.on_stem(face, view.datum + s, view.guide.offset, reach, size), *found], plots
+    return [*guided.on_stem(face, view.datum + s, view.guide.offset, reach, size), *contacts], plots
 
 
 def _face_on_arm(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing:
-    s, low, high, found, plots = _faced(view, size)
+    s, low, high, contacts, plots = _face_contact(view, size)
     nearer, middle, half = view.touch.nearer, 0.5 * (low + high), 0.5 * (high - low)
-    at = (middle, -view.guide.side * nearer)
+    origin = (middle, -view.guide.side * nearer)
     # a face that lies beyond the pivot's parallel is held at its near end: to its middle the arm would cross the cam
     short = half if nearer < 0.0 else 0.0
     face = guided.face(0.0, -half, half, size)
-    return [*guided.on_arm(face, view.contacts[0], s, at, size, short=short), *found], plots
+    return [*guided.on_arm(face, view.contacts[0], s, origin, size, short=short), *contacts], plots
 
 
 def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Drawing:
@@ -301,52 +295,52 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     x = first.datum + view.travel(SHAFT)[0]
     touches = guided.roller(radius, size, "roller A"), guided.roller(radius, size, "roller B")
     bodies = guided.roller_frame(touches, x, first.datum + second.datum, hole, size)
-    found, angles = [], {}
-    for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        found.append(guided.touched(view.surface(first), f"contact of {name}", size, radius, on=on))
-        angles[name] = view.pressure(SHAFT + on)
-    return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
+    contacts, angles = [], {}
+    for name, ahead in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
+        contacts.append(guided.contact_body(view.surface(first), f"contact of {name}", size, radius, on=ahead))
+        angles[name] = view.pressure(SHAFT + ahead)
+    return [*bodies, *contacts], [curves.pressure(view.recipe, angles, SIGN)]
 
 
-def _each_pressed(
+def _pair_contacts(
     view: View[Guide, Round], size: float
 ) -> tuple[tuple[guided.Touch, guided.Touch], list[Body], list[curves.Plot]]:
-    """Return what touches either disc of a pair, the contacts, and the plot of both pressure angles."""
-    touches, angles, found = [], {}, []
-    for which, each in enumerate(view.contacts, start=1):
-        surface = view.surface(each)
+    """Return the rollers or shoes on the discs of a pair, their contacts, and the plot of both pressure angles."""
+    touches, angles, bodies = [], {}, []
+    for number, contact in enumerate(view.contacts, start=1):
+        surface = view.surface(contact)
         angle = surface.pressure(SHAFT)
-        touch = guided.touch_of(each.touch, angle, size, f" {which}")
+        touch = guided.touch_of(contact.touch, angle, size, f" {number}")
         touches.append(touch)
         angles[touch.name] = angle
-        found.append(guided.touched(surface, f"contact of {touch.name}", size, touch.within))
+        bodies.append(guided.contact_body(surface, f"contact of {touch.name}", size, touch.within))
     first, second = touches
-    return (first, second), found, [curves.pressure(view.recipe, angles, PUSHED)]
+    return (first, second), bodies, [curves.pressure(view.recipe, angles, PUSHED)]
 
 
 def _pair_on_stem(view: View[Translating, Round], _: float, size: float) -> _Drawing:
     first, second = view.contacts
-    touches, found, plots = _each_pressed(view, size)
+    touches, contacts, plots = _pair_contacts(view, size)
     hole, x = 0.5 * (view.recipe.part.bore or 0.0), first.datum + view.travel(SHAFT)[0]
     apart = first.datum + second.datum
     bodies = guided.roller_frame(touches, x, apart, hole, size, y=view.guide.offset, facing=0.5 * TURN)
-    return [*bodies, *found], plots
+    return [*bodies, *contacts], plots
 
 
 def _pair_on_arms(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
-    touches, found, plots = _each_pressed(view, size)
+    touches, contacts, plots = _pair_contacts(view, size)
     s, bodies = view.travel(SHAFT)[0], dict[str, Body]()
-    for which, (each, touch) in enumerate(zip(view.contacts, touches, strict=True), start=1):
-        for body in guided.on_arm(touch, each, each.sense * s, (each.guide.arm, 0.0), size):
-            name = f"arm {which}" if body.name == "arm" else body.name
+    for number, (contact, touch) in enumerate(zip(view.contacts, touches, strict=True), start=1):
+        for body in guided.on_arm(touch, contact, contact.sense * s, (contact.guide.arm, 0.0), size):
+            name = f"arm {number}" if body.name == "arm" else body.name
             bodies[name] = replace(body, name=name)  # both arms turn about one pivot
-    return [*bodies.values(), *found], plots
+    return [*bodies.values(), *contacts], plots
 
 
 def _pair_of_faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
     first, second = view.contacts
     p = first.datum + view.travel(SHAFT)[0]
-    places = {each.surface: view.surface(each).place for each in view.contacts}
+    places = {contact.surface: view.surface(contact).place for contact in view.contacts}
     named = {name: place(SHAFT) for name, place in places.items() if place is not None}
     bodies = faces(p, first.datum + second.datum, reach, size, view.guide.offset)
     return [*bodies, *_contacts(view, size)], [curves.along(view.recipe, named)]
@@ -373,4 +367,4 @@ DRAWN: dict[Arrangement, Drawer[[float, float], _Drawing]] = dict(
         entry(Oscillating, Shoe, _pair_on_arms, 2, 2),
     ]
 )
-"""How each follower is drawn: its bodies and the plots they give, from the cam's reach and the size of a joint."""
+"""Function that draws each follower: bodies and plots, from the cam's reach and the size of a joint, mm."""

@@ -1,9 +1,9 @@
-"""What a page plots over a turn: motion, angles of force, curvature; with limits and dwells. In the recipe's units."""
+"""Plots of a page over a turn: motion, pressure angles, curvature; with limits and dwells. In the recipe's units."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.numeric.arrays import Array
 
+T = TypeVar("T")
 ORDER = 3
 DERIVATIVES = ("", "velocity", "acceleration", "jerk")
 POWERS = ("/rad", "/rad²", "/rad³")
@@ -42,7 +43,7 @@ TIMES = ("/s", "/s²", "/s³")
 DEGREES = 180.0 / math.pi
 FAR = 3.0  # ranges of a curve: a line that is farther off is not drawn
 SAME = 1e-4  # of a curve's range: what is nearer is drawn once
-COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
+COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +58,8 @@ class Series:
 class Plot:
     """Curves over one angle; `limits` are lines across (value, name), `note` a remark below.
 
-    `axis` is the quantity's name beside the upright axis, the title where it is empty. That axis `holds` these values
-    whatever the curves are: 0 of a force, the tolerance of an error.
+    `axis` is the quantity's name beside the upright axis, the title where it is empty. The axis always spans the values
+    that it `holds`: 0 for a force, the tolerance for an error.
     """
 
     title: str
@@ -72,32 +73,34 @@ class Plot:
     holds: tuple[float, ...] = ()
 
 
-def once(plots: Sequence[Plot]) -> list[Plot]:
-    """Return the plots, of those that show the same curves the first alone, under the titles of all."""
-    kept: dict[int, list[Plot]] = {}
-    for plot in plots:
-        same = next((rank for rank, (first, *_) in kept.items() if _alike(first, plot)), len(kept))
-        kept.setdefault(same, []).append(plot)
+def group_alike(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:
+    """Groups of items that are alike, each in the order of the items; groups in the order of their first items."""
+    groups: list[list[T]] = []
+    for item in items:
+        group = next((group for group in groups if alike(group[0], item)), None)
+        if group is None:
+            groups.append([item])
+        else:
+            group.append(item)
+    return groups
+
+
+def merge_alike(plots: Sequence[Plot]) -> list[Plot]:
+    """Plots, of those with the same curves the first alone, under the titles of all."""
     return [
-        replace(alike[0], title=joined([plot.title for plot in alike]), series=_distinct(alike[0].series))
-        for alike in kept.values()
+        replace(alike[0], title=join_titles([plot.title for plot in alike]), series=_distinct(alike[0].series))
+        for alike in group_alike(plots, _same_curves)
     ]
 
 
 def _distinct(series: Sequence[Series]) -> tuple[Series, ...]:
-    """Return the series of a plot, of those that are the same the first under the names of all."""
-    kept: list[list[Series]] = []
-    for row in series:
-        same = next((rows for rows in kept if equal(rows[0].values, row.values)), None)
-        if same is None:
-            kept.append([row])
-        else:
-            same.append(row)
-    return tuple(replace(rows[0], name=joined([row.name for row in rows])) for rows in kept)
+    """Series of a plot, of those with the same values the first alone, under the names of all."""
+    groups = group_alike(series, lambda first, row: equal(first.values, row.values))
+    return tuple(replace(rows[0], name=join_titles([row.name for row in rows])) for rows in groups)
 
 
-def _alike(plot: Plot, other: Plot) -> bool:
-    """Whether two plots show the same curves, to what a picture shows, between the same limits."""
+def _same_curves(plot: Plot, other: Plot) -> bool:
+    """Whether two plots have the same curves, within what a picture shows, and the same limits."""
     if (plot.unit, plot.over, plot.limits) != (other.unit, other.over, other.limits):
         return False
     pairs = zip(plot.series, other.series, strict=False)
@@ -110,12 +113,12 @@ def equal(values: Array, others: Array) -> bool:
     return bool(np.allclose(values, others, rtol=1e-12, atol=SAME * span, equal_nan=True))
 
 
-def joined(titles: Sequence[str]) -> str:
+def join_titles(titles: Sequence[str]) -> str:
     """Return titles as one: `Error of a.dxf` and `Error of a.svg` are `Error of a.dxf and a.svg`."""
-    first, *others = titles
+    first, *other_titles = titles
     head = max((first.rfind(mark) + len(mark) for mark in (" of ", ", ") if mark in first), default=0)
-    tails = [title[head:] for title in others if title.startswith(first[:head])]
-    whole = tails if len(tails) == len(others) else others
+    tails = [title[head:] for title in other_titles if title.startswith(first[:head])]
+    whole = tails if len(tails) == len(other_titles) else other_titles
     *before, last = [first, *whole]
     return f"{', '.join(before)} and {last}" if before else last
 
@@ -130,26 +133,28 @@ class Rest:
 
 
 def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot]:
-    """Return plots of a motion and its derivatives, rows (4, STEPS + 1) by the shaft angle, as `per` has them."""
-    found = [Plot(title, unit, (Series(title.lower(), rows[0]),), dwells=True)]
+    """Return plots of a motion and its derivatives by radian, rows (4, STEPS + 1), converted by `per`."""
+    plots = [Plot(title, unit, (Series(title.lower(), rows[0]),), dwells=True)]
     for order, name in enumerate(DERIVATIVES[1:], start=1):
         factor, power, note = per(recipe, order)
         series = (Series(name, factor * rows[order]),)
         scale = recipe.mm if unit == length_unit(recipe) else 1.0
         lines = limits(recipe, _peaks(recipe, power), series, 1.0 / scale)
-        found.append(Plot(name.capitalize(), unit + power, series, limits=lines, dwells=True, note=note))
-    return found
+        plots.append(Plot(name.capitalize(), unit + power, series, limits=lines, dwells=True, note=note))
+    return plots
 
 
 def _peaks(recipe: Recipe, power: str) -> dict[str, tuple[float, float]]:
-    """Return the sides on which limits of a motion's peaks stand, of the figures that are told by this power."""
+    """Return both sides for each limited figure of the motion whose unit has this power of rad or s."""
     limited = {limit.figure: FIGURES[limit.figure] for limit in recipe.limits}
-    peaks = {name for name, figure in limited.items() if figure.kind is Kind.MOTION and raised(figure.per) == power}
+    peaks = {
+        name for name, figure in limited.items() if figure.kind is Kind.MOTION and with_powers(figure.per) == power
+    }
     return dict.fromkeys(peaks, (1.0, -1.0))
 
 
-def raised(unit: str) -> str:
-    """Return a unit with its powers as they are read."""
+def with_powers(unit: str) -> str:
+    """Return a unit with raised digits: `mm²` for `mm^2`."""
     return unit.replace("^2", "²").replace("^3", "³")
 
 
@@ -162,7 +167,7 @@ def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
 
 
 def motion(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
+    """Return plots of the follower's displacement and its derivatives at the page's steps."""
     position = design.motion
     unit = "°" if position.unit == "deg" else length_unit(recipe)
     rows = position.turn(SHAFT, ORDER) * position.factor(recipe.mm)
@@ -172,32 +177,32 @@ def motion(recipe: Recipe, design: Design) -> list[Plot]:
 def output(recipe: Recipe, driven: Driven) -> list[Plot]:
     """Return plots of a linkage: output and its derivatives, the frame and its velocity, angles of force."""
     mechanism = driven.mechanism
-    at, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
-    rows = np.concatenate([at.over_shaft(at.output), end.over_shaft(end.output)], axis=1)
+    state, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
+    rows = np.concatenate([state.over_shaft(state.output), end.over_shaft(end.output)], axis=1)
     unit, scale = ("°", DEGREES) if mechanism.unit == "deg" else (length_unit(recipe), 1.0 / recipe.mm)
-    found = derivatives(recipe, "Output", unit, scale * rows)
+    plots = derivatives(recipe, "Output", unit, scale * rows)
     if mechanism.dyads:
         first, scale_1 = mechanism.linkage, DEGREES if mechanism.linkage.unit == "deg" else 1.0 / recipe.mm
-        values = scale_1 * np.concatenate([at.outputs[0][0], end.outputs[0][0]])
+        values = scale_1 * np.concatenate([state.outputs[0][0], end.outputs[0][0]])
         name = "°" if first.unit == "deg" else length_unit(recipe)
-        found.append(Plot("Output of the first loop", name, (Series("first loop", values),), axis="output"))
-    frame = DEGREES * np.concatenate([at.over_shaft(at.frame[:2]), end.over_shaft(end.frame[:2])], axis=1)
-    found.append(Plot("Frame", "°", (Series("angle of the frame", frame[0]),)))
+        plots.append(Plot("Output of the first loop", name, (Series("first loop", values),), axis="output"))
+    frame = DEGREES * np.concatenate([state.over_shaft(state.frame[:2]), end.over_shaft(end.frame[:2])], axis=1)
+    plots.append(Plot("Frame", "°", (Series("angle of the frame", frame[0]),)))
     factor, power, note = per(recipe, 1)
     turning = (Series("velocity of the frame", factor * frame[1]),)
-    found.append(Plot("Velocity of the frame", f"°{power}", turning, note=note, axis="velocity"))
+    plots.append(Plot("Velocity of the frame", f"°{power}", turning, note=note, axis="velocity"))
     names = ("transmission angle", "force angle")
     angles = tuple(Series(name, DEGREES * row) for name, row in zip(names, driven.angles(), strict=True))
     note = "force angle: between the force of the frame and the direction in which it does nothing"
     bounds = limits(recipe, {"transmission-angle": (1.0,), "force-angle": (1.0,)}, angles)
-    found.append(
+    plots.append(
         Plot("Transmission and force angle", "°", angles, limits=((0.0, ""), *bounds), note=note, axis="angle")
     )
-    return found
+    return plots
 
 
 def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plot:
-    """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches, and of their limits."""
+    """Return the plot of pressure angles, rad (STEPS + 1,), by the name of the roller or face, with their limits."""
     series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
     sides = {PRESSURE_ANGLE: (1.0, -1.0), ON_RISE: (1.0,), ON_RETURN: (-1.0,)}  # above 0 a rise, below 0 a return
     lines = limits(recipe, sides, series)
@@ -205,16 +210,17 @@ def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plo
 
 
 def short(value: float) -> str:
-    """Return a figure to four digits, without an exponent for great ones."""
+    """Return a figure to four digits, without an exponent where it is large."""
     return f"{float(f'{value:.4g}'):.12g}"
 
 
 def limits(
     recipe: Recipe, sides: Mapping[str, Sequence[float]], series: Sequence[Series], scale: float = 1.0
 ) -> tuple[tuple[float, str], ...]:
-    """Return the recipe's limits of figures as lines across curves, each on the sides, 1 or -1, on which curves are.
+    """Return the recipe's limits of figures as lines across curves: pairs of a value and a name.
 
-    `scale` is a plot's values over the limits'. A limit of a peak at a speed that is not the plotted one has no line.
+    `sides` has, by figure, the signs 1 and -1 of the values that the limit bounds; a side without curves has no line.
+    `scale` converts a limit to the plot's unit. A limit at another speed than the plotted one has no line.
     """
     values = np.concatenate([row.values for row in series])
     rpm = recipe.rpm
@@ -237,45 +243,45 @@ def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note, axis="lever")
 
 
-def shown_in(recipe: Recipe, si: str) -> tuple[float, str]:
-    """Return how many of the shown unit one SI unit of force, moment or pressure is, and the unit as it is read."""
+def shown_unit(recipe: Recipe, si: str) -> tuple[float, str]:
+    """Return the factor from an SI unit of force, moment or pressure to the shown unit, and that unit's name."""
     factor, unit = in_pounds(recipe.units, 1.0, si)
-    return factor, raised(unit)
+    return factor, with_powers(unit)
 
 
 def preload(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of a preload's force along the travel, with its limits, and along the normals of both contacts.
 
-    They are one on a stem; on an arm the former is a moment. None without a preload, or where it has no stiffness.
+    One plot for a follower on a stem; on an arm two, as the former is a moment. None without a stiff preload.
     """
-    given = design.exact.preload
-    if given is None or given.stiffness is None:
+    preload_force = design.exact.preload
+    if preload_force is None or preload_force.stiffness is None:
         return []
     from camgeo.measures.forces import PER_MM, FollowerTurn, elastic_contacts
 
     turn, rows = FollowerTurn(design), design.motion.travel(SHAFT, 2)
-    force = elastic_contacts(turn, given, rows).preload
-    factor, unit = shown_in(recipe, turn.unit)
+    force = elastic_contacts(turn, preload_force, rows).preload
+    factor, unit = shown_unit(recipe, turn.unit)
     travel = (Series("along the travel", factor * (PER_MM if turn.swings else 1.0) * force),)
     lines = limits(recipe, {PRELOAD_LEAST: (1.0,), PRELOAD_GREATEST: (1.0,)}, travel, factor)
-    per_newton, newtons = shown_in(recipe, "N")
+    per_newton, newtons = shown_unit(recipe, "N")
     normal = zip(turn.names, (force / line.lever for line in turn.lines(rows)), strict=True)
-    each = tuple(Series(name, per_newton * values) for name, values in normal)
+    contact_series = tuple(Series(name, per_newton * values) for name, values in normal)
     note = "of each contact along its normal, without load"
     if not turn.swings:
         if lines:
             note += "; limits are of the force along the travel"
-        return [Plot("Preload", unit, (*travel, *each), limits=lines, note=note, axis="force", holds=(0.0,))]
+        return [Plot("Preload", unit, (*travel, *contact_series), limits=lines, note=note, axis="force", holds=(0.0,))]
     return [
         Plot("Preload", unit, travel, limits=lines, note="about the pivot, without load", axis="moment", holds=(0.0,)),
-        Plot("Preload of the contacts", newtons, each, note=note, axis="force", holds=(0.0,)),
+        Plot("Preload of the contacts", newtons, contact_series, note=note, axis="force", holds=(0.0,)),
     ]
 
 
 def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = None) -> Plot:
-    """Return the plot of where flat faces are touched, mm (STEPS + 1,) each, by their names.
+    """Return the plot of the places at which flat faces are touched, mm (STEPS + 1,), by the names of the faces.
 
-    A `width`, mm, is that of a face centred on its stem, whose edges are drawn.
+    `width`, mm, is that of a face centred on its stem; its edges are drawn.
     """
     note = "along the face, from the axis of its stem or the pivot of its arm"
     unit = length_unit(recipe)
@@ -286,22 +292,22 @@ def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = Non
 
 
 def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exact: Exact) -> Plot:
-    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
+    """Return the plot that shows undercut: the contour's radius of curvature, or the curvature of a pitch curve.
 
-    Of a ring, which is undercut where it is hollow, no margin is reported.
+    A ring, which is undercut where it is hollow, has no margin in the note.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
-    found, surface = surface_design.bent, surface_design.surface
+    bend, surface = surface_design.bent, surface_design.surface
     unit, radius = length_unit(recipe), surface.side * surface.radius
     margin, name = "", f", {surface.name}" if surface.name else ""
-    if found.value is not None and math.isfinite(found.value) and radius >= 0.0:
-        room = (found.value - radius) / recipe.mm
-        side = "from" if room > 0.0 else "beyond"
-        margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {abs(room):.5g} {unit} {side} undercut"
+    if bend.value is not None and math.isfinite(bend.value) and radius >= 0.0:
+        margin_mm = (bend.value - radius) / recipe.mm
+        side = "from" if margin_mm > 0.0 else "beyond"
+        margin = f"least radius {bend.value / recipe.mm:.5g} {unit}, {abs(margin_mm):.5g} {unit} {side} undercut"
         if surface_design.contour is not None and is_sharp(surface_design.contour):
             margin = "radius 0 about sharp corners, as the recipe has them"
     if radius:
-        values = closed(exact.curvature[:: exact.per]) * recipe.mm
+        values = close_turn(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
         series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
         # what is far from the curve is said by the margin alone
@@ -322,25 +328,25 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
             note=margin,
             axis="curvature",
         )
-    values = closed(exact.radius[:: exact.per]) / recipe.mm
+    values = close_turn(exact.radius[:: exact.per]) / recipe.mm
     series = (Series("radius of curvature", values),)
     bounds = limits(recipe, {RADIUS: (1.0,)}, series, 1.0 / recipe.mm)
     return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""), *bounds), note=margin, axis="radius")
 
 
 def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot]:
-    """Return plots of what the contours in files, of a groove or of a pair's discs, leave to the follower."""
+    """Return plots of the follower's backlash between two contours of files: sides of a groove, or discs of a pair."""
     from camgeo.synthesis.intent import closures_between, intents
     from kin.follower.motion_error import ContactError
     from kin.judge.closure import left_over
 
-    meant = {surface.name: surface for intent in intents(recipe, design) for surface in intent.surfaces}
-    read = {name: (meant[name], contour) for file in files for name, contour in file.contours.items()}
-    found = []
+    intended = {surface.name: surface for intent in intents(recipe, design) for surface in intent.surfaces}
+    contours = {name: (intended[name], contour) for file in files for name, contour in file.contours.items()}
+    plots = []
     for closure in closures_between(design):
-        if not {closure.pushes, closure.stops} <= set(read):
+        if not {closure.pushes, closure.stops} <= set(contours):
             continue
-        first, last = read[closure.pushes], read[closure.stops]
+        first, last = contours[closure.pushes], contours[closure.stops]
         try:
             values = left_over(first, last, SHAFT)
         except ContactError:
@@ -354,17 +360,17 @@ def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot
         plot = Plot(
             f"Backlash, {names}", unit, series, limits=lines, dwells=True, note=note, axis="backlash", holds=(0.0,)
         )
-        found.append(plot)
-    return found
+        plots.append(plot)
+    return plots
 
 
-def closed(values: Array) -> Array:
+def close_turn(values: Array) -> Array:
     """Return values (STEPS,) with the first repeated at the end."""
     return np.append(values, values[0])
 
 
 def rests(recipe: Recipe, design: Design) -> list[Rest]:
-    """Return the dwells: true rests of a follower, or of an output the longest within its band."""
+    """Return the dwells: exact rests of a follower, or the longest times of an output within its band."""
     if design.driven is not None:
         unit = "°" if design.driven.mechanism.unit == "deg" else f" {length_unit(recipe)}"
         scale = DEGREES if unit == "°" else 1.0 / recipe.mm
@@ -381,7 +387,7 @@ def _rest(begin: float, end: float, band: str) -> Rest:
 
 
 def small_unit(recipe: Recipe) -> tuple[str, float]:
-    """Return the name of the unit in which errors are told, and how many of it there are in a mm."""
+    """Return the name of the unit of small errors, and how many of it a mm has."""
     return ("µin", 1e6 / INCH) if recipe.units == "inch" else ("µm", 1e3)
 
 

@@ -25,7 +25,7 @@ SHAFT = TURN * np.arange(STEPS + 1) / STEPS
 
 
 def cam(
-    drawn: list[tuple[str, tuple[Ring, ...]]],
+    contours: list[tuple[str, tuple[Ring, ...]]],
     bore: float | None,
     size: float,
     turned: Array,
@@ -34,14 +34,14 @@ def cam(
     name: str = "cam",
     role: str = "metal",
 ) -> Body:
-    """Return a disc of the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
+    """Return a disc of the cam: pairs of a name and rings, of which the first shows, and the shapes `on_it`.
 
-    A thin dashed line along its own x axis shows the zero of the motion where no mark of the part does: a stroke would
-    look like a mark that is to be made.
+    A thin dashed line along its own x axis shows the zero of the motion where the part has no timing mark: a full line
+    would look like a mark to be made. `turned` (STEPS + 1,) is its angle, rad.
     """
     hole = 0.5 * bore if bore else 0.0
-    shapes = [Shape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(drawn)]
-    edge = edge_ahead(drawn[0][1][0])
+    shapes = [Shape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(contours)]
+    edge = edge_ahead(contours[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
         shapes.append(Shape("zero", dashes(first, edge, size), "zero of the motion"))
@@ -57,14 +57,14 @@ def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
 
 
 def edge_ahead(ring: Ring) -> float:
-    """Where a contour about the shaft crosses the x axis ahead of it."""
+    """Return the x at which a contour about the shaft crosses the x axis ahead of the shaft, mm."""
     beyond = ring.flattened()
     ahead = beyond[beyond[:, 0] > 0.0]
     return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
 def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
-    """Return a contact with the direction in which it pushes, the arrow longer by what it runs `within` a roller."""
+    """Return a contact with an arrow in the direction of the push, longer by the length `within` a roller, mm."""
     return Body(name, CONTACTS, arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
@@ -117,7 +117,7 @@ def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Bo
     pins = tuple(pin(min(size, 0.8 * radius), *end) for end in ends)
     labels = tuple(Label(text, *end) for text, end in zip("AB", ends, strict=True))
     # each arm a shape of its own: where they overlap about the pivot the even-odd rule would leave a hole
-    shapes = (*(Shape("follower", (each,), "arm") for each in arms), *rollers, *pins)
+    shapes = (*(Shape("follower", (arm_ring,), "arm") for arm_ring in arms), *rollers, *pins)
     bodies = [
         Body("arm", "follower", shapes, poses(arm, 0.0, -psi), labels),
         pivot("pivot", arm, 0.0, size, "P", angle=0.0),
@@ -143,9 +143,9 @@ def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], t
     """Return the pair of faces, and for faces A and B the lever of the contact about the pivot (STEPS + 1,), mm."""
     away, half, thick = view.guide.pivot, view.contacts[0].apart, 2.0 * size
     swing = view.travel(SHAFT)[0]
-    found: list[Body] = []
-    touched = view.touched(SHAFT)
-    levers = [np.abs(place - away) for place in touched]
+    bodies: list[Body] = []
+    contact_points = view.touched(SHAFT)
+    levers = [np.abs(place - away) for place in contact_points]
     tall = max(float(lever.max()) for lever in levers) + 3.0 * size
     shapes = []
     for side in (-1.0, 1.0):
@@ -154,8 +154,8 @@ def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], t
         corners = [np.zeros(2), tall * along, tall * along + thick * normal, thick * normal]
         shapes.append(Shape("follower", (Ring.through(np.array(corners)),), "face A" if side < 0.0 else "face B"))
     hub = Shape("follower", (disc(0.0, 0.0, 1.9 * size),), "pair of faces")
-    found.append(Body("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
-    found.append(pivot("pivot", away, 0.0, size, "P", angle=0.0))
-    for name, side, place in zip(("face A", "face B"), (-1.0, 1.0), touched, strict=True):
-        found.append(contact(f"contact on {name}", place.real, place.imag, side * half - swing, size))
-    return found, (levers[0], levers[1])
+    bodies.append(Body("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
+    bodies.append(pivot("pivot", away, 0.0, size, "P", angle=0.0))
+    for name, side, place in zip(("face A", "face B"), (-1.0, 1.0), contact_points, strict=True):
+        bodies.append(contact(f"contact on {name}", place.real, place.imag, side * half - swing, size))
+    return bodies, (levers[0], levers[1])

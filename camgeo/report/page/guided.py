@@ -1,7 +1,7 @@
 """Scenes of the followers that are led on a stem or an arm: roller, knife edge, shoe, flat face, frame of two rollers.
 
-What touches the cam stands in axes of its own: x along the travel, the origin at the roller's centre, or where a
-flat face meets the axis that leads it. What leads it is one body, what touches another.
+The part that touches the cam has axes of its own: x along the travel, the origin at the roller's centre, or where a
+flat face meets the axis of its stem. Stem or arm is one body, the touching part another.
 """
 
 from __future__ import annotations
@@ -33,9 +33,10 @@ MARGIN = 2.0  # of a face or a shoe beyond the contact
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """What touches the cam: shapes, how far along the travel what leads it begins, and how far it reaches there.
+    """Part of a follower that touches the cam, in axes with x along the travel; mm.
 
-    `within` is how far the normal of the contact runs in it before it stands out.
+    `foot` is the x at which its stem or arm begins, `ahead` the greatest x of its shapes, `within` the length of the
+    contact's normal inside them.
     """
 
     name: str
@@ -45,13 +46,13 @@ class Touch:
     within: float = 0.0
 
 
-def touch_of(touch: Round, angle: Array, size: float, which: str = "") -> Touch:
-    """Return what touches the cam about a centre, at pressure angles (n,), and `which` of several it is."""
+def touch_of(touch: Round, angle: Array, size: float, suffix: str = "") -> Touch:
+    """Return a roller, shoe or knife edge at pressure angles (n,), rad; `suffix` of its name tells several apart."""
     match touch:
         case Roller(radius=radius):
-            return roller(radius, size, f"roller{which}")
+            return roller(radius, size, f"roller{suffix}")
         case Shoe(radius=radius):
-            return replace(shoe(radius, angle, size), name=f"shoe{which}")
+            return replace(shoe(radius, angle, size), name=f"shoe{suffix}")
     return knife_edge(size)
 
 
@@ -69,7 +70,7 @@ def knife_edge(size: float) -> Touch:
 
 
 def shoe(radius: float, angle: Array, size: float) -> Touch:
-    """Return a shoe: the arc that pressure angles (n,) use, and as much beyond that a stem stands on it."""
+    """Return a shoe: the arc that pressure angles (n,), rad, use, and a margin at either end."""
     beyond = MARGIN * size / radius
     most = 0.5 * math.pi
     high = min(max(float(angle.max()), 0.0) + beyond, most)
@@ -108,19 +109,19 @@ def on_arm(
     touch: Touch,
     contact: Contact[Oscillating, contacts.Touch],
     s: Array,
-    at: tuple[float, float],
+    origin: tuple[float, float],
     size: float,
     *,
     short: float = 0.0,
 ) -> list[Body]:
-    """Return the follower on an arm at swings s (n,); `at` is where the touch's axes stand in the arm's.
+    """Return the follower on an arm at swings s (n,), rad; `origin` is that of the touch's axes in the arm's, mm.
 
-    The arm's own x leads from the pivot to what touches, its travel is `side` times y. It is drawn to a place that lies
-    `short` nearer the pivot than `at`.
+    The arm's own x leads from the pivot to the touching part, its travel is `side` times y. The arm is drawn to a place
+    `short` mm nearer the pivot than `origin`.
     """
     arm = contact.guide
     angle = math.pi + arm.side * (contact.datum + s)
-    (x, y), c, n = at, np.cos(angle), np.sin(angle)
+    (x, y), c, n = origin, np.cos(angle), np.sin(angle)
     end = (x - short, y + arm.side * touch.foot)
     shape = Shape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
     placed = poses(arm.pivot + x * c - y * n, x * n + y * c, angle + 0.5 * math.pi * arm.side)
@@ -131,11 +132,10 @@ def on_arm(
     ]
 
 
-def touched(surface: Surface, name: str, size: float, within: float = 0.0, *, on: float = 0.0) -> Body:
-    """Return the contact at each shaft angle, with the direction in which the cam pushes.
+def contact_body(surface: Surface, name: str, size: float, within: float = 0.0, *, on: float = 0.0) -> Body:
+    """Return the contact at each shaft angle, with the direction in which the cam pushes: inwards for a ring.
 
-    The follower stands `on` rad ahead of the x axis; the arrow is longer by what it runs `within` it. A ring pushes
-    inwards.
+    The follower stands `on` rad ahead of the x axis; the arrow is longer by the length `within` the roller, mm.
     """
     frame = surface.curve.sample(np.mod(SHAFT + on, TURN))
     back = np.exp(-1j * SHAFT)
@@ -155,9 +155,9 @@ def roller_frame(
     y: float = 0.0,
     facing: float = 0.0,
 ) -> list[Body]:
-    """Return a frame with what touches at x (n,) of a line at y and `apart` mm behind, slotted for the shaft.
+    """Return a slotted frame with one touching part at x (n,) of a line at y and another `apart` mm behind.
 
-    That has a radius `hole`. The second touch is turned by `facing`.
+    The shaft has the radius `hole`, mm. The second part is turned by `facing`, rad.
     """
     first, second = touches
     inner = max(hole, 1.2 * size) + 0.6 * size

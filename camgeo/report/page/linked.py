@@ -1,7 +1,7 @@
-"""Scene of a linkage: square frame, joints, links and dyads in the fixed frame, with what pushes on what.
+"""Scene of a linkage: square frame, joints, links and dyads in the fixed frame, with contacts and forces.
 
-As AS Figure 7 has it: shaft A at the origin, pivot B at (r1, 0), the shaft turning clockwise. The frame's axes are
-u(theta_3) along the coupler and n across; the face of lift S has the normal n, that of S1 has -u.
+Axes of AS Figure 7: shaft A at the origin, pivot B at (r1, 0), the shaft turning clockwise. The frame's axes are
+u(theta_3) along the coupler and n across; the face of lift S has the normal n, the face of S1 has -u.
 """
 
 from __future__ import annotations
@@ -56,12 +56,12 @@ class Driven:
 
     @property
     def frame(self) -> Array:
-        """theta_3."""
+        """Angle theta_3 of the frame (STEPS + 1,), rad."""
         return value(self.solved.linkage.frame)
 
     @property
     def cam(self) -> Array:
-        """Angle by which the cam's own axes are turned: less by the shaft angle than where it began."""
+        """Angle of the cam's own axes (STEPS + 1,), rad; it falls as the shaft turns clockwise."""
         turned: Array = self.frame + QUARTER - self.theta
         return turned
 
@@ -71,7 +71,7 @@ class Driven:
         return self.lifts[0, 1], self.lifts[1, 1]
 
     def joints(self, loop: int) -> dict[str, Joint]:
-        """Joints of a loop."""
+        """Joints of a loop by their letters; loop 0 is the linkage, dyads follow."""
         return self.mechanism.chain.joints(self.solved, loop)
 
     def output(self, loop: int) -> Array:
@@ -80,10 +80,10 @@ class Driven:
 
     def angles(self) -> tuple[Array, Array]:
         """Transmission angle and force angle, rad, from 0 to a quarter turn."""
-        linkage, at = self.mechanism.linkage, self.solved.linkage
-        sine, cosine = linkage.transmission(at)
-        pushed, held = linkage.force(at, *self.slopes)
-        return np.arctan2(np.abs(sine), np.abs(cosine)), np.arctan2(np.abs(pushed), np.abs(held))
+        linkage, state = self.mechanism.linkage, self.solved.linkage
+        sine, cosine = linkage.transmission(state)
+        pushed, resisted = linkage.force(state, *self.slopes)
+        return np.arctan2(np.abs(sine), np.abs(cosine)), np.arctan2(np.abs(pushed), np.abs(resisted))
 
 
 def value(jet: Jet) -> Array:
@@ -93,14 +93,14 @@ def value(jet: Jet) -> Array:
 
 
 class Layers(NamedTuple):
-    """Bodies of a loop: the links, the pivots on the ground, and the joints on top."""
+    """Bodies of a loop in the order of drawing: links, pivots on the ground, joints on top."""
 
     links: list[Body]
     pivots: list[Body]
     joints: list[Body]
 
 
-def linked(driven: Driven, size: float) -> list[Body]:
+def linkage_bodies(driven: Driven, size: float) -> list[Body]:
     """Return frame, links, pivots, contacts and forces, the hindmost first; `size` is that of a joint."""
     mechanism = driven.mechanism
     loops = [
@@ -114,14 +114,14 @@ def linked(driven: Driven, size: float) -> list[Body]:
 def _four_bar(driven: Driven, number: int, linkage: FourBar, size: float) -> Layers:
     joints = driven.joints(number)
     frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
-    joint = _labelled(_joint("joint D", joints["D"], size), "D")
+    joint = _with_label(_joint("joint D", joints["D"], size), "D")
     return Layers([frame, *_rocker(driven, linkage.rocker, size)], [_pivot("pivot B", joints["B"], size, "B")], [joint])
 
 
 def _slider_crank(driven: Driven, number: int, linkage: SliderCrank, size: float) -> Layers:
     joint = driven.joints(number)["D"]
     frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
-    return Layers([_rail(joint, 0.0, size), frame], [], [_labelled(_joint("slide", joint, size), "D")])
+    return Layers([_rail(joint, 0.0, size), frame], [], [_with_label(_joint("slide", joint, size), "D")])
 
 
 def _inverted(driven: Driven, number: int, linkage: InvertedSliderCrank, size: float) -> Layers:
@@ -155,7 +155,7 @@ def _pivot(name: str, joint: Joint, size: float, letter: str = "") -> Body:
     return pivot(name, x, y, size, letter)
 
 
-def _labelled(body: Body, text: str) -> Body:
+def _with_label(body: Body, text: str) -> Body:
     return Body(body.name, body.kind, body.shapes, body.pose, (Label(text, 0.0, 0.0),))
 
 
@@ -202,10 +202,12 @@ def _direction(link: Link) -> Array | float:
 def _arm(driven: Driven, number: int, size: float) -> Body:
     """Return the arm to a dyad, on the link that carries it."""
     dyad, carrier = driven.mechanism.dyads[number - 1], driven.mechanism.chain.carrier(number - 1)
-    own = carrier.name == "frame"
-    role = "follower" if own else "output" if dyad.on == "previous" else "rocker"
+    on_frame = carrier.name == "frame"
+    role = "follower" if on_frame else "output" if dyad.on == "previous" else "rocker"
     stub = Shape(role, (bar((0.0, 0.0), dyad.point, 1.3 * size),), "link")
-    return Body(f"arm to dyad {number}", "follower" if own else "links", (stub,), _pose(carrier.pose(driven.solved)))
+    return Body(
+        f"arm to dyad {number}", "follower" if on_frame else "links", (stub,), _pose(carrier.pose(driven.solved))
+    )
 
 
 def _rod(driven: Driven, number: int, length: float, size: float) -> Body:
@@ -267,43 +269,45 @@ MAKERS: dict[type, Callable[..., Layers]] = {
 }
 
 
-def traced(driven: Driven, traces: Sequence[TracedPoint], mm: float, size: float) -> list[Body]:
+def path_bodies(driven: Driven, traces: Sequence[TracedPoint], mm: float, size: float) -> list[Body]:
     """Return the paths of points of moving links over the turn, and the points."""
-    found = []
+    bodies = []
     for trace in traces:
         x, y = map(value, driven.mechanism.chain.carrier_of(trace.on).pose(driven.solved).point(*trace.point))
         path = Shape("overlay", (Ring.through(np.column_stack([x, y])[::TRACED], closed=False),), trace.name(mm))
         dot = Shape("overlay dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
-        found += [
+        bodies += [
             Body(trace.name(mm), OVERLAYS, (path,), still()),
             Body(f"point of {trace.name(mm).removeprefix('path of ')}", OVERLAYS, (dot,), poses(x, y, 0.0)),
         ]
-    return found
+    return bodies
 
 
 def _contacts(driven: Driven, size: float) -> list[Body]:
     """Return the contacts on the four faces, each with its normal."""
-    found = []
+    contacts = []
     for k in range(4):
         lift, slope = driven.lifts[k]
         direction = driven.frame + (k + 1) * QUARTER
         c, s = np.cos(direction), np.sin(direction)
         x, y = lift * c - slope * s, lift * s + slope * c
-        found.append(contact(f"contact on face {k + 1}", x, y, direction, size))
-    return found
+        contacts.append(contact(f"contact on face {k + 1}", x, y, direction, size))
+    return contacts
 
 
 def _forces(driven: Driven, size: float) -> list[Body]:
-    """Return the force of the frame on the next link, and where the contacts' normals meet, through which it passes.
+    """Return the force of the frame on the next link, and the point where the contacts' normals meet on its line.
 
-    It points to the side to which it has to push while that link moves against a load.
+    The arrow points in the direction of the push while that link moves against a load.
     """
-    at = driven.solved.linkage
-    line = driven.mechanism.linkage.force_line(at, *driven.slopes)
+    state = driven.solved.linkage
+    line = driven.mechanism.linkage.force_line(state, *driven.slopes)
     direction = np.arctan2(line.along_y, line.along_x)
     shapes = arrow(8.0 * size, 1.2 * size, "load")
     centre = (Shape("load dot", (disc(0.0, 0.0, 0.5 * size),)),)
     return [
-        Body("where the contact normals intersect", "forces", centre, poses(*at.instant_centre(*driven.slopes), 0.0)),
+        Body(
+            "where the contact normals intersect", "forces", centre, poses(*state.instant_centre(*driven.slopes), 0.0)
+        ),
         Body("force of the frame on the link it drives", "forces", shapes, poses(line.x, line.y, direction)),
     ]

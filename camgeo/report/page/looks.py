@@ -1,4 +1,4 @@
-"""How the parts of a drawing look, by their role: on a page in light or dark, in a picture in the light colours."""
+"""Colours and lines of the parts of a drawing by role: on a page in light or dark, in a picture in light colours."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camgeo.report.page.asset import asset
 
 
 class Look(NamedTuple):
-    """Names of the colours of fill and edge, empty without; width of the edge in px, opacity of the fill."""
+    """Names of the colours of fill and edge, empty for none; width of the edge in px, opacity of the fill, 0 to 1."""
 
     fill: str
     edge: str
@@ -47,7 +47,7 @@ LOOKS = {
 
 
 def rules() -> str:
-    """Return a rule of CSS for each role, the colours as variables, so that a page in the dark has its own."""
+    """Return rules of CSS, one for each role, with colours as variables, which differ on a dark page."""
     return "".join(
         f".drawing .{role.replace(' ', '.')} {{ fill: {_variable(look.fill)}; fill-opacity: {look.opacity}; "
         f"stroke: {_variable(look.edge)}; stroke-width: {look.width}px; }}\n"
@@ -66,7 +66,7 @@ def colours() -> dict[str, str]:
 
 
 def literal(role: str, px: float) -> str:
-    """Return how a role looks as attributes of SVG, which every program reads; `px` is its length in the drawing."""
+    """Return the look of a role as attributes of SVG; `px` is the length of a px in the drawing's unit."""
     look = LOOKS[role]
     fill, edge = (colours()[name] if name else "none" for name in look[:2])
     text = f'fill="{fill}" stroke="{edge}"'

@@ -1,4 +1,4 @@
-"""The cam itself: its contour as the files draw it and as it is meant, and how far the one is from the other."""
+"""Contour of the cam on a page: as the files draw it, exact, and the error between both."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 
 @dataclass(frozen=True, eq=False)
 class Read:
-    """A file's contours as they were read, mm and as if the shaft turned clockwise.
+    """Contours read from a file, mm, for a shaft that turns clockwise.
 
-    `contours` and `arcs` are those of each surface by its name, `pieces` of all in number. `rings` are for drawing, of
-    each disc in the file: the outline and its holes, of a ring the contour among them. `tolerance`, mm, is the file's.
-    `disc` is the one that it holds, None for all.
+    `contours` and `arcs` are by the names of the surfaces, `pieces` is the number of all pieces. `rings` are for
+    drawing: the outline of each disc in the file with its holes, of a ring the contour among them. `tolerance`, mm, is
+    the file's. `disc` is the disc that the file holds, None for all.
     """
 
     name: str
@@ -66,30 +66,30 @@ class Read:
 
 
 def read(recipe: Recipe, file: FileResult) -> Read | None:
-    """What the judge has read of a drawing or a solid; None where that is no contour, which a check of it says."""
+    """Contours that the judge read from a drawing or a solid; None where it read none, which a check reports."""
     contours = {surface.name: surface.contour for surface in file.surfaces if surface.contour is not None}
     if not contours:
         return None
     size = max(float(np.abs(contour.vertices).max()) for contour in contours.values())
     fine = max(MEASURED * recipe.export.tolerance, ROUNDING * size)
     arcs = {name: contour.as_arcs(fine)[0] for name, contour in contours.items()}
-    rings = tuple(tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in body) for body in file.bodies)
+    rings = tuple(tuple(_drawing_ring(arcs_read.as_arcs(FINE * size)[0]) for arcs_read in body) for body in file.bodies)
     tolerance = recipe.export.tolerance if file.tolerance is None else file.tolerance
     return Read(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, tolerance, file.disc)
 
 
-def together(files: Sequence[Read], discs: int) -> list[list[Read]]:
-    """Files by what shows the cam whole: each with all its discs, or one for each disc."""
-    found: list[list[Read]] = []
+def group_files(files: Sequence[Read], discs: int) -> list[list[Read]]:
+    """Groups of files that show the whole cam: one file with all discs, or one file for each of `discs` discs."""
+    groups: list[list[Read]] = []
     for file in files:
-        if file.disc and found and found[-1][-1].disc == file.disc - 1:
-            found[-1].append(file)
+        if file.disc and groups and groups[-1][-1].disc == file.disc - 1:
+            groups[-1].append(file)
         elif not file.disc:
-            found.append([file])
-    return [group for group in found if group[0].disc is None or len(group) == discs]
+            groups.append([file])
+    return [group for group in groups if group[0].disc is None or len(group) == discs]
 
 
-def _drawn(arcs: Arcs) -> Ring:
+def _drawing_ring(arcs: Arcs) -> Ring:
     step = -(-len(arcs) // MOST_PIECES)
     if step > 1:
         return Ring.through(arcs.start[::step])
@@ -100,8 +100,8 @@ def _drawn(arcs: Arcs) -> Ring:
 class Exact:
     """The exact contour at equal steps of the angle at which it is touched, `per` for each of `STEPS` steps.
 
-    `point`, `normal` (STEPS * per, 2), `radius` of curvature and `curvature` (STEPS * per,) of the base curve, which is
-    the pitch curve of a roller; `kept` says which points belong to the contour that is made.
+    `point`, mm, and `normal` are (STEPS * per, 2); `radius` of curvature, mm, and `curvature` (STEPS * per,) are of the
+    base curve, the pitch curve of a roller; `kept` is true at points that belong to the made contour.
     """
 
     per: int
@@ -120,15 +120,15 @@ class Exact:
         frame, base = curve.sample(t), surface.surface.base.sample(t)
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = base.speed / base.turn
-        kept = np.ones(len(t), dtype=np.bool_)
+        is_kept = np.ones(len(t), dtype=np.bool_)
         if surface.trimmed and surface.contour is not None:
             inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in surface.contour.runs]
-            kept = np.any(inside, axis=0)
-        return Exact(per, frame.point, frame.normal, radius, base.curvature, kept)
+            is_kept = np.any(inside, axis=0)
+        return Exact(per, frame.point, frame.normal, radius, base.curvature, is_kept)
 
     @staticmethod
     def looks(files: list[Read]) -> int:
-        """Return how many places a step needs for the files' errors to show."""
+        """Number of places in each step at which the errors of these files are measured, 1 to `MOST_LOOKS`."""
         pieces = max((file.pieces for file in files), default=0)
         return min(MOST_LOOKS, max(1, math.ceil(PER_PIECE * pieces / STEPS)))
 

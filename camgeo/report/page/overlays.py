@@ -1,4 +1,4 @@
-"""What a page shows over a mechanism where a recipe asks for it: the papers' constructions, turning with the shaft.
+"""Overlays of a page that a recipe asks for: constructions of the papers over the mechanism, turning with the shaft.
 
 Instant centres and contact normals of a yoke (SW Figure 1); chord polygon, isoptic circle and pedal of two contacts on
 one arm (W Figures 4, 5, 8, 9 and section 5); the evolute of any contour. Angles of `step` k are k/STEPS of a turn.
@@ -37,9 +37,9 @@ LINE, DOT, CURVE = "construction", "overlay dot", "overlay"
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """A design with the angle `turned` by which the cam stands and that, `relative`, against what carries the follower.
+    """A design in a turn: `turned` is the angle of the cam, `relative` its angle to the follower's frame.
 
-    Both (STEPS + 1,), rad; `reach` is the cam's, `size` that of a joint, mm.
+    Both (STEPS + 1,), rad; `reach` is the cam's greatest radius, `size` that of a joint, mm.
     """
 
     view: View[Guide, Touch]
@@ -53,7 +53,7 @@ class Stage:
         return Body(name, OVERLAYS, (Shape(role, tuple(rings), name),), poses(0.0, 0.0, self.turned))
 
     def dot(self, name: str, places: Array, letter: str = "") -> Body:
-        """Return a dot at complex places (n,), or at one."""
+        """Return a dot at complex places (n,), mm, n of STEPS + 1 or 1."""
         labels = (Label(letter, 0.0, 0.0),) if letter else ()
         shape = Shape(DOT, (disc(0.0, 0.0, 0.5 * self.size),), name)
         return Body(name, OVERLAYS, (shape,), poses(places.real, places.imag, 0.0), labels)
@@ -65,7 +65,7 @@ class Stage:
         return Body(name, OVERLAYS, (shape,), poses(places.real, places.imag, angle))
 
 
-def overlaid(names: Sequence[str], stage: Stage) -> list[Body]:
+def overlay_bodies(names: Sequence[str], stage: Stage) -> list[Body]:
     """Return the bodies of overlays by their names."""
     return [body for name in names for body in MADE[name](stage)]
 
@@ -94,9 +94,9 @@ def _evolute(stage: Stage) -> list[Body]:
     t = np.mod(next(iter(exact.motion.parameters(SHAFT, stage.relative).values())), TURN)
     frame, centre = surface.curve.sample(t), _centre(surface, t) * standing
     contact = _complex(frame.point) * standing
-    shown = np.where(np.abs(centre) > far, contact, centre)
+    dot = np.where(np.abs(centre) > far, contact, centre)
     normal = stage.line("normal of the contact", contact, -_complex(frame.normal) * standing, (0.0, far))
-    return [*bodies, normal, stage.dot("centre of curvature", shown)]
+    return [*bodies, normal, stage.dot("centre of curvature", dot)]
 
 
 def _centre(surface: Surface, t: Array) -> Array:
@@ -129,7 +129,7 @@ def _instant_centres(view: View[Translating, Flat], stage: Stage) -> list[Body]:
 
 @dataclass(frozen=True, eq=False)
 class Arms:
-    """Two contacts on one arm as W has them: arms of length l that include 2 alpha, and psi over the shaft angle."""
+    """Two contacts on one arm (W 4.1): arms of length l, mm, that include 2 alpha, and psi by the shaft angle, rad."""
 
     length: float
     alpha: float
@@ -142,11 +142,11 @@ class Arms:
         return a, b
 
 
-def _of_rollers(view: View[Oscillating, Roller]) -> Arms:
+def _roller_arms(view: View[Oscillating, Roller]) -> Arms:
     return Arms(view.guide.pivot, view.contacts[0].apart, lambda shaft: view.travel(shaft)[0])
 
 
-def _of_faces(view: View[Oscillating, Flat]) -> Arms:
+def _face_arms(view: View[Oscillating, Flat]) -> Arms:
     return Arms(0.5 * view.guide.pivot, 2.0 * view.contacts[0].apart, lambda shaft: 2.0 * view.travel(shaft)[0])
 
 
@@ -178,15 +178,15 @@ def _isoptic(stage: Stage) -> list[Body]:
     arms = _arms(stage)
     corner = np.full(SHAFT.shape, 2.0 * arms.length, dtype=complex)
     circle = Shape(CURVE, (disc(0.0, 0.0, 2.0 * arms.length),), "isoptic circle, 2 l")
-    found = [Body("isoptic circle", OVERLAYS, (circle,), still())]
+    bodies = [Body("isoptic circle", OVERLAYS, (circle,), still())]
     surface = stage.view.surface(stage.view.contacts[0])
     if surface.radius:
-        found.append(stage.on_cam("curve of the faces", [_ring(_enveloped(surface), closed=True)]))
+        bodies.append(stage.on_cam("curve of the faces", [_ring(_face_envelope(surface), closed=True)]))
     ends = arms.ends(SHAFT)
     beyond = max(float(np.abs(corner - end).max()) for end in ends) + 0.4 * arms.length
     for name, end in zip("AB", ends, strict=True):
-        found.append(stage.line(f"face through {name}", corner, end - corner, (-0.3 * arms.length, beyond)))
-    return [*found, stage.dot("corner of the faces", corner[:1])]
+        bodies.append(stage.line(f"face through {name}", corner, end - corner, (-0.3 * arms.length, beyond)))
+    return [*bodies, stage.dot("corner of the faces", corner[:1])]
 
 
 def _pedal(stage: Stage) -> list[Body]:
@@ -195,17 +195,17 @@ def _pedal(stage: Stage) -> list[Body]:
     frame = surface.base.sample(_GRID)
     point, normal = _complex(frame.point), _complex(frame.normal)
     curve = point if surface.radius else (point * normal.conj()).real * normal
-    found = [stage.on_cam("pedal", [_ring(curve, closed=True)])]
+    bodies = [stage.on_cam("pedal", [_ring(curve, closed=True)])]
     for name, end in zip("AB", arms.ends(SHAFT), strict=True):
         away = (0.0, float(np.abs(end).max()))
-        found += [
+        bodies += [
             stage.line(f"perpendicular to the face through {name}", 0.0 * end, end, away),
             stage.dot(f"foot {name}", end),
         ]
-    return found
+    return bodies
 
 
-def _enveloped(surface: Surface) -> Array:
+def _face_envelope(surface: Surface) -> Array:
     """The curve c* (n,), complex, that faces square to the radii of a pitch curve at its points touch: r u + r' n."""
     frame = surface.base.sample(_GRID)
     point, along = _complex(frame.point), _complex(frame.tangent)
@@ -229,7 +229,7 @@ def _ring(points: Array, *, closed: bool = False) -> Ring:
 
 
 ARMS: dict[Arrangement, Drawer[[], Arms]] = dict(
-    [entry(Oscillating, Roller, _of_rollers, 2), entry(Oscillating, Flat, _of_faces, 2)]
+    [entry(Oscillating, Roller, _roller_arms, 2), entry(Oscillating, Flat, _face_arms, 2)]
 )
 YOKE: dict[Arrangement, Drawer[[Stage], list[Body]]] = dict(
     [entry(Translating, Flat, _instant_centres), entry(Translating, Flat, _instant_centres, 2)]
@@ -241,4 +241,4 @@ MADE: dict[str, Callable[[Stage], list[Body]]] = {
     "pedal": _pedal,
     "evolute": _evolute,
 }
-"""What makes each overlay of `camgeo.recipe.export.OVERLAYS`."""
+"""Function that makes each overlay of `camgeo.recipe.export.OVERLAYS`."""

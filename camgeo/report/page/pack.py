@@ -16,7 +16,7 @@ WHOLE = 2.0**52  # of a script's numbers, up to which differences of whole ones 
 SHARE = 1e-5  # of its range: to this a row of numbers is rounded
 
 
-def packed(values: Array, extent: float | None = None) -> dict[str, Any]:
+def pack_numbers(values: Array, extent: float | None = None) -> dict[str, Any]:
     """Return values (n,) as `{"d": digits, "v": [first, step, step, ...]}` in units of the last digit.
 
     Rounded to `SHARE` of the extent, by default of the range of the values, but to no more than sixteen places. A row

@@ -14,7 +14,7 @@ from camgeo.report.document import finite
 from camgeo.report.failure import headline
 from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.asset import asset
-from camgeo.report.page.pack import packed
+from camgeo.report.page.pack import pack_numbers
 from camgeo.report.page.scene import STEPS
 
 if TYPE_CHECKING:
@@ -28,64 +28,60 @@ LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watch
 
 
 def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
-    """Return the page of a recipe from what it shows and what the report says."""
-    shown = scene(recipe, content, report)
+    """Return the HTML of a recipe's page, complete in one file."""
+    data = scene(recipe, content, report)
+    panels = "".join(capability.panel(report) for capability in registry.in_order(recipe.uses))
     parts = {
-        "note": escape(shown.pop("note")),
+        "note": escape(data.pop("note")),
         "facts": tables.facts(report),
-        "drawing": shown.pop("drawing"),
+        "drawing": data.pop("drawing"),
         "checks": tables.checks(report),
-        "files": tables.written(report),
+        "files": tables.file_table(report),
         "linkage": tables.linkage(report),
-        "panels": tables.preload(report) + _panels(recipe, report),
-        "skipped": tables.skipped(report),
+        "panels": tables.preload(report) + panels,
+        "skipped": tables.skipped_list(report),
         "recipe": escape(recipe.text),
         "script": asset("page.js"),
-        "data": encoded(shown),
+        "data": script_json(data),
     }
-    return head(recipe, report) + _filled("page.html", parts)
-
-
-def _panels(recipe: Recipe, report: dict[str, Any]) -> str:
-    """Return what the capabilities of a recipe show of its report."""
-    return "".join(capability.panel(report) for capability in registry.in_order(recipe.uses))
+    return head(recipe, report) + _fill("page.html", parts)
 
 
 def head(recipe: Order, report: dict[str, Any], more: str = "") -> str:
-    """Return what any page begins with: what it may load, its style with `more` rules, name, verdict and note."""
+    """Return the HTML with which a page begins: what it may load, its style with `more` rules, name, verdict, note."""
     ok = report["ok"]
     parts = {
         "title": escape(recipe.name),
         "about": escape(recipe.about),
-        "verdict": "every check holds" if ok else tables.failing(report["checks"]),
+        "verdict": "every check holds" if ok else tables.failing_count(report["checks"]),
         "state": "ok" if ok else "failed",
         "style": asset("drawing.css") + looks.rules() + asset("page.css") + more,
     }
-    return _filled("head.html", parts)
+    return _fill("head.html", parts)
 
 
-def _filled(name: str, parts: dict[str, str]) -> str:
+def _fill(name: str, parts: dict[str, str]) -> str:
     """Return a file of this folder with its {{parts}} in their places."""
-    first, *rest = asset(name).split("{{")
+    first, *pieces = asset(name).split("{{")
     text = [first]
-    for piece in rest:
+    for piece in pieces:
         part, _, after = piece.partition("}}")
         text += [parts[part], after]
     return "".join(text)
 
 
-def encoded(values: object) -> str:
-    """Return plain data as JSON that may stand within a script element."""
+def script_json(values: object) -> str:
+    """Return plain data as JSON that is safe within a script element."""
     text = json.dumps(finite(values), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return text.replace("<", "\\u003c")
 
 
 def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str, Any]:
-    """Return all that the script draws, as plain data; angles in degrees, lengths in the recipe's unit.
+    """Return the data of the page's script; angles in degrees, lengths in the recipe's unit.
 
-    `drawing` is the mechanism at shaft angle 0 as SVG, the group of body k with the id `body-k`, and `bodies` how each
-    moves: rows of x, y and angle at equal steps of a turn, packed (`camgeo.report.page.pack`). `marks` are the places
-    on the contour, in the axes of the cam, where checks of `report` fail and remarks are made.
+    `drawing` is the mechanism at shaft angle 0 as SVG, the group of body k with the id `body-k`; `bodies` has the
+    motion of each: rows of x, y and angle at equal steps of a turn, packed (`camgeo.report.page.pack`). `marks` are the
+    places on the contour, in the axes of the cam, of failed checks and remarks of `report`.
     """
     view = svg.View.of(content.scene)
     extent = max(view.width, view.height) / view.scale
@@ -101,18 +97,18 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
         "bodies": [_pose(body, extent) for body in content.scene.bodies],
         "plots": [_plot(plot) for plot in content.plots],
         "rests": [[rest.start, rest.length, rest.name] for rest in content.rests],
-        "relative": packed(np.degrees(content.relative)),
+        "relative": pack_numbers(np.degrees(content.relative)),
         "linked": any(plot.over == "relative" for plot in content.plots),
         "contours": {
-            name: [packed(row) for row in (*traced.point.T, *traced.normal.T)]
+            name: [pack_numbers(row) for row in (*traced.point.T, *traced.normal.T)]
             for name, traced in content.contours.items()
         },
         "errors": [
             {
                 "file": ", ".join(filter(None, (error.name, error.surface))),
                 "surface": error.surface,
-                "low": packed(error.low),
-                "high": packed(error.high),
+                "low": pack_numbers(error.low),
+                "high": pack_numbers(error.high),
                 "tolerance": float(f"{error.tolerance:.6g}"),
             }
             for error in content.errors
@@ -121,29 +117,25 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
 
 
 def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return where on a contour checks of the design fail and remarks are made; those of no surface on the first."""
-    found = [(check, "failed") for check in report["checks"] if not check["ok"] and "file" not in check]
-    found += [(remark, "remark") for remark in report["remarks"]]
+    """Return marks for failed checks of the design and remarks; those without a surface are on the first contour."""
+    entries = [(check, "failed") for check in report["checks"] if not check["ok"] and "file" not in check]
+    entries += [(remark, "remark") for remark in report["remarks"]]
     marks = []
-    for entry, kind in found:
+    for entry, kind in entries:
         if entry["at_deg"] is None:
             continue
-        first = next(iter(content.contours))
-        x, y = (
-            content.contours[entry.get("surface", first)]
-            .point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS]
-            .tolist()
-        )
+        contour = content.contours[entry.get("surface", next(iter(content.contours)))]
+        x, y = contour.point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
         text = entry.get("sentence") or headline(entry)
         marks.append({"name": entry["name"], "kind": kind, "at_deg": entry["at_deg"], "x": x, "y": y, "text": text})
     return marks
 
 
 def _pose(body: Body, extent: float) -> list[dict[str, Any]]:
-    """Return x, y and angle of a body; a small movement is reported as finely as a large one."""
+    """Return x, y and angle of a body, packed; a small movement is rounded as finely as a large one."""
     x, y, angle = body.pose.T
-    rows = [packed(row, _fine(row, extent)) for row in (x, y)]
-    return [*rows, packed(np.degrees(angle), _fine(np.degrees(angle), 90.0))]
+    rows = [pack_numbers(row, _fine(row, extent)) for row in (x, y)]
+    return [*rows, pack_numbers(np.degrees(angle), _fine(np.degrees(angle), 90.0))]
 
 
 def _fine(row: np.ndarray[Any, np.dtype[np.float64]], extent: float) -> float:
@@ -155,7 +147,7 @@ def _plot(plot: Plot) -> dict[str, Any]:
     entry: dict[str, Any] = {
         "title": plot.title,
         "unit": plot.unit,
-        "series": [{"name": series.name, **packed(series.values)} for series in plot.series],
+        "series": [{"name": series.name, **pack_numbers(series.values)} for series in plot.series],
         "limits": [[value, name] for value, name in plot.limits if math.isfinite(value)],
         "note": plot.note,
         "axis": plot.axis or plot.title.lower(),

@@ -39,9 +39,11 @@ def png(scene: Scene, step: int) -> bytes:
                     axes.add_patch(_patch(body, shape, step, order))
             for label in body.labels:
                 x, y = body.placed(np.array([[label.x, label.y]]), step)[0].tolist()
-                at = (x + BESIDE * px, y + BESIDE * px)
+                text_place = (x + BESIDE * px, y + BESIDE * px)
                 style: dict[str, Any] = {"family": "serif", "style": "italic", "weight": "bold", "size": 13.0}
-                axes.text(*at, label.text, color=colours()["ink"], ha="center", va="center", zorder=1000, **style)
+                axes.text(
+                    *text_place, label.text, color=colours()["ink"], ha="center", va="center", zorder=1000, **style
+                )
         stream = io.BytesIO()
         figure.savefig(stream, format="png", dpi=DOTS * INCH, metadata={"Software": None})
     return stream.getvalue()

@@ -43,9 +43,9 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """Shapes that move as one: `pose` (STEPS + 1, 3) or, where it stands still, (1, 3), holds x, y, mm, and angle, rad.
+    """Shapes that move as one: `pose` (STEPS + 1, 3), or (1, 3) of a fixed body, has x, y, mm, and angle, rad.
 
-    `kind` groups bodies that a page shows and hides together. An `upright` one looks the same in the mirror.
+    `kind` groups bodies that a page shows and hides together. An `upright` body is not mirrored with the scene.
     """
 
     name: str
@@ -61,7 +61,7 @@ class Body:
         return x, y, angle
 
     def placed(self, points: Array, step: int) -> Array:
-        """Return points (n, 2) of the body where they stand at a step."""
+        """Return points (n, 2) of the body's own axes in the scene's axes at a step, mm."""
         x, y, angle = self.at(step)
         c, s = math.cos(angle), math.sin(angle)
         placed: Array = points @ np.array([[c, s], [-s, c]]) + (x, y)
@@ -70,7 +70,7 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Bodies from the hindmost to the foremost, and what is to be said about the drawing."""
+    """Bodies from the hindmost to the foremost, and a note below the drawing."""
 
     bodies: tuple[Body, ...]
     note: str = ""
@@ -89,7 +89,7 @@ class Scene:
         low, high = np.full(2, np.inf), np.full(2, -np.inf)
         for body in self.bodies:
             if body.kind == "forces":
-                continue  # they reach far where they say little
+                continue  # their lines reach far beyond the mechanism
             u, v = np.concatenate([ring.flattened() for shape in body.shapes for ring in shape.rings]).T
             x, y, angle = body.pose[::SEEN].T[:, :, None]
             c, s = np.cos(angle), np.sin(angle)

@@ -31,7 +31,7 @@ BESIDE = 13.0  # px from a joint's middle to that of its letter, along either ax
 
 @dataclass(frozen=True)
 class View:
-    """Where a scene lies in its drawing: a length of 1 is `scale` px, the point (x, y) the upper left corner."""
+    """Place of a scene in its drawing: a length of 1 is `scale` px, (x, y) is the upper left corner; size in px."""
 
     scale: float
     x: float
@@ -49,7 +49,7 @@ class View:
 
 @dataclass(frozen=True)
 class _Pen:
-    """How a drawing is written: decimal digits, and a px in the scene's unit where no style sheet says how it looks."""
+    """Decimal digits of a drawing, and a px in the scene's unit; None where a style sheet gives the looks."""
 
     digits: int
     px: float | None = None
@@ -73,8 +73,8 @@ def still(scene: Scene, step: int, title: str) -> str:
     )
     ground = f'<rect {over} fill="{colours()["ground"]}"/>'
     head = f"<title>{escape(title)}</title>{ground}"
-    shown = [replace(body, shapes=tuple(s for s in body.shapes if OTHER not in s.role)) for body in scene.bodies]
-    scene = replace(scene, bodies=tuple(shown))
+    visible = [replace(body, shapes=tuple(s for s in body.shapes if OTHER not in s.role)) for body in scene.bodies]
+    scene = replace(scene, bodies=tuple(visible))
     return _drawing(scene, step, size, _Pen(scene.digits - 1, LARGE / view.scale), head) + "\n"
 
 
@@ -115,8 +115,8 @@ def _letter(view: View, label: Label, index: int, place_of: Array, pen: _Pen) ->
     x, y = (place_of * (1.0, -1.0) * view.scale + (BESIDE - view.scale * view.x, view.scale * view.y - BESIDE)).tolist()
     text = escape(label.text)
     if pen.px is None:
-        at = f"{label.x:.{pen.digits}f} {label.y:.{pen.digits}f}"
-        return f'<text data-body="{index}" data-at="{at}" x="{x:.1f}" y="{y:.1f}">{text}</text>'
+        data_place = f"{label.x:.{pen.digits}f} {label.y:.{pen.digits}f}"
+        return f'<text data-body="{index}" data-at="{data_place}" x="{x:.1f}" y="{y:.1f}">{text}</text>'
     place = f'x="{x:.1f}" y="{y + DROP * LETTER * LARGE:.1f}"'
     ground = colours()["ground"]
     halo = f'stroke="{ground}" stroke-width="{HALO * LARGE:.1f}" stroke-linejoin="round"'

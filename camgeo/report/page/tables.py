@@ -1,4 +1,4 @@
-"""The report's tables as HTML: checks with failed ones first, files, the linkage, what was skipped."""
+"""Tables of the report as HTML: checks with failed ones first, files, the linkage, skipped things."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camgeo.checks.declared import declaration
 from camgeo.measures.units import in_pounds
 from camgeo.registry.formats import FORMATS
 from camgeo.report.bound import sign, title
-from camgeo.report.document import measured, pieces_word, value_text
+from camgeo.report.document import error_text, pieces_word, value_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,35 +21,35 @@ NONE = "–"
 MANY = 40  # checks, beyond which those of files that hold are folded up
 
 
-def failing(checks: Sequence[dict[str, Any]]) -> str:
-    """Return how many checks fail, in words."""
+def failing_count(checks: Sequence[dict[str, Any]]) -> str:
+    """Return the number of failed checks in words: `2 checks of 30 fail`."""
     count = sum(not check["ok"] for check in checks)
     return f"{count} check{'s' * (count != 1)} of {len(checks)} fail{'s' * (count == 1)}"
 
 
 def checks(report: dict[str, Any]) -> str:
-    """Return the table of checks, failed ones first; a place is a button that turns the shaft there.
+    """Return the table of checks, failed ones first; a place is a button that turns the shaft to it.
 
-    Of many, those of files that hold are folded up, file by file.
+    Of more than `MANY`, the checks of files that hold are folded up, file by file.
     """
-    shown: list[dict[str, Any]] = sorted(report["checks"], key=lambda check: bool(check["ok"]))
+    listed: list[dict[str, Any]] = sorted(report["checks"], key=lambda check: bool(check["ok"]))
     folded: dict[str, list[dict[str, Any]]] = {}
-    if len(shown) > MANY:
-        for check in shown:
+    if len(listed) > MANY:
+        for check in listed:
             if check["ok"] and check.get("file"):
                 folded.setdefault(check["file"], []).append(check)
-        shown = [check for check in shown if not check["ok"] or not check.get("file")]
+        listed = [check for check in listed if not check["ok"] or not check.get("file")]
     linked = "linkage" in report
     noted = [_remark(remark) for remark in report.get("remarks", ())]
     head = ("", "check", "value", "unit", "limit", "at", "file")
-    failing_first = sum(not check["ok"] for check in shown)
-    rows = [_check(check, linked=linked) for check in shown]
+    failing_first = sum(not check["ok"] for check in listed)
+    rows = [_check(check, linked=linked) for check in listed]
     text = html_table("Checks", head, [*rows[:failing_first], *noted, *rows[failing_first:]], "checks")
-    for file, held in folded.items():
-        rows = [_check(check, linked=linked) for check in held]
-        told = f"{len(held)} check{'s' * (len(held) != 1)} of {escape(file)} hold{'s' * (len(held) == 1)}"
+    for file, holding in folded.items():
+        rows = [_check(check, linked=linked) for check in holding]
+        heading = f"{len(holding)} check{'s' * (len(holding) != 1)} of {escape(file)} hold{'s' * (len(holding) == 1)}"
         table = html_table(f"Checks of {escape(file)}", head, rows, "checks")
-        text += f'<details class="file"><summary>{told}</summary>{table}</details>'
+        text += f'<details class="file"><summary>{heading}</summary>{table}</details>'
     return text
 
 
@@ -57,7 +57,9 @@ def _check(check: dict[str, Any], *, linked: bool) -> str:
     side = {">=": "≥", "<=": "≤"}.get(sign(check), sign(check))
     bound = check.get("pounds", check).get("limit")
     limit = NONE if bound is None else f"{escape(side)} {number(bound)}"
-    over = "relative" if linked and _is_in_frame(check) else "shaft"
+    declared = declaration(check["name"])
+    # a check of the cam in its frame has the relative angle as its place (docs/report.md)
+    over = "relative" if linked and declared is not None and declared.in_frame else "shaft"
     state = ("ok", "holds") if check["ok"] else ("failed", "fails")
     return _row(state, check, limit, over, check.get("detail", ""))
 
@@ -70,31 +72,27 @@ def _remark(remark: dict[str, Any]) -> str:
 
 def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, text: str) -> str:
     """Return the row of a check or a remark; `state` is its class and its word."""
-    shown = check.get("pounds", check)
-    value = number(shown["value"])
+    figures = check.get("pounds", check)
+    value = number(figures["value"])
     if state[1] == "holds" and check["value"] is not None:
-        value = _hinted(value_text({**check, **shown}), shown["value"])
+        value = _with_hint(value_text({**check, **figures}), figures["value"])
     detail = f'<div class="detail">{escape(text)}</div>' if text else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
-        f"<td>{beside(shown['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
+        f"<td>{beside(figures['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
         f"{_cell(place_button(check['at_deg'], over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
 
-def _is_in_frame(check: dict[str, Any]) -> bool:
-    """Whether a check concerns the cam in its frame alone: its place is the relative angle then (docs/report.md)."""
-    declared = declaration(check["name"])
-    return declared is not None and declared.in_frame
-
-
-def written(report: dict[str, Any]) -> str:
+def file_table(report: dict[str, Any]) -> str:
     """Return the table of files."""
     rows = []
-    for file in ({**one, **surface} for one in report["files"] for surface in one.get("surfaces") or [{}]):
+    for file in (
+        {**file_entry, **surface} for file_entry in report["files"] for surface in file_entry.get("surfaces") or [{}]
+    ):
         if file.get("stale"):
             cells = ["left as it was", *[NONE] * 6]
         else:
@@ -121,23 +119,23 @@ def written(report: dict[str, Any]) -> str:
 
 
 def linkage(report: dict[str, Any]) -> str:
-    """Return the figures of the linkage; nothing without one."""
+    """Return the section of the linkage; empty for a recipe without one."""
     section = report.get("linkage")
     if section is None:
         return ""
     text = [
         f'<tr><th scope="row">{name}</th><td class="number">{_error(value, {})}</td><td>{_unit(unit)}</td>'
-        f"<td>{place_button(at, 'shaft')}</td></tr>"
-        for name, value, unit, at in _linkage_rows(section)
+        f"<td>{place_button(shaft_deg, 'shaft')}</td></tr>"
+        for name, value, unit, shaft_deg in _linkage_rows(section)
     ]
     spans = [("binds", section["binds_at_deg"]), ("would turn the shaft back", section["reverses_at_deg"])]
-    told = "".join(
-        f'<p class="failed">It {what} from {number(a)}° to {number(b)}° of the relative angle.</p>'
-        for what, found in spans
-        for a, b in found
+    warnings = "".join(
+        f'<p class="failed">It {verb} from {number(a)}° to {number(b)}° of the relative angle.</p>'
+        for verb, ranges in spans
+        for a, b in ranges
     )
     head = html_table(f"Linkage: {section['kind']}", ("figure", "value", "unit", "at"), text)
-    return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{told}{head}</section>'
+    return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{warnings}{head}</section>'
 
 
 def _linkage_rows(section: dict[str, Any]) -> list[Row]:
@@ -172,11 +170,11 @@ def _linkage_rows(section: dict[str, Any]) -> list[Row]:
 
 
 def preload(report: dict[str, Any]) -> str:
-    """Return the force of a preload by interference, and what load takes a contact away; nothing without one."""
+    """Return the section of the preload: its force, and the loads that lift contacts off; empty without a preload."""
     section = report.get("preload")
     if section is None:
         return ""
-    told = f"The metal and both contacts overlap by {number(section['interference'])} {section['unit']} together."
+    sentence = f"The metal and both contacts overlap by {number(section['interference'])} {section['unit']} together."
     table = ""
     if "force" in section:
         force = section["force"]
@@ -185,32 +183,32 @@ def preload(report: dict[str, Any]) -> str:
             for word, key in (("least", "min"), ("greatest", "max"))
         ]
         cells += [
-            (f"load that lifts {one['contact']} off", one["load"], one["unit"], one["at_deg"])
-            for one in section["lost"]
+            (f"load that lifts {contact['contact']} off", contact["load"], contact["unit"], contact["at_deg"])
+            for contact in section["lost"]
         ]
         table = figure_table("Preload", cells, report["units"])
-    return f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{told}</p>{table}</section>'
+    return (
+        f'<section aria-labelledby="preload-head"><h2 id="preload-head">Preload</h2><p>{sentence}</p>{table}</section>'
+    )
 
 
 def figure_table(title: str, figures: Sequence[Row], units: str) -> str:
-    """Return a table of figures with their units and places; of a recipe in inches in pounds, N behind."""
+    """Return a table of figures, units and places; for a recipe in inches in pounds, with the SI value behind."""
     rows = []
-    for name, si_value, si, at in figures:
+    for name, si_value, si, shaft_deg in figures:
         value, unit = in_pounds(units, si_value, si)
         cells = f'<td class="number">{number(value)}</td><td>{beside(unit, si_value, si)}</td>'
-        cells += f"<td>{place_button(at, 'shaft')}</td>"
+        cells += f"<td>{place_button(shaft_deg, 'shaft')}</td>"
         rows.append(f'<tr><th scope="row">{escape(name)}</th>{cells}</tr>')
     return html_table(title, ("figure", "value", "unit", "at"), rows)
 
 
-def skipped(report: dict[str, Any]) -> str:
-    """Return what was left out and why; of the page itself there is nothing to say."""
-    items = [item for item in report["skipped"] if not _is_page(item["what"])]
+def skipped_list(report: dict[str, Any]) -> str:
+    """Return the items of a list of things that were left out, with the reasons; the page itself is not listed."""
+    words = {item["what"] for item in report["skipped"]}
+    pages = {word for word in words if word in FORMATS and FORMATS[word].summary}
+    items = [item for item in report["skipped"] if item["what"] not in pages]
     return "".join(f"<li><b>{escape(item['what'])}</b>: {escape(item['why'])}</li>" for item in items)
-
-
-def _is_page(word: str) -> bool:
-    return word in FORMATS and FORMATS[word].summary
 
 
 def facts(report: dict[str, Any]) -> str:
@@ -225,21 +223,21 @@ def facts(report: dict[str, Any]) -> str:
 
 
 def number(value: float | None) -> str:
-    """Return a figure to six digits, the exact one as a hint where that says more."""
-    return NONE if value is None else _hinted(f"{value:.6g}", value)
+    """Return a figure to six digits, with a hint of the exact value where it has more."""
+    return NONE if value is None else _with_hint(f"{value:.6g}", value)
 
 
 def degrees(value: float) -> str:
-    """Return an angle, degrees, to a hundredth, the exact one as a hint."""
-    return _hinted(f"{value:.2f}", value)
+    """Return an angle, degrees, to a hundredth, with the exact value as a hint."""
+    return _with_hint(f"{value:.2f}", value)
 
 
 def _error(value: float | None, file: dict[str, Any]) -> str:
-    """Return a measured error of a file; what only rounding made is called that."""
-    return NONE if value is None else _hinted(measured(value, limit=file.get("tolerance")), value)
+    """Return a measured error of a file; `below rounding` where it is only rounding."""
+    return NONE if value is None else _with_hint(error_text(value, limit=file.get("tolerance")), value)
 
 
-def _hinted(short: str, value: float) -> str:
+def _with_hint(short: str, value: float) -> str:
     return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
@@ -263,13 +261,13 @@ def _cell(text: str, kind: str = "") -> str:
 
 
 def beside(unit: str, value: float | None, si: str) -> str:
-    """Return a unit as it is read, behind one of pounds the value in N, N m or N/mm²."""
+    """Return a unit for reading; behind a unit of pounds stands the value in N, N m or N/mm²."""
     behind = "" if unit == si or value is None else f" ({value:.6g} {si})"
     return escape(_unit(f"{unit}{behind}"))
 
 
 def _unit(name: str) -> str:
-    """Return a unit as it is read."""
+    """Return a unit with raised digits and the sign for degrees."""
     return name.replace("^2", "²").replace("^3", "³").replace("deg", "°")
 
 

@@ -13,7 +13,7 @@ import pytest
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from camgeo.report.document import encoded
+from camgeo.report.document import as_json
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 
@@ -49,7 +49,7 @@ def recipe(train: str = TRAIN, cam: str = CAM) -> Recipe:
 
 def section(recipe: Recipe) -> dict[str, Any]:
     report = pipeline.check(recipe).report
-    found: dict[str, Any] = json.loads(encoded(report))["dynamics"]
+    found: dict[str, Any] = json.loads(as_json(report))["dynamics"]
     return found
 
 
