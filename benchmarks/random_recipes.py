@@ -292,6 +292,9 @@ class Draw:
                 "width": self.fixed(0.8),
                 "length": self.fixed(2),
             }
+        if room > 16 and "bolts" not in part and "dowel" not in part and self.some():
+            across = {"length": self.fixed(5), "width": self.fixed(self.rng.choice([2, 3]))}
+            part["slot"] = across | {"circle": self.fixed(bore + (16 if hub else 10)), "at": self.angle()}
         if self.some(0.3):
             part["wall"] = self.fixed(0.8)
         return part

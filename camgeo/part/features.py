@@ -8,6 +8,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from camgeo.part.feature import Feature
 
-NAMES = ("keyway", "flat", "hub", "set_screw", "bolts", "dowel", "chamfer", "mark", "lightening")
+NAMES = ("keyway", "flat", "hub", "set_screw", "bolts", "dowel", "slot", "chamfer", "mark", "lightening")
 """In the order of the keys, and in that in which they take their place."""
 FEATURES: tuple[Feature[Any], ...] = tuple(import_module(f"camgeo.part.{name}").FEATURE for name in NAMES)

@@ -107,6 +107,13 @@ def slot(inner: float, outer: float, width: float) -> ArcSpline:
     return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
+def slot_across(radius: float, length: float, width: float, angle: float) -> ArcSpline:
+    """Slot with round ends, `length` over them, square to the ray at an angle, its middle at a radius."""
+    half, end = 0.5 * width, 0.5 * (length - width)
+    points = np.array([[radius + half, -end], [radius + half, end], [radius - half, end], [radius - half, -end]])
+    return ArcSpline(_turned(points, angle), np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
+
+
 def strip(reach: float, width: float, angle: float) -> ArcSpline:
     """Rectangle of this width along a ray, from the origin to a radius."""
     half = 0.5 * width

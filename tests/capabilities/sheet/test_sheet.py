@@ -260,6 +260,14 @@ def test_without_a_thickness_the_face_alone_is_drawn(drawn: list[drawing.Pages],
     demand_clear(drawn[0])
 
 
+def test_a_slot_has_its_sizes_and_its_circle(drawn: list[drawing.Pages], tmp_path: Path) -> None:
+    exported(CAM.replace("bore: 16}", "bore: 16, slot: {length: 12.3, width: 5.1, circle: 52, at: 40}}"), tmp_path)
+    texts = [text.text for text in drawn[0].annotated[0].texts]
+    assert texts[texts.index("slot 5.1 × 12.3") + 1] == "across 40°"
+    assert texts[texts.index("Ø52") + 1] == "slot circle"
+    demand_clear(drawn[0])
+
+
 # --- the DXF ----------------------------------------------------------------------------------------------------------
 
 
