@@ -21,7 +21,10 @@ from kin.law.sources.laws import NAMES
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
 KEYS = either(recipe_table().keys, "and")
-PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer, wall and density"
+PART = (
+    "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, slot, chamfer, mark, lightening, "
+    "outer, wall and density"
+)
 BORE = "give a diameter above 0, or a form such as {square: 10}, {hexagon: 10} or {diameter: 20, fit: H7} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
