@@ -1,7 +1,7 @@
 """A curve as tangent-continuous arcs (docs/theory.md 3): joints free, or biarcs through points of the curve.
 
-Arcs with free joints are fewer (`camgeo.fit.free_arcs`); biarcs are what is left where those are not found, and serve
-where a stretch is so short beside the tolerance that two arcs do. Nodes of biarcs take equal shares of the integral of
+Arcs with free joints are fewer (`camgeo.fit.free_arcs`); biarcs stand in where those are not found, and where a stretch
+is so short beside the tolerance that two arcs do. Nodes of biarcs take equal shares of the integral of
 ``(|kappa'| / (40.5 e))^(1/3) ds``, both arcs of a biarc about equally long. A stretch of constant curvature is one arc.
 """
 
@@ -15,9 +15,9 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.fit import free_arcs
-from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
-from camgeo.fit.free_arcs import Fitted, cross
-from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
+from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, sampled_deviation
+from camgeo.fit.free_arcs import FittedArcs, cross
+from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshare, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
 from camgeo.fit.pieces import ArcSpline, Bound
@@ -37,7 +37,7 @@ DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's 
 MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
 APART = 2.0  # arcs at least between extrema of curvature that are separated
 WIDEST = 2.0  # radians that a biarc may turn through
-ROUND = 0.5  # arcs that the theory has for a stretch, below which it may be a circular arc that is not known as one
+ROUND = 0.5  # arcs foreseen for a stretch, below which it may be a circular arc that is not known as one
 HALF_TURN = math.pi * (1.0 + 1e-9)  # that one arc may turn through; what turns further is several
 FLOOR = 4.0  # times the least tolerance of points and distances: below it arcs are shorter than rounding lets them be
 SLIP = 1e-5  # of the tolerance: how far along the curve the foot of a joint may be off
@@ -64,15 +64,15 @@ class _Biarcs:
 class _Stretch:
     """A stretch of the curve that is fitted by itself, arcs at its ends touching the curve.
 
-    `parts` lie between the extrema of curvature inside it; none where the curve is a circular arc. `biarcs` is the
-    number of arcs in biarcs that the theory has for it. `whole` is its fit where the curve has turned out to be one.
+    `parts` lie between the extrema of curvature inside it; empty where the curve is a circular arc. `biarcs` is the
+    number of arcs in biarcs that the theory foresees. `whole` is the fit of a stretch that proves to be a circular arc.
     """
 
     low: float
     high: float
     parts: tuple[Part, ...] = ()
     biarcs: int = 0
-    whole: Fitted | None = None
+    whole: FittedArcs | None = None
 
 
 def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
@@ -90,16 +90,16 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     aim, limit = USABLE * tolerance, tolerance - 2.0 * rounding(size)
     stretches = _between_extrema(curve, tolerance, limit)
     fits = _free_fits(curve, stretches, min(aim, limit), limit)
-    rest = [
+    remaining = [
         i
         for i, (s, fit) in enumerate(zip(stretches, fits, strict=True))
         if fit is None or (s.whole is None and fit.bulges.size > s.biarcs)
     ]
-    biarcs = _fit_stretches(curve, [(stretches[i].low, stretches[i].high) for i in rest], aim, limit)
-    for i, biarc in zip(rest, biarcs, strict=True):
+    biarcs = _fit_stretches(curve, [(stretches[i].low, stretches[i].high) for i in remaining], aim, limit)
+    for i, biarc in zip(remaining, biarcs, strict=True):
         free = fits[i]
         fits[i] = biarc if free is None or biarc.bulges.size <= free.bulges.size else free
-    points, bulges, outward, inward = Fitted.joined(fit for fit in fits if fit is not None)
+    points, bulges, outward, inward = FittedArcs.join(fit for fit in fits if fit is not None)
     return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
@@ -113,27 +113,27 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
     densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
     check_count(RATIO * sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
-    at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
-    slope = at.turn_slope * at.speed - at.turn * at.speed_slope
+    frames = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
+    slope = frames.turn_slope * frames.speed - frames.turn * frames.speed_slope
     ends = np.cumsum([density.t.size - 2 for density in densities])
-    found = {}
+    divisions = {}
     for stretch, density, end in zip(bent, densities, ends, strict=True):
         whole, inner = None, slice(end + 2 - density.t.size, end)
         if density.total <= ROUND * math.cbrt(tolerance):
-            whole = _round(curve, density, at.tangent[inner], limit)
+            whole = _unknown_circle(curve, density, frames.tangent[inner], limit)
         if whole is None:
-            found[stretch] = _divided(density, slope[inner], tolerance)
+            divisions[stretch] = _split_at_extrema(density, slope[inner], tolerance)
         else:
-            found[stretch] = [_Stretch(*stretch, whole=whole)]
-    return [part for stretch in stretches for part in found.get(stretch, [_Stretch(*stretch)])]
+            divisions[stretch] = [_Stretch(*stretch, whole=whole)]
+    return [part for stretch in stretches for part in divisions.get(stretch, [_Stretch(*stretch)])]
 
 
-def _divided(density: Density, slope: Array, tolerance: float) -> list[_Stretch]:
+def _split_at_extrema(density: Density, slope: Array, tolerance: float) -> list[_Stretch]:
     """A smooth stretch divided at extrema of curvature; `slope` (m - 2,) is that of curvature on the inner grid."""
     extrema = _sign_changes(density.t[1:-1], slope)
     edges = [float(density.t[0]), *extrema, float(density.t[-1])]
     share = np.interp(edges, density.t, density.sum) / math.cbrt(tolerance)
-    out: list[_Stretch] = []
+    divided: list[_Stretch] = []
     parts: list[Part] = []
     begin = 0
     for i, (low, high) in enumerate(pairwise(edges)):
@@ -144,9 +144,9 @@ def _divided(density: Density, slope: Array, tolerance: float) -> list[_Stretch]
         last = high == edges[-1]
         if last or (share[i + 1] - share[begin] >= APART and share[-1] - share[i + 1] >= APART):
             biarcs = math.ceil(0.5 * float(share[i + 1] - share[begin]))
-            out.append(_Stretch(edges[begin], high, tuple(parts), 2 * max(1, biarcs)))
+            divided.append(_Stretch(edges[begin], high, tuple(parts), 2 * max(1, biarcs)))
             parts, begin = [], i + 1
-    return out
+    return divided
 
 
 def _sign_changes(t: Array, value: Array) -> list[float]:
@@ -159,23 +159,20 @@ def _sign_changes(t: Array, value: Array) -> list[float]:
     return changes
 
 
-def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[Fitted | None]:
+def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[FittedArcs | None]:
     """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
     tried = [s.whole is None and sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
-    parts = [part for s, worth in zip(stretches, tried, strict=True) if worth for part in s.parts]
-    found = iter(free_arcs.free_arcs(curve, parts, aim, limit))
-    out: list[Fitted | None] = []
-    for stretch, worth in zip(stretches, tried, strict=True):
-        mine = [next(found) for _ in stretch.parts] if worth else []
-        whole = [part for part in mine if part is not None]
-        if not whole or len(whole) < len(mine):
-            out.append(stretch.whole)
-            continue
-        out.append(Fitted.joined(whole))
-    return out
+    parts = [part for s, is_tried in zip(stretches, tried, strict=True) if is_tried for part in s.parts]
+    fits = iter(free_arcs.free_arcs(curve, parts, aim, limit))
+    results: list[FittedArcs | None] = []
+    for stretch, is_tried in zip(stretches, tried, strict=True):
+        own = [next(fits) for _ in stretch.parts] if is_tried else []
+        whole = [part for part in own if part is not None]
+        results.append(FittedArcs.join(whole) if whole and len(whole) == len(own) else stretch.whole)
+    return results
 
 
-def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[Fitted]:
+def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[FittedArcs]:
     """Circular arcs and biarcs of each stretch: errors seen up to `aim`, proved up to `limit`."""
     slip = _slip(curve, aim)
     # what rounding takes of the tolerance that was asked for
@@ -188,12 +185,12 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
             2.0 * cover,
         )
     tolerance = min(aim, limit)
-    done: dict[int, Fitted] = {}
+    done: dict[int, FittedArcs] = {}
     best: dict[int, float] = {}
     for i, stretch in enumerate(stretches):
         radius = curve.radius(stretch)
         if radius is not None:
-            done[i] = _circular(curve, stretch, radius)
+            done[i] = _circular_arcs(curve, stretch, radius)
     nodes = _first_nodes(curve, {i: stretch for i, stretch in enumerate(stretches) if i not in done}, tolerance)
     settled = dict.fromkeys(nodes, 0)
     for _ in range(TRIES):
@@ -203,27 +200,27 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
         biarcs = _biarcs(curve, low, high, slip)
-        worst, deviation = _strayed(curve, biarcs.chain, tolerance)
+        worst, deviation = _biarc_errors(curve, biarcs.chain, tolerance)
         first = 0
         for i in todo:
-            mine = slice(first, first + nodes[i].size - 1)
-            first = mine.stop
-            reached = float(worst[mine].max())
+            rows = slice(first, first + nodes[i].size - 1)
+            first = rows.stop
+            reached = float(worst[rows].max())
             best[i] = min(best.get(i, math.inf), reached)
             if deviation is not None and reached <= limit:
-                done[i] = _fitted(biarcs, deviation, slice(2 * mine.start, 2 * mine.stop), slip)
+                done[i] = _proved_fit(biarcs, deviation, slice(2 * rows.start, 2 * rows.stop), slip)
             elif deviation is not None or reached > tolerance:
-                nodes[i], settled[i] = _denser(nodes[i], worst[mine], tolerance, settled[i])
-    left = cover + max(best[i] for i in nodes if i not in done)
+                nodes[i], settled[i] = _denser(nodes[i], worst[rows], tolerance, settled[i])
+    least = cover + max(best[i] for i in nodes if i not in done)
     raise ToleranceError(
-        f"arcs within {limit + cover:.3g} mm were not reached; the best were seen within {left:.4g} mm, of which "
+        f"arcs within {limit + cover:.3g} mm were not reached; the best were seen within {least:.4g} mm, of which "
         f"rounding takes {cover:.2g} mm",
-        left,
+        least,
     )
 
 
 def _first_nodes(curve: Curve, bent: dict[int, tuple[float, float]], tolerance: float) -> dict[int, Array]:
-    """Nodes of each stretch that is no circular arc, as many as the theory has it."""
+    """Nodes of each stretch that is no circular arc, as many as the theory foresees."""
     densities = Density.of(curve, np.array(list(bent.values())).reshape(-1, 2), arc_density)
     check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     return {
@@ -234,30 +231,30 @@ def _first_nodes(curve: Curve, bent: dict[int, tuple[float, float]], tolerance: 
     }
 
 
-def _strayed(curve: Curve, chain: Chain, tolerance: float) -> tuple[Array, Deviation | None]:
-    """How far each biarc of a chain is from the curve (n,): as seen, or as proved where all are seen within it."""
-    worst = seen_deviation(curve, chain, LOOKS).reshape(-1, 2).max(axis=1)
+def _biarc_errors(curve: Curve, chain: Chain, tolerance: float) -> tuple[Array, Deviation | None]:
+    """Error of each biarc of a chain (n,), mm: as sampled, or as proved where all samples keep the tolerance."""
+    worst = sampled_deviation(curve, chain, LOOKS).reshape(-1, 2).max(axis=1)
     if not float(worst.max()) <= tolerance:
         return worst, None
     deviation = chain_deviation(curve, chain, tolerance, 2 * LOOKS)
     return deviation.worst.reshape(-1, 2).max(axis=1), deviation
 
 
-def _fitted(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> Fitted:
-    """Some of the arcs, their outward and inward bound widened by what feet were off along the curve."""
+def _proved_fit(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> FittedArcs:
+    """The arcs of some rows, their bounds widened by the slip of feet along the curve, mm."""
     # f is the curve's distance outside the arc: where it is positive the file lies inward
     inward = max(float(deviation.outside[rows].max()), 0.0) + 2.0 * slip
     outward = max(-float(deviation.inside[rows].min()), 0.0) + 2.0 * slip
-    return Fitted(biarcs.points[rows], biarcs.bulges[rows], outward, inward)
+    return FittedArcs(biarcs.points[rows], biarcs.bulges[rows], outward, inward)
 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:
-    """Nodes for the next try: shared anew, then more of them; halved where errors are unknown."""
+    """Nodes for the next try, and tries so far: shared anew, then more; halved where errors are unknown."""
     if not np.isfinite(worst).all():
         return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:])[~np.isfinite(worst)])), 0
     mean = float(np.mean(np.cbrt(worst))) ** 3
     if tried < ROUNDS and mean <= tolerance:
-        return reshared(nodes, worst, DAMPED), tried + 1
+        return reshare(nodes, worst, DAMPED), tried + 1
     count = nodes.size - 1
     factor = math.cbrt(max(mean, tolerance) / tolerance)
     more = max(count + 1, math.ceil(count * max(factor, 1.0 + GROWTH)))
@@ -267,7 +264,7 @@ def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[A
     return spread, 0
 
 
-def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> Fitted:
+def _circular_arcs(curve: Curve, stretch: tuple[float, float], radius: float) -> FittedArcs:
     """One arc for a stretch that is a circular arc, two for more than a half turn."""
     steady = curve.steady(stretch)
     ends = curve.span(np.array([stretch[0]]), np.array([stretch[1]]))
@@ -284,13 +281,13 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> Fitt
         sine, versine = math.sin(half), 1.0 - math.cos(half)
         turned = np.array([cx * sine - cy * versine, cy * sine + cx * versine])
         points = np.vstack([points, points + radius * turned])
-    return Fitted(points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0)
+    return FittedArcs(points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0)
 
 
-def _round(curve: Curve, density: Density, inner: Array, limit: float) -> Fitted | None:
-    """Fewest arcs, a half turn each, of a stretch of constant curvature that is not known to be; None where it is none.
+def _unknown_circle(curve: Curve, density: Density, inner: Array, limit: float) -> FittedArcs | None:
+    """Fewest arcs, of half a turn at most, for a stretch that proves to be a circular arc; else None.
 
-    That is one whose arcs leave in the curve's direction and arrive in it to within rounding, and are proved to hold.
+    It is one if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved to hold.
     `inner` (m - 2, 2) are the curve's tangents on the inner grid.
     """
     first, last = curve.span(density.t[:1], density.t[-1:])
@@ -309,21 +306,21 @@ def _round(curve: Curve, density: Density, inner: Array, limit: float) -> Fitted
     if float(miss.max()) > rounding(curve.size):
         return None
     chain = Chain(a.point, a.tangent, curvature, nodes[:-1], nodes[1:])
-    found = chain_deviation(curve, chain, limit, 2 * LOOKS)
-    outward, inward = max(-float(found.inside.min()), 0.0), max(float(found.outside.max()), 0.0)
-    return Fitted(a.point, bulges, outward, inward) if max(outward, inward) <= limit else None
+    deviation = chain_deviation(curve, chain, limit, 2 * LOOKS)
+    outward, inward = max(-float(deviation.inside.min()), 0.0), max(float(deviation.outside.max()), 0.0)
+    return FittedArcs(a.point, bulges, outward, inward) if max(outward, inward) <= limit else None
 
 
 def _slip(curve: Curve, tolerance: float) -> float:
-    """How far along the curve, in mm, a joint's foot may be off; the bound is widened by it."""
+    """Permitted slip of a joint's foot along the curve, mm; the bound is widened by it."""
     return max(0.25 * rounding(curve.size), SLIP * tolerance)
 
 
 def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
     """Biarcs between the ends of each interval (n,), the feet of their joints known to within `slip` mm.
 
-    The tangents' lengths, which leave one freedom, are equal but where curvature changes faster at one end than at the
-    other: there the arcs' lengths are to make their errors alike, ``|kappa'| s^3``.
+    The tangents' lengths leave one freedom. They are equal unless curvature changes faster at one end: then the arcs'
+    lengths make their errors alike, ``|kappa'| s^3``.
     """
     a, b = curve.span(low, high)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -339,9 +336,9 @@ def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
     leave = a.point + (ratio * length)[:, None] * a.tangent
     joint = (1.0 - share) * leave + share * (b.point - length[:, None] * b.tangent)
     k0, bulge0, _ = _arc_from(a.point, a.tangent, joint)
-    k1, bulge1, far = _arc_from(b.point, -b.tangent, joint)
+    k1, bulge1, end_tangent = _arc_from(b.point, -b.tangent, joint)
     k1, bulge1 = -k1, -bulge1
-    joint_tangent = -far
+    joint_tangent = -end_tangent
     middle, miss = foot(curve, low, high, joint, joint_tangent, enough=slip)
     # a joint whose normal does not meet the curve at `middle` would leave part of the curve without its arc
     lost = miss > 2.0 * slip

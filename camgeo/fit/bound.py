@@ -1,4 +1,4 @@
-"""How far a fitted contour may lie from the exact one."""
+"""Proved bound of a fitted contour's deviation from the exact one."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ class Bound:
         return max(self.outward, self.inward)
 
     def scaled(self, k: float) -> Bound:
-        """Return the bound in a drawing k times as large."""
+        """The bound in a drawing k times as large."""
         return Bound(k * self.outward, k * self.inward)
 
     def widened(self, margin: float) -> Bound:
-        """Return the bound after every point may have moved by `margin` mm more (rounding to a file's precision)."""
+        """The bound after every point may have moved by `margin` mm more, as by rounding in a file."""
         return Bound(self.outward + margin, self.inward + margin)
 
     def wider(self, other: Bound) -> Bound:
-        """Return the greater of both on each side: what holds of two contours."""
+        """The greater of both bounds on each side, which holds for both contours."""
         return Bound(max(self.outward, other.outward), max(self.inward, other.inward))
 
 

@@ -1,4 +1,4 @@
-"""The fits of one contour, each form within its tolerance, made once for all files that ask for it."""
+"""The fits of one contour by form and tolerance, each made once and shared by files."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass()
 class Fits:
-    """The fits of one contour; files that ask for the same one share it. `unsure`, mm: see `formula_rounding`."""
+    """The fits of one contour, made on first use. `unsure`, mm: see `formula_rounding`."""
 
     contour: Curve
     clock: Clock
     unsure: float = 0.0
-    made: dict[tuple[str, float], Outline] = field(default_factory=dict)
+    outlines: dict[tuple[str, float], Outline] = field(default_factory=dict)
 
     @overload
     def within(self, form: Literal["polyline"], tolerance: float) -> Polygon: ...
@@ -30,38 +30,35 @@ class Fits:
     @overload
     def within(self, form: str, tolerance: float) -> Outline: ...
     def within(self, form: str, tolerance: float) -> Outline:
-        """Polygon, arcs or spline within a tolerance in mm.
-
-        Raises ToleranceError where the tolerance cannot be held.
-        """
-        if (form, tolerance) not in self.made:
+        """Polygon, arcs or spline within a tolerance, mm; raises ToleranceError where it cannot be held."""
+        if (form, tolerance) not in self.outlines:
             with self.clock.stage(f"fit {form}"):
-                self.made[form, tolerance] = _fitted(form, self.contour, tolerance, self.unsure)
-        return self.made[form, tolerance]
+                self.outlines[form, tolerance] = _fit(form, self.contour, tolerance, self.unsure)
+        return self.outlines[form, tolerance]
 
 
 def formula_rounding(unsure: float, contour: Curve) -> float:
-    """By how much a recipe's own formula may have moved the contour in rounding, mm; 0 if by no more than usual."""
+    """Rounding error of the contour through a recipe's own formula, mm; 0 if it is no more than usual."""
     from camgeo.fit.nodes import rounding
 
     return unsure if unsure > rounding(contour.size) else 0.0
 
 
-def _fitted(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
-    """Fit within a tolerance of which the formula's rounding takes its share, and the judge's view of it another."""
+def _fit(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
+    """Outline within a tolerance, of which the formula's rounding takes one share and the judge's rounding another."""
     if not unsure:
-        return _exactly_fitted(form, contour, tolerance)
+        return _exact_fit(form, contour, tolerance)
     if 4.0 * unsure > tolerance:
         raise ToleranceError(
             f"{tolerance:.3g} mm cannot be held: digits cancel in the formula, so that it is known to {unsure:.3g} mm "
             f"only; at least {upward(4.0 * unsure, 3)} mm, or write the formula so that they do not",
             4.0 * unsure,
         )
-    outline = _exactly_fitted(form, contour, tolerance - 2.0 * unsure)
+    outline = _exact_fit(form, contour, tolerance - 2.0 * unsure)
     return replace(outline, bound=outline.bound.widened(unsure))
 
 
-def _exactly_fitted(form: str, contour: Curve, tolerance: float) -> Outline:
+def _exact_fit(form: str, contour: Curve, tolerance: float) -> Outline:
     if form == "arcs":
         from camgeo.fit.arcs import fit_arcs
 

@@ -1,4 +1,4 @@
-"""What a cubic span can reach: how closely a polynomial cubic follows a smooth curve, to leading order.
+"""Least error of a cubic span: how closely a polynomial cubic follows a smooth curve, to leading order.
 
 A plane cubic has eight coefficients, two of which only say how fast it is run through: six numbers are free, and it
 meets a curve six times. Write the curve as ``y = f2 x^2 + f3 x^3 + ...`` over its tangent and the cubic as
@@ -100,14 +100,14 @@ def _roots(f: Array) -> Array:
     companion = np.zeros((len(lead), 3, 3))
     companion[:, 0] = -rows[:, 1:] / lead[:, None]
     companion[:, 1, 0] = companion[:, 2, 1] = 1.0
-    found = np.linalg.eigvals(companion)
-    real: Array = np.where(np.abs(found.imag) <= REAL * (1.0 + np.abs(found)), found.real, np.nan)
+    roots = np.linalg.eigvals(companion)
+    real: Array = np.where(np.abs(roots.imag) <= REAL * (1.0 + np.abs(roots)), roots.real, np.nan)
     return real
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """Spans wanted along each of some stretches; `side` to which the nearest cubic misses all along, 0 if to both."""
+class SpanDensity:
+    """Density of spans along stretches; `side` (1 outside, -1) to which the nearest cubic always misses, else 0."""
 
     densities: list[Density]
     side: float
@@ -118,8 +118,8 @@ class Wanted:
         return np.array([density.total for density in self.densities])
 
 
-def spans_wanted(curve: Curve, stretches: Array) -> Wanted:
-    """For each stretch (m, 2), none of which spans a break, the integral of (|c|/864)^(1/6) ds.
+def span_density(curve: Curve, stretches: Array) -> SpanDensity:
+    """Integral of (|c|/864)^(1/6) ds over each stretch (m, 2), none of which spans a break.
 
     Over the sixth root of a tolerance it is the least number of spans, to leading order. Where the curve stands still
     the density is taken as 0.
@@ -135,11 +135,11 @@ def spans_wanted(curve: Curve, stretches: Array) -> Wanted:
     speed, turn = curve.shape.series(middle, 4)
     miss = np.nan_to_num(contact(speed, turn).miss, nan=0.0, posinf=0.0, neginf=0.0)
     value = (np.abs(miss) / LEAST) ** (1.0 / ORDER) * np.abs(speed[0])
-    out, at = [], 0
+    densities, begin = [], 0
     for part in edges:
-        width, mine = np.diff(part), slice(at, at + part.size - 1)
-        at = mine.stop
-        total = np.concatenate([[0.0], np.cumsum(value[mine] * width)])
-        out.append(Density(part, total, float(np.abs(turn[0, mine] * width).sum())))
+        width, rows = np.diff(part), slice(begin, begin + part.size - 1)
+        begin = rows.stop
+        total = np.concatenate([[0.0], np.cumsum(value[rows] * width)])
+        densities.append(Density(part, total, float(np.abs(turn[0, rows] * width).sum())))
     sides = np.sign(miss)
-    return Wanted(out, float(sides[0]) if (sides == sides[0]).all() else 0.0)
+    return SpanDensity(densities, float(sides[0]) if (sides == sides[0]).all() else 0.0)

@@ -1,4 +1,4 @@
-"""How far a chain of lines and arcs lies from the exact curve: proved, not sampled.
+"""Deviation of a chain of lines and arcs from the exact curve: proved, not sampled.
 
 Each piece covers a parameter interval of the curve. With f the curve's distance outside the piece (along the piece's
 normal), beta the angle from the piece's tangent to the curve's and k the piece's curvature,
@@ -98,8 +98,8 @@ def chain_deviation(
     return Deviation(inside, outside)
 
 
-def seen_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
-    """Greatest distance of each piece from the curve at `nodes` equal steps (n,): quick, from below, no proof.
+def sampled_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
+    """Greatest sampled distance of each piece from the curve at `nodes` equal steps (n,), mm: a lower bound.
 
     Infinite where the curve runs backwards along the piece.
     """
@@ -123,19 +123,19 @@ def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tupl
 
 
 def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array, Array]:
-    """Proved range of f and the range seen at the nodes, for each piece (n,) with `nodes` equal steps."""
+    """Proved range of f, and its range at the nodes, for each piece (n,) with `nodes` equal steps."""
     rows = (chain.start, chain.tangent, chain.curvature, chain.low, chain.high)
     step = max(1, BLOCK // nodes)
     blocks = [slice(first, first + step) for first in range(0, chain.low.size, step)]
     if len(blocks) < 2:
         return _ranges_of(curve, chain, nodes)
-    found = [_ranges_of(curve, Chain(*(row[block] for row in rows)), nodes) for block in blocks]
-    low, high, seen_low, seen_high = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    ranges = [_ranges_of(curve, Chain(*(row[block] for row in rows)), nodes) for block in blocks]
+    low, high, seen_low, seen_high = (np.concatenate(parts) for parts in zip(*ranges, strict=True))
     return low, high, seen_low, seen_high
 
 
-class _Seen(NamedTuple):
-    """What nodes on n pieces show: nodes + 1 on each, (n, nodes + 1).
+class _Samples(NamedTuple):
+    """Samples at the nodes on n pieces, nodes + 1 on each: (n, nodes + 1).
 
     `distance` is f and `angle` beta; `speed` and `turn` are the curve's. `forward` (n,) says whether the curve runs
     forward along the piece at every node.
@@ -149,23 +149,25 @@ class _Seen(NamedTuple):
     forward: Mask
 
     @staticmethod
-    def of(curve: Curve, chain: Chain, nodes: int) -> _Seen:
-        """Look at the ends of `nodes` equal steps of each piece."""
+    def of(curve: Curve, chain: Chain, nodes: int) -> _Samples:
+        """Sample the ends of `nodes` equal steps of each piece."""
         t = chain.low[:, None] + (chain.high - chain.low)[:, None] * np.linspace(0.0, 1.0, nodes + 1)
         t[:, -1] = chain.high
         side = np.ones(t.shape, dtype=np.intp)
         side[:, -1] = -1
-        at = curve.sample(t.ravel(), side.ravel())
-        points, tangents = at.point.reshape(*t.shape, 2), at.tangent.reshape(*t.shape, 2)
+        frames = curve.sample(t.ravel(), side.ravel())
+        points, tangents = frames.point.reshape(*t.shape, 2), frames.tangent.reshape(*t.shape, 2)
         f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], points)
         sine = -(tangents[..., 0] * away[..., 0] + tangents[..., 1] * away[..., 1])
         cosine = tangents[..., 1] * away[..., 0] - tangents[..., 0] * away[..., 1]
         forward = np.asarray((cosine > 0.0).all(axis=1))
-        return _Seen(t, f, np.arctan2(sine, cosine), at.speed.reshape(t.shape), at.turn.reshape(t.shape), forward)
+        return _Samples(
+            t, f, np.arctan2(sine, cosine), frames.speed.reshape(t.shape), frames.turn.reshape(t.shape), forward
+        )
 
 
 def _ranges_of(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array, Array]:
-    seen = _Seen.of(curve, chain, nodes)
+    seen = _Samples.of(curve, chain, nodes)
     bounds = curve.cells.over(seen.t[:, :-1].ravel(), seen.t[:, 1:].ravel())
     low_bend, high_bend, confirmed = _bends(seen, bounds, np.repeat(chain.curvature, nodes))
     step, (fa, fb) = np.diff(seen.t).ravel(), _ends(seen.distance)
@@ -178,8 +180,8 @@ def _ranges_of(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Ar
     return bottom, top, seen.distance.min(axis=1), seen.distance.max(axis=1)
 
 
-def _bends(samples: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
-    """Bounds of f'' over each step (n * nodes,), and where they are proved; `k` is the curvature of its piece."""
+def _bends(samples: _Samples, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
+    """Bounds of f'' over each step (n * nodes,), and whether they are proved; `k` is the curvature of its piece."""
     step = np.diff(samples.t).ravel()
     fa, fb = _ends(samples.distance)
     angle = np.maximum(*_ends(np.abs(samples.angle)))
@@ -193,19 +195,19 @@ def _bends(samples: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask
     m_bend = bounds.turn_bend + np.abs(k) * bounds.speed_bend
     m_slope = bounds.turn_slope + np.abs(k) * bounds.speed_slope
     m = np.maximum(np.abs(ma), np.abs(mb)) + square * m_bend
-    # beta and f inside the step: assumed from above with room to spare, then confirmed
+    # beta and f inside the step: assumed with a margin, then confirmed
     size = np.abs(k)
     furthest = np.maximum(np.abs(fa), np.abs(fb))
     first = angle + 0.5 * step * m
     lag = size * speed * (0.5 * first**2 + size * (furthest + 0.5 * step * speed * first))
-    beta_room = angle + 0.5 * step * (m + 2.0 * lag) + 1e-15
-    kf = size * (furthest + 0.5 * step * speed * beta_room)
+    beta_limit = angle + 0.5 * step * (m + 2.0 * lag) + 1e-15
+    kf = size * (furthest + 0.5 * step * speed * beta_limit)
     with np.errstate(divide="ignore", invalid="ignore"):
-        extra = size * speed * (0.5 * beta_room**2 + kf) / (1.0 - kf)
-        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15) & (beta_room < FORWARD)
+        extra = size * speed * (0.5 * beta_limit**2 + kf) / (1.0 - kf)
+        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15) & (beta_limit < FORWARD)
     # f'' = -sigma m up to `correction`; sigma m itself by its end values and its second derivative
     product_bend = bounds.speed_bend * m + 2.0 * bounds.speed_slope * m_slope + speed * m_bend
-    correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend
+    correction = bounds.speed_slope * beta_limit + speed * (extra + 0.5 * m * beta_limit**2) + square * product_bend
     high_bend = np.maximum(-speed_a * ma, -speed_b * mb) + correction
     low_bend = np.minimum(-speed_a * ma, -speed_b * mb) - correction
     return low_bend, high_bend, confirmed
@@ -235,11 +237,11 @@ def foot(curve: Curve, low: Array, high: Array, point: Array, across: Array, *, 
     common tangent of the two arcs.
     """
     t = 0.5 * (low + high)
-    at = curve.sample(t)
-    miss = np.sum((at.point - point) * across, axis=1)
+    frames = curve.sample(t)
+    miss = np.sum((frames.point - point) * across, axis=1)
     for _ in range(FOOT_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
-            move = miss / (at.speed * np.sum(at.tangent * across, axis=1))
+            move = miss / (frames.speed * np.sum(frames.tangent * across, axis=1))
         # the side of the foot is known, as the curve runs forward
         low, high = np.where(miss < 0.0, t, low), np.where(miss > 0.0, t, high)
         moved = t - np.where(np.isfinite(move), move, 0.0)
@@ -248,6 +250,6 @@ def foot(curve: Curve, low: Array, high: Array, point: Array, across: Array, *, 
         if not open_.any():
             break
         t = np.where(open_, moved, t)
-        at = curve.sample(t)
-        miss = np.sum((at.point - point) * across, axis=1)
+        frames = curve.sample(t)
+        miss = np.sum((frames.point - point) * across, axis=1)
     return t, np.abs(miss)

@@ -1,4 +1,4 @@
-"""Straight edges along a curve: where their vertices stand, how high the curve rises over them, and the proof of it."""
+"""Straight edges along a curve: their vertices, the curve's height over them as sampled, and as proved."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame, Run
     from kin.numeric.arrays import Array
 
-EVEN = 0.02  # change of curvature over an edge, of itself, up to which one look in the middle is enough
+EVEN = 0.02  # relative change of curvature over an edge up to which one sample in the middle is enough
 LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedEdges:
     """Edges of one run between nodes (n + 1,), vertices (n + 1, 2) `away` (n + 1,) outside the curve on its normals.
 
-    `lean` (n, 2) is how fast each end's vertex moves towards the edge's outer side with its node. Pieces, which no
+    `lean` (n, 2) is the speed of each end's vertex towards the edge's outer side as its node moves. Pieces, which no
     break interrupts, run from `low` to `high` (m,) and belong to `edge` (m,).
     """
 
@@ -44,7 +44,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Sagittas:
-    """Sagitta of each edge over its vertices, as seen (n,), and its derivatives by the edge's two nodes."""
+    """Sampled sagitta of each edge over its vertices (n,), mm, and its derivatives by the edge's two nodes."""
 
     load: Array
     by_low: Array
@@ -55,8 +55,8 @@ class Sagittas:
 class Edges:
     """Edges with their proved deviation.
 
-    `heights` (n,) is that of each edge, either side, mm. `overhang` is how far the feet of the curve's points can fall
-    beyond the ends of the edge that belongs to them.
+    `heights` (n,) is the deviation of each edge to either side, mm. `overhang`, mm, bounds how far the feet of the
+    curve's points fall beyond the ends of their edge.
     """
 
     vertices: Array
@@ -68,26 +68,26 @@ class Edges:
 
     @property
     def extremes(self) -> tuple[float, float]:
-        """Farthest that the edges are proved to lie outward and inward of the curve, and the curve of them.
+        """Proved greatest distances, outward and inward, mm, of the edges from the curve and of the curve from them.
 
         A point of the curve whose foot lies on its edge is as far from it as `deviation` says, and every point of an
-        edge between two feet has such a point over it. What is left of an edge lies between a foot and the vertex of
-        the same node, nearer to that node than one of the two. A foot beyond the edge's end is `overhang` from it.
+        edge between two feet has such a point over it. The rest of an edge lies between a foot and the vertex of the
+        same node, nearer to that node than one of the two. A foot beyond the edge's end is `overhang` from it.
         """
         outward = max(self.outward, math.hypot(-min(float(self.deviation.inside.min()), 0.0), self.overhang))
         inward = max(self.inward, math.hypot(max(float(self.deviation.outside.max()), 0.0), self.overhang))
         return outward, inward
 
 
-def frames(curve: Curve, run: Run, nodes: Array) -> Frame:
+def node_frames(curve: Curve, run: Run, nodes: Array) -> Frame:
     """Frames at the nodes (n + 1,) of a run; the last one of a closed run is the first again."""
     if not run.closed:
         return curve.sample(nodes, np.where(np.arange(nodes.size) < nodes.size - 1, 1, -1))
-    at = curve.sample(nodes[:-1])
-    return at.joined(at.split(1)[0])
+    frame = curve.sample(nodes[:-1])
+    return frame.joined(frame.split(1)[0])
 
 
-def placed(frame: Frame, run: Run, nodes: Array, away: Array) -> Placed:
+def place_edges(frame: Frame, run: Run, nodes: Array, away: Array) -> PlacedEdges:
     """Edges between vertices that stand `away` (n + 1,) outside the frames at the nodes of a run.
 
     A corner of an open run stays on the curve.
@@ -117,45 +117,45 @@ def placed(frame: Frame, run: Run, nodes: Array, away: Array) -> Placed:
     low, high = np.where(late, np.maximum(low - span, run.low), low), np.where(late, high - span, high)
     behind = -away[:-1] * np.sum(tangent * normal[:-1], axis=1)
     beyond = away[1:] * np.sum(tangent * normal[1:], axis=1)
-    return Placed(nodes, vertices, away, tangent, behind, beyond, lean, low, high, edge)
+    return PlacedEdges(nodes, vertices, away, tangent, behind, beyond, lean, low, high, edge)
 
 
-def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Sagittas:
-    """How high the curve rises over each edge from vertices that stand off by `tolerance`: seen, not proved.
+def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -> Sagittas:
+    """Heights of the curve over edges whose vertices stand off by `tolerance`: sampled, not proved.
 
-    Of an edge whose ends stand on different sides, which crosses an inflection, both sides count. Derivatives are those
-    of the edge's own height where the curve rises highest (envelope theorem).
+    For an edge across an inflection, whose ends stand on different sides, both sides count. Derivatives are those of
+    the edge's own height where the curve rises highest (envelope theorem).
     """
     count = edges.nodes.size - 1
     width = edges.high - edges.low
-    at = curve.sample(edges.low + 0.5 * width)
-    # one look will do where the curve is all but a circle over the edge
+    frame = curve.sample(edges.low + 0.5 * width)
+    # one sample will do where the curve is nearly a circle over the edge
     with np.errstate(divide="ignore", invalid="ignore"):
-        change = np.abs(at.speed_slope / at.speed) + np.abs(at.turn_slope / at.turn)
+        change = np.abs(frame.speed_slope / frame.speed) + np.abs(frame.turn_slope / frame.turn)
     uneven = np.flatnonzero(~(change * width < EVEN))
     piece, reach = np.arange(width.size), 0.5 * width
     if uneven.size:
         piece = np.append(piece, np.repeat(uneven, len(LOOKS)))
         t = edges.low[uneven, None] + width[uneven, None] * np.array(LOOKS)
-        at = at.joined(curve.sample(t.ravel()))
+        frame = frame.joined(curve.sample(t.ravel()))
         reach[uneven] /= len(LOOKS) + 1
         reach = reach[piece]
     edge = edges.edge[piece]
     sense = sides[:-1][edge]
     along = edges.tangent[edge]
-    offset = at.point - edges.vertices[:-1][edge]
+    offset = frame.point - edges.vertices[:-1][edge]
     height = sense * (offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0])
-    slope = sense * (at.tangent[:, 0] * along[:, 1] - at.tangent[:, 1] * along[:, 0])
+    slope = sense * (frame.tangent[:, 0] * along[:, 1] - frame.tangent[:, 1] * along[:, 0])
     # from each place to the top of the parabola there, if that is not beyond half way to the next place
     across = (sides[:-1] != sides[1:])[edge]
-    bend = sense * at.turn
+    bend = sense * frame.turn
     with np.errstate(divide="ignore", invalid="ignore"):
         move = np.where(across | (bend > 0.0), slope / bend, np.sign(slope) * np.inf)
     move = np.clip(np.where(np.isnan(move), 0.0, move), -reach, reach)
-    top = height + at.speed * (slope * move - 0.5 * bend * move**2)
+    top = height + frame.speed * (slope * move - 0.5 * bend * move**2)
     low = np.where(across | (top < -tolerance * (1.0 + 1e-9)), -top, -tolerance)
     load = np.maximum(top, low) + tolerance
-    share = np.sum(offset * along, axis=1) + at.speed * move
+    share = np.sum(offset * along, axis=1) + frame.speed * move
     chord = np.hypot(*(edges.vertices[1:] - edges.vertices[:-1]).T)
     order = np.lexsort((load, edge))
     last = np.searchsorted(edge[order], np.arange(count), side="right") - 1
@@ -165,14 +165,14 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Sagitta
     return Sagittas(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1])
 
 
-def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:
+def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> Edges:
     """Edges with their proved deviation; an edge across a break of the curve is judged on both sides of it."""
     chain = Chain(
         edges.vertices[:-1][edges.edge], edges.tangent[edges.edge], np.zeros(edges.low.size), edges.low, edges.high
     )
-    found = chain_deviation(curve, chain, tolerance, decide=True)
+    deviation = chain_deviation(curve, chain, tolerance, decide=True)
     overhang = -min(0.0, float(edges.behind.min()), float(edges.beyond.min()))
     outward, inward = max(0.0, float(edges.away.max())), max(0.0, -float(edges.away.min()))
     heights = np.zeros(edges.nodes.size - 1)
-    np.maximum.at(heights, edges.edge, found.worst)
-    return Edges(edges.vertices, outward, inward, overhang, found, heights)
+    np.maximum.at(heights, edges.edge, deviation.worst)
+    return Edges(edges.vertices, outward, inward, overhang, deviation, heights)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.fit.deviation import Chain, chain_deviation, radial
-from camgeo.fit.parts import ENDS, refined
+from camgeo.fit.parts import ENDS, refine
 from camgeo.fit.staircase import solve_chains
 from kin.numeric.records import dataclass
 
@@ -47,8 +47,8 @@ CLOSING = 12  # steps that bring it there
 PROOF_LOOKS = 16  # steps of an arc at which its deviation is first proved
 
 
-class Fitted(NamedTuple):
-    """Arcs of a part, proved: points where each begins (n, 2), bulges (n,), farthest outward and inward, mm."""
+class FittedArcs(NamedTuple):
+    """Proved arcs: starting points (n, 2), bulges (n,), greatest deviation outward and inward, mm."""
 
     points: Array
     bulges: Array
@@ -56,10 +56,10 @@ class Fitted(NamedTuple):
     inward: float
 
     @staticmethod
-    def joined(parts: Iterable[Fitted]) -> Fitted:
-        """Arcs of parts that follow one another."""
+    def join(parts: Iterable[FittedArcs]) -> FittedArcs:
+        """Arcs of consecutive parts as one chain."""
         points, bulges, outward, inward = zip(*parts, strict=True)
-        return Fitted(np.concatenate(points), np.concatenate(bulges), max(outward), max(inward))
+        return FittedArcs(np.concatenate(points), np.concatenate(bulges), max(outward), max(inward))
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class _Layout:
 
     @staticmethod
     def of(counts: Sequence[int], rising: Sequence[float]) -> _Layout:
-        """Arcs and joints of parts that take so many arcs each."""
+        """Layout of parts with `counts` arcs each, whose curvature is `rising` (1) or falling (-1)."""
         part = np.repeat(np.arange(len(counts)), counts)
         left = np.arange(part.size) + part
         last = np.cumsum(np.array(counts) + 1) - 1
@@ -99,9 +99,9 @@ class _Layout:
 
 @dataclass(frozen=True)
 class _Joints:
-    """Where arcs meet (m,): `off` outside the curve's point at `t` along the arcs' normal.
+    """Joints of arcs (m,): each is `off`, mm, outside the curve's point at `t`, along the arcs' normal.
 
-    Their tangent is the curve's turned left by `lean`.
+    Their tangent is the curve's turned left by `lean`, rad.
     """
 
     t: Array
@@ -113,7 +113,7 @@ class _Joints:
 class _Arcs:
     """Arcs between joints, and the curve's `frame` (m,) below these.
 
-    Each has its chord (n, 2), the chord's length, and `miss`, by how many mm it does not end in its joint's tangent.
+    Each has its chord (n, 2), the chord's length, and `miss`, mm, by which it does not end in its joint's tangent.
     """
 
     frame: Frame
@@ -125,9 +125,9 @@ class _Arcs:
 
 @dataclass(frozen=True)
 class _Peaks:
-    """Extremes of each arc's deviation (n, 2): how high, by how much of that extrapolated, and how far on they are.
+    """Extremes of each arc's deviation (n, 2): height, the extrapolated part of it, and how far ahead they lie.
 
-    `foot` (n, 2, 2) is the foot on the arc, from where the arc starts.
+    `foot` (n, 2, 2) is the foot on the arc, from the arc's start.
     """
 
     height: Array
@@ -136,16 +136,16 @@ class _Peaks:
     foot: Array
 
 
-def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> list[Fitted | None]:
+def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> list[FittedArcs | None]:
     """Arcs with free joints along parts of a curve, their errors seen up to `aim` and proved up to `limit` mm.
 
-    Each part's arcs begin and end on the curve, in its direction. None stands for a part of which none were found. Cost
-    grows as the number of arcs: many are not tried again and again.
+    Each part's arcs begin and end on the curve, in its direction. None stands for a part for which none were found.
+    Cost grows with the number of arcs, so large numbers are not tried repeatedly.
     """
-    done: list[Fitted | None] = [None] * len(parts)
+    done: list[FittedArcs | None] = [None] * len(parts)
     unit = float(np.finfo(np.float64).eps) * curve.size
     enough = JOINED * unit
-    parts = refined(curve, parts, aim)
+    parts = refine(curve, parts, aim)
     counts = {i: part.count(max(aim - NOISE * unit, 0.5 * aim)) for i, part in enumerate(parts)}
     tried = 0
     for _ in range(RAISED):
@@ -155,22 +155,22 @@ def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> 
         todo = list(counts)
         layout = _Layout.of([counts[i] for i in todo], [parts[i].rising for i in todo])
         t = np.concatenate([parts[i].nodes(counts[i]) for i in todo])
-        joints, frame, level = _levelled(curve, layout, t, aim)
-        arcs = _closed(layout, joints, frame, enough)
+        joints, frame, level = _level_out(curve, layout, t, aim)
+        arcs = _close(layout, joints, frame, enough)
         holds = (level <= aim)[layout.part] & (np.abs(arcs.miss) <= enough)
         inside, outside = np.full(holds.size, -np.inf), np.full(holds.size, np.inf)
         if holds.any():
             chain = arcs.chain
             rows = (chain.start, chain.tangent, chain.curvature, chain.low, chain.high)
-            found = chain_deviation(curve, Chain(*(row[holds] for row in rows)), limit, PROOF_LOOKS)
-            inside[holds], outside[holds] = found.inside, found.outside
+            deviation = chain_deviation(curve, Chain(*(row[holds] for row in rows)), limit, PROOF_LOOKS)
+            inside[holds], outside[holds] = deviation.inside, deviation.outside
         bulges = _bulges(arcs)
         for place, i in enumerate(todo):
-            mine = layout.part == place
+            own = layout.part == place
             # where the curve lies outside an arc the file lies inward of the curve
-            outward, inward = max(-float(inside[mine].min()), 0.0), max(float(outside[mine].max()), 0.0)
+            outward, inward = max(-float(inside[own].min()), 0.0), max(float(outside[own].max()), 0.0)
             if max(outward, inward) <= limit:
-                done[i] = Fitted(arcs.chain.start[mine], bulges[mine], outward, inward)
+                done[i] = FittedArcs(arcs.chain.start[own], bulges[own], outward, inward)
                 del counts[i]
                 continue
             more = counts[i] + 1.0
@@ -180,26 +180,26 @@ def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> 
     return done
 
 
-def _levelled(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Joints, Frame, Array]:
-    """Joints of arcs whose deviations level out, the frames below them, and the greatest deviation seen of each part.
+def _level_out(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Joints, Frame, Array]:
+    """Joints of arcs whose deviations level out, the frames below them, and each part's greatest sampled deviation.
 
-    What arcs miss each other by counts as deviation, and what is extrapolated. Parts that hold `aim` stay as they are.
+    The arcs' misses count as deviation, and so does the extrapolated part. Parts that hold `aim` stay as they are.
     """
     left, right = layout.left, layout.left + 1
     side = np.where(layout.right_end, -1, 1)
     places = np.tile([INNER, 1.0 - INNER], (left.size, 1))
     places[layout.ends[left], 1] = OUTER
     places[layout.ends[right], 0] = 1.0 - OUTER
-    joints = _started(curve, layout, t, side)
+    joints = _first_joints(curve, layout, t, side)
     begin = np.flatnonzero(np.diff(layout.part, prepend=-1))
     foreseen = np.zeros(begin.size)
     for step in range(STEPS + 1):
         span = (joints.t[right] - joints.t[left])[:, None]
         looks = (joints.t[left][:, None] + places * span).ravel()
         both = curve.sample(np.append(joints.t, looks), np.append(side, np.ones(looks.size, dtype=np.intp)))
-        frame, at = both.split(side.size)
+        frame, peak_frames = both.split(side.size)
         arcs = _arcs(layout, joints, frame)
-        peaks = _peaks(layout, arcs, at)
+        peaks = _peaks(layout, arcs, peak_frames)
         places = np.clip(places + np.clip(peaks.move / span, -0.1, 0.1), 0.02, 0.98)
         unsure = np.abs(arcs.miss) + DOUBT * np.abs(peaks.doubt).max(axis=1)
         level = np.maximum.reduceat(np.abs(peaks.height).max(axis=1) + unsure, begin)
@@ -208,20 +208,20 @@ def _levelled(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Joi
             break
         change, foreseen = _newton(layout, joints, arcs, peaks, aim)
         change[settled[layout.part_of_joint]] = 0.0
-        joints = _stepped(layout, joints, arcs, change)
+        joints = _move_joints(layout, joints, arcs, change)
     return joints, frame, level
 
 
-def _started(curve: Curve, layout: _Layout, t: Array, side: NDArray[np.intp]) -> _Joints:
-    """Joints on the curve at `t` (m,), arcs leaning as the theory has it."""
+def _first_joints(curve: Curve, layout: _Layout, t: Array, side: NDArray[np.intp]) -> _Joints:
+    """Joints on the curve at `t` (m,), with the lean that the theory foresees."""
     frame = curve.sample(t, side)
     chord = frame.point[layout.left + 1] - frame.point[layout.left]
-    square = _around(layout, np.sum(chord * chord, axis=1))
+    square = _lesser_at_joints(layout, np.sum(chord * chord, axis=1))
     lean = np.where(layout.ends, 0.0, frame.curvature_slope * square / -12.0)
     return _Joints(t, np.zeros_like(t), lean)
 
 
-def _around(layout: _Layout, value: Array) -> Array:
+def _lesser_at_joints(layout: _Layout, value: Array) -> Array:
     """The lesser of the two arcs' values (n,) at each joint (m,)."""
     least = np.full(layout.ends.size, np.inf)
     least[layout.left] = value
@@ -263,25 +263,25 @@ def _peaks(layout: _Layout, arcs: _Arcs, frame: Frame) -> _Peaks:
 
 
 def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: float) -> tuple[Array, Array]:
-    """One step of Newton's method: how far each joint is to go along the curve and off it, and to turn (m, 3).
+    """One step of Newton's method: moves of each joint along the curve and off it, mm, and its turn, rad (m, 3).
 
-    Also the level that is foreseen for each part. An arc through its two joints and along the direction of the first
+    With it comes the level foreseen for each part. An arc through its two joints and along the direction of the first
     moves, seen from the curve, as their heights h0, h1 and the direction g0 do: by ``(1 - w) h0 + w h1 + (x - s w) g0``
     at a foot ahead by x. A joint that moves along the curve is left behind by its lean, and turns as curvatures differ.
     """
     chain, left, right = arcs.chain, layout.left, layout.left + 1
     curvature = arcs.frame.curvature
-    reach = _around(layout, arcs.length)
+    reach = _lesser_at_joints(layout, arcs.length)
     scale = np.column_stack([ALONG * reach, np.full(reach.size, aim), aim / reach])
     half = np.sum(chain.tangent * arcs.chord, axis=1) / arcs.length
     ahead = arcs.length * half
     lever = 0.5 * arcs.length / half
     bend0, bend1 = curvature[left] - chain.curvature, curvature[right] - chain.curvature
     lean0, lean1 = joints.lean[left], joints.lean[right]
-    one, kink = np.ones_like(lean0), arcs.miss / arcs.length
+    ones, kink = np.ones_like(lean0), arcs.miss / arcs.length
     rows = np.zeros((left.size, 3, 8))
-    rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -one, lever])
-    rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, one, lever])
+    rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -ones, lever])
+    rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, ones, lever])
     rows[:, 0, 7] = -arcs.miss / half
     w = np.sum(peaks.foot**2, axis=2) / (arcs.length**2)[:, None]
     x = np.sum(peaks.foot * chain.tangent[:, None], axis=2) - ahead[:, None] * w
@@ -299,10 +299,10 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     return change * scale, level * aim
 
 
-def _stepped(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -> _Joints:
-    """Joints moved: in a part by a share of it where one would go too far, not at all where one has nowhere to go."""
+def _move_joints(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -> _Joints:
+    """Joints moved by `change`; a part by a share of it if a joint would go too far, not at all if one is nan."""
     move = change[:, 0] / arcs.frame.speed
-    reach = MOST_MOVE * _around(layout, arcs.chain.high - arcs.chain.low)
+    reach = MOST_MOVE * _lesser_at_joints(layout, arcs.chain.high - arcs.chain.low)
     share = np.where(np.isfinite(change).all(axis=1), reach / np.maximum(np.abs(move), reach), 0.0)
     begin = np.flatnonzero(np.diff(layout.part_of_joint, prepend=-1))
     share = np.minimum.reduceat(share, begin)[layout.part_of_joint]
@@ -310,7 +310,7 @@ def _stepped(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -> _J
     return _Joints(joints.t + move, joints.off + off, joints.lean + lean)
 
 
-def _closed(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Arcs:
+def _close(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Arcs:
     """Arcs that join in tangent to within `enough` mm, their joints where they were along the curve.
 
     Of all changes of offsets and leans that do it the least is taken, leans weighed so that what one arc asks of a

@@ -1,4 +1,4 @@
-"""Cubic spans between two points of a curve, or of a parallel beside it: the handles with which they stray least.
+"""Cubic spans between two points of a curve, or of a parallel beside it: the handles of least deviation.
 
 Points and directions are complex numbers here, x + iy.
 """
@@ -39,16 +39,16 @@ def _weights(u: Array) -> tuple[Array, Array]:
     return 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
 
 
-def _freed() -> Array:
-    """Projection (m, m) of distances at `PLACES` that leaves little of the humps (x (x^2 - 1))^2."""
+def _without_humps() -> Array:
+    """Projection (m, m) of distances at `PLACES` that removes most of the humps (x (x^2 - 1))^2."""
     x = 2.0 * PLACES - 1.0
     hump = (x * (x * x - 1.0)) ** 2
     freed: Array = np.eye(x.size) - (1.0 - HUMP) * hump[:, None] * hump / np.sum(hump * hump)
     return freed
 
 
-def _between() -> tuple[Array, Array]:
-    """Places in a span at which its error is seen, and the matrix that interpolates there from 0, `PLACES` and 1."""
+def _interpolation() -> tuple[Array, Array]:
+    """Places in a span at which its error is sampled, and the matrix that interpolates there from 0, `PLACES` and 1."""
     known = np.concatenate([[0.0], PLACES, [1.0]])
     u = np.linspace(0.0, 1.0, LOOKS + 1)[1:-1]
     others = [np.delete(known, i) for i in range(known.size)]
@@ -56,8 +56,8 @@ def _between() -> tuple[Array, Array]:
     return u, np.array(rows)
 
 
-FREED = _freed()
-SEEN_AT, BETWEEN = _between()
+WITHOUT_HUMPS = _without_humps()
+SAMPLED_AT, INTERPOLATION = _interpolation()
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Spans:
     arriving: Complex
 
     def take(self, rows: NDArray[np.intp]) -> Spans:
-        """Return some of them."""
+        """The spans at some rows."""
         return Spans(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
     def control(self, handles: Array) -> Array:
@@ -83,11 +83,11 @@ class Spans:
         return control
 
 
-def handled(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, Array, Array]:
+def cubic_spans(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, Array, Array]:
     """Cubic spans (n, 4, 2) between points `out` mm outside the curve.
 
-    With them comes how far each is seen to stray from the curve, and from the parallel through its ends (n,). Handles
-    are sought from two beginnings, as the equations for them may have more than one solution; the closer span counts.
+    With them come the sampled distances, mm, of each from the curve and from the parallel through its ends (n,).
+    Handles are sought from two guesses, as their equations may have more than one solution; the closer span counts.
     """
     a, b = curve.span(low, high)
     leaving, arriving = plane(a.tangent), plane(b.tangent)
@@ -103,10 +103,10 @@ def handled(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, A
     guess = np.concatenate([leaning, np.column_stack([third, third])])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         # at a cusp nothing is finite: the error comes out unknown, and the span is divided
-        handles, t, size = settled(curve, spans.take(both), guess, out)
+        handles, t, size = fit_handles(curve, spans.take(both), guess, out)
         first = np.nan_to_num(size.reshape(2, -1), nan=np.inf)
         chosen = np.argmin(first, axis=0) * low.size + np.arange(low.size)
-        gap = seen(curve, spans, handles[chosen], t[chosen])
+        gap = sampled_gap(curve, spans, handles[chosen], t[chosen])
     # what is as short as that is no farther off, however little its directions mean
     most = 4.0 * (chord + np.maximum(a.speed, b.speed) * (high - low))
     strayed, beside = (np.abs(part).max(axis=1) for part in (gap, gap - out))
@@ -130,29 +130,29 @@ class _Near:
 
     @staticmethod
     def of(curve: Curve, spans: Spans, u: Array, t: Array) -> _Near:
-        """See the places u (m,) of spans from the curve at t (n, m)."""
-        at = curve.sample(t.ravel())
-        along = plane(at.tangent).conj().reshape(t.shape)
-        one, two = _weights(u)
+        """Points of spans at u (m,), seen from the curve at t (n, m)."""
+        frames = curve.sample(t.ravel())
+        along = plane(frames.tangent).conj().reshape(t.shape)
+        first, second = _weights(u)
         share = u * u * (3.0 - 2.0 * u)
         base = spans.start[:, None] + share * (spans.end - spans.start)[:, None]
         return _Near(
             t,
-            at.speed.reshape(t.shape),
-            at.curvature.reshape(t.shape),
-            at.curvature_slope.reshape(t.shape),
-            (base - plane(at.point).reshape(t.shape)) * along,
-            one * spans.leaving[:, None] * along,
-            two * spans.arriving[:, None] * along,
+            frames.speed.reshape(t.shape),
+            frames.curvature.reshape(t.shape),
+            frames.curvature_slope.reshape(t.shape),
+            (base - plane(frames.point).reshape(t.shape)) * along,
+            first * spans.leaving[:, None] * along,
+            second * spans.arriving[:, None] * along,
         )
 
     def gaps(self, handles: Array) -> tuple[Array, Array, Array, Array]:
-        """Distance outside the curve with handles (n, 2), its gradient along and outward, and how far the feet are off.
+        """Distance outside the curve with handles (n, 2), its gradient along and outward, and the feet's offset (n, m).
 
-        By the circle of curvature and the curvature's own slope: off by the fourth power of the last. All (n, m).
+        By the circle of curvature and the slope of the curvature; the error is of the fourth power of the offset.
         """
-        at = self.offset + handles[:, :1] * self.first - handles[:, 1:] * self.second
-        x, y = at.real, -at.imag
+        points = self.offset + handles[:, :1] * self.first - handles[:, 1:] * self.second
+        x, y = points.real, -points.imag
         up, across = 1.0 + self.curvature * y, self.curvature * x
         root = np.hypot(up, across)
         foot = x / np.maximum(up, 1e-3)
@@ -160,13 +160,13 @@ class _Near:
         return gap, across / root, up / root, foot
 
 
-def settled(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple[Array, Array, Array]:
-    """Handles (n, 2) whose span strays least from the curve, in the mean of squares at `PLACES`.
+def fit_handles(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple[Array, Array, Array]:
+    """Handles (n, 2) of the span nearest to the curve, in the mean of squares at `PLACES`.
 
-    With them come the feet of the places (n, m) and the squares' sum (n,). Where the ends lie `out` mm outside, it is
-    the parallel there that the span is to keep to, and the humps to both sides of its middle, which go as far beyond
-    the curve, hardly count. Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the
-    nearest cubic ceases to exist the equations have no solution. Any handles will do, the proof takes them as they are.
+    With them come the feet of the places (n, m) and the squares' sum (n,). Where the ends lie `out` mm outside, the
+    span is to keep to the parallel there, and the humps to both sides of its middle, which go as far beyond the curve,
+    hardly count. Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the nearest cubic
+    ceases to exist the equations have no solution. Any handles will do, the proof takes them as they are.
     """
     width = spans.high - spans.low
     low, high = spans.low[:, None], spans.high[:, None]
@@ -179,24 +179,24 @@ def settled(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple[Arr
         if number > 1 and not (np.abs(t - near.t).max(axis=1) > NEAR * width).any():
             break
         near = _Near.of(curve, spans, PLACES, t)
-        handles, size = _stepped(near, handles, third, out)
+        handles, size = _improve_handles(near, handles, third, out)
     return handles, t, size
 
 
-def _stepped(near: _Near, handles: Array, third: Array, out: float) -> tuple[Array, Array]:
-    """Handles (n, 2) that stray least by what is known near the feet, and the sum of squares (n,)."""
+def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> tuple[Array, Array]:
+    """Handles (n, 2) of least deviation by the expansion near the feet, and the sum of squares (n,)."""
 
-    def looked(handles: Array) -> tuple[Array, Complex]:
+    def gaps_and_gain(handles: Array) -> tuple[Array, Complex]:
         gap, along, outward, _ = near.gaps(handles)
         slope = along + 1j * outward
         first, second = (slope * near.first).real * handles[:, :1], (slope * near.second).real * handles[:, 1:]
         gain: Complex = first - 1j * second
         if out:
-            gap, gain = (gap - out) @ FREED, gain @ FREED
+            gap, gain = (gap - out) @ WITHOUT_HUMPS, gain @ WITHOUT_HUMPS
         return gap, gain
 
     # the two columns of the gain are one complex number, so that half as many sums do
-    gap, gain = looked(handles)
+    gap, gain = gaps_and_gain(handles)
     size = (gap * gap).sum(axis=1)
     damping = np.full(len(handles), FIRST_DAMPING)
     for _ in range(HANDLE_STEPS):
@@ -210,7 +210,7 @@ def _stepped(near: _Near, handles: Array, third: Array, out: float) -> tuple[Arr
             break
         step = np.clip(np.stack([change.real, change.imag], axis=1), -STEP, STEP)
         tried = np.clip(handles * np.exp(-step), SHORTEST * third, LONGEST * third)
-        gap_, gain_ = looked(tried)
+        gap_, gain_ = gaps_and_gain(tried)
         size_ = (gap_ * gap_).sum(axis=1)
         better = size_ < size
         row = better[:, None]
@@ -220,9 +220,9 @@ def _stepped(near: _Near, handles: Array, third: Array, out: float) -> tuple[Arr
     return handles, size
 
 
-def seen(curve: Curve, spans: Spans, handles: Array, t: Array) -> Array:
-    """Distance of spans outside the curve at a few places (n, m): quick, no proof; `t` (n, m) are feet of `PLACES`."""
+def sampled_gap(curve: Curve, spans: Spans, handles: Array, t: Array) -> Array:
+    """Sampled distance of spans outside the curve (n, m), mm; `t` (n, m) are the feet of `PLACES`."""
     known = np.column_stack([spans.low, t, spans.high])
-    feet = np.clip(known @ BETWEEN, spans.low[:, None], spans.high[:, None])
-    gap: Array = _Near.of(curve, spans, SEEN_AT, feet).gaps(handles)[0]
+    feet = np.clip(known @ INTERPOLATION, spans.low[:, None], spans.high[:, None])
+    gap: Array = _Near.of(curve, spans, SAMPLED_AT, feet).gaps(handles)[0]
     return gap

@@ -53,17 +53,17 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
     change = positive[1:] != positive[:-1]
     at_break = t[ends[:-1]][change[ends[:-1]]]
     change[ends[:-1]] = False
-    found = np.flatnonzero(change)
-    low, high, sense = t[found], t[found + 1], np.where(positive[found], 1.0, -1.0)
+    changes = np.flatnonzero(change)
+    low, high, sense = t[changes], t[changes + 1], np.where(positive[changes], 1.0, -1.0)
     root = 0.5 * (low + high)
-    for step in range(_MOST_ROOT_STEPS if found.size else 0):
-        at = curve.sample(root)
+    for step in range(_MOST_ROOT_STEPS if changes.size else 0):
+        frame = curve.sample(root)
         with np.errstate(divide="ignore", invalid="ignore"):
-            move = at.turn / at.turn_slope
-        if step >= _ROOT_STEPS and (np.abs(move) <= _NEAR * reach(at, tolerance)).all():
+            move = frame.turn / frame.turn_slope
+        if step >= _ROOT_STEPS and (np.abs(move) <= _NEAR * reach(frame, tolerance)).all():
             break
-        before = at.turn * sense >= 0.0
-        low, high = np.where(before, root, low), np.where(before, high, root)
+        is_before = frame.turn * sense >= 0.0
+        low, high = np.where(is_before, root, low), np.where(is_before, high, root)
         better = root - move
         # a root that has settled stays where it is: it is an end of what bounds it then
         root = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
@@ -72,14 +72,14 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
 
 
 def reach(frame: Frame, tolerance: float) -> Array:
-    """How far in parameter (n,) edges within a tolerance reach to each side of inflections: ``k' a^3 = 24 e``."""
+    """Reach in parameter (n,) of edges within a tolerance to each side of inflections: ``k' a^3 = 24 e``."""
     with np.errstate(divide="ignore"):
         far: Array = np.cbrt(24.0 * tolerance / (np.abs(frame.turn_slope) * frame.speed))
     return far
 
 
 def reaches(curve: Curve, bends: Array, run: Run, tolerance: float) -> tuple[Array, Array]:
-    """How far edges across inflections `bends` (n,) reach before them and after them, in parameter: (n,) each.
+    """Reach, in parameter, of edges across inflections `bends` (n,) before them and after them: (n,) each.
 
     Either side counts by itself, as the slope of the curvature may jump at a break and be 0 on one side. A reach is
     halved until the curve bends over it no more than `_CUBIC` times as much as its cubic may.
@@ -101,7 +101,7 @@ def reaches(curve: Curve, bends: Array, run: Run, tolerance: float) -> tuple[Arr
 
 @dataclass(frozen=True)
 class Crossings:
-    """Edges across inflections: parameters of their ends (n,), which stand off the curve by the tolerance."""
+    """Edges across inflections: parameters of their ends (n,), whose vertices stand off the curve by the tolerance."""
 
     low: Array
     high: Array

@@ -1,4 +1,4 @@
-"""Where the nodes of a fit go: equal shares of the density that its theory gives, corrected by what was measured."""
+"""Nodes of a fit: equal shares of the density that its theory gives, corrected by measured errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TRIES = 40
 
 
 class ToleranceError(CamgeoError, ValueError):
-    """A tolerance that cannot be held; `reached` is what can, in mm."""
+    """A tolerance that cannot be held; `reached`, mm, is one that can."""
 
     def __init__(self, message: str, reached: float) -> None:
         super().__init__(message)
@@ -54,7 +54,7 @@ def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
 def check_count(needed: float, form: str, tolerance: float, order: float, lost: float = 0.0) -> None:
     """Refuse a fit that would need more than `MOST_PIECES` pieces, whose error falls as their number to -`order`.
 
-    `lost`, mm, is what rounding takes of the tolerance before anything is fitted. Raises ToleranceError with the
+    `lost`, mm, is the share of the tolerance that rounding takes beforehand. Raises ToleranceError with the
     tolerance that about so many pieces hold.
     """
     if needed > MOST_PIECES:
@@ -68,7 +68,7 @@ def check_count(needed: float, form: str, tolerance: float, order: float, lost: 
 
 @dataclass(frozen=True)
 class Density:
-    """Running integral `sum` (m,) of a density at the parameters `t` (m,); `turning` is how far the tangent turns."""
+    """Running integral `sum` (m,) of a density at the parameters `t` (m,); `turning`, rad, is that of the tangent."""
 
     t: Array
     sum: Array
@@ -76,10 +76,10 @@ class Density:
 
     @staticmethod
     def of(curve: Curve, stretches: Array, density: Callable[[Frame], Array]) -> list[Density]:
-        """Integrate over stretches (m, 2), none of which spans a break, on a grid that follows the curve's cells.
+        """Integrals over stretches (m, 2), none of which spans a break, on a grid that follows the curve's cells.
 
-        `density(frame)` gives it at k places by the parameter (k,). One is returned for each stretch, in order.
-        Raises CurveError where the curve runs backwards.
+        `density(frame)` gives the density by the parameter at k places (k,). The result has one for each stretch, in
+        order. Raises CurveError where the curve runs backwards.
         """
         if not len(stretches):
             return []
@@ -98,8 +98,8 @@ class Density:
         interior = both.split(inside.size)[0]
         slowest = int(np.argmin(interior.speed))
         if float(interior.speed[slowest]) <= 0.0:
-            where = float(inside[slowest])
-            raise CurveError(f"the curve runs backwards near parameter {where:.9g}: it undercuts", where)
+            place = float(inside[slowest])
+            raise CurveError(f"the curve runs backwards near parameter {place:.9g}: it undercuts", place)
         value = np.empty_like(t)
         values = density(both)
         value[:, :-1] = values[: inside.size].reshape(-1, STEPS_PER_CELL)
@@ -107,16 +107,16 @@ class Density:
         value[ends, -1] = values[inside.size :]
         area = 0.5 * (value[:, :-1] + value[:, 1:]) * ((right - left) / STEPS_PER_CELL)[:, None]
         turned = np.abs(interior.turn).reshape(-1, STEPS_PER_CELL).max(axis=1) * (right - left)
-        out, begin = [], 0
+        densities, begin = [], 0
         for end in ends:
             grid = np.append(t[begin : end + 1, :-1].ravel(), t[end, -1])
             total = np.concatenate([[0.0], np.cumsum(area[begin : end + 1].ravel())])
-            out.append(Density(grid, total, float(turned[begin : end + 1].sum())))
+            densities.append(Density(grid, total, float(turned[begin : end + 1].sum())))
             begin = end + 1
-        return out
+        return densities
 
     @staticmethod
-    def joined(parts: Sequence[Density]) -> Density:
+    def join(parts: Sequence[Density]) -> Density:
         """One density over consecutive stretches, one at least."""
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
@@ -128,7 +128,7 @@ class Density:
         """The whole integral."""
         return float(self.sum[-1])
 
-    def at(self, share: Array) -> Array:
+    def parameters_at(self, share: Array) -> Array:
         """Parameters (n,) at which the running integral reaches `share` (n,); even ones where it is 0 all along."""
         if self.total <= 0.0:
             return np.linspace(self.t[0], self.t[-1], share.size)
@@ -136,22 +136,22 @@ class Density:
         return nodes
 
     def share(self, t: float) -> float:
-        """Give the running integral at a parameter."""
+        """The running integral at a parameter."""
         return float(np.interp(t, self.t, self.sum))
 
     def nodes(self, count: int) -> Array:
         """Parameters of `count` equal shares, both ends included (count + 1,)."""
-        nodes = self.at(np.linspace(0.0, self.total, count + 1))
+        nodes = self.parameters_at(np.linspace(0.0, self.total, count + 1))
         nodes[0], nodes[-1] = self.t[0], self.t[-1]
         return nodes
 
 
-def reshared(nodes: Array, load: Array, order: float, count: int | None = None) -> Array:
-    """Nodes moved so that pieces with more error become shorter: error grows as the length to the power `order`.
+def reshare(nodes: Array, load: Array, order: float, count: int | None = None) -> Array:
+    """Nodes (count + 1,) moved so that pieces with more error become shorter; the ends stay.
 
-    `load` (n,) is the error of each piece between nodes (n + 1,); `count` pieces are made of them, by default as many:
-    (count + 1,), the ends kept. Equidistribution, as de Boor has it (Good approximation by splines with variable knots
-    II, 1974). Where a load is infinite, or all are 0, shares are even.
+    `load` (n,) is the error of each piece between nodes (n + 1,), which grows as the length to the power `order`;
+    `count` is by default the number of pieces. Equidistribution after de Boor (Good approximation by splines with
+    variable knots II, 1974). Where a load is infinite, or all are 0, shares are even.
     """
     top = float(load.max(initial=0.0))
     weight = np.ones_like(load)

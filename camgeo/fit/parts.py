@@ -40,40 +40,37 @@ class Part:
         return float(self.share[-1] - self.share[0])
 
     def count(self, tolerance: float) -> int:
-        """Arcs foreseen within a tolerance."""
+        """Number of arcs foreseen within a tolerance, mm."""
         return max(2, math.ceil(self.total / math.cbrt(tolerance) + ENDS))
 
     def nodes(self, count: int) -> Array:
-        """Joints of `count` arcs (count + 1,)."""
+        """Parameters of the joints of `count` arcs (count + 1,)."""
         place = np.concatenate([[0.0], END + np.arange(count - 1), [count - ENDS]])
         nodes: Array = np.interp(self.share[0] + place * (self.total / place[-1]), self.share, self.grid)
         nodes[0], nodes[-1] = self.grid[0], self.grid[-1]
         return nodes
 
 
-def refined(curve: Curve, parts: Sequence[Part], tolerance: float) -> list[Part]:
+def refine(curve: Curve, parts: Sequence[Part], tolerance: float) -> list[Part]:
     """Parts whose grid is as fine as the arcs on it, so that these begin within a fraction of an arc of their place.
 
     From a coarse grid thousands of arcs begin several arcs off, most where the density falls to nothing at an extremum
     of curvature, as the cube root of the distance: more than Newton's method makes good.
     """
-    grids = {i: _grid(part, tolerance) for i, part in enumerate(parts) if _crowded(part, tolerance)}
+    most = CROWDED * math.cbrt(tolerance)
+    grids = {i: _grid(part, tolerance) for i, part in enumerate(parts) if float(np.diff(part.share).max()) > most}
     if not grids:
         return list(parts)
     frame = curve.sample(np.concatenate(list(grids.values())))
     slope = frame.turn_slope * frame.speed - frame.turn * frame.speed_slope
     density = np.cbrt(np.abs(slope) / CONSTANT)
-    out, begin = list(parts), 0
+    finer, begin = list(parts), 0
     for i, grid in grids.items():
-        here = density[begin : begin + grid.size]
+        own = density[begin : begin + grid.size]
         begin += grid.size
-        share = np.append(0.0, np.cumsum(0.5 * (here[1:] + here[:-1]) * np.diff(grid)))
-        out[i] = Part(grid, share, parts[i].rising)
-    return out
-
-
-def _crowded(part: Part, tolerance: float) -> bool:
-    return float(np.diff(part.share).max()) > CROWDED * math.cbrt(tolerance)
+        share = np.append(0.0, np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(grid)))
+        finer[i] = Part(grid, share, parts[i].rising)
+    return finer
 
 
 def _grid(part: Part, tolerance: float) -> Array:

@@ -50,15 +50,15 @@ class Polygon:
         return _polygon_area(self.vertices)
 
     def mirrored(self) -> Polygon:
-        """Mirror about the x axis, again counter-clockwise, from the same first vertex."""
+        """The mirror image in the x axis, again counter-clockwise, from the same first vertex."""
         return Polygon(_mirrored_loop(self.vertices), self.bound)
 
     def turned(self, angle: float) -> Polygon:
-        """Turn counter-clockwise about the origin, rad."""
+        """The outline turned counter-clockwise about the origin by an angle, rad."""
         return Polygon(_turned_loop(self.vertices, angle), self.bound)
 
     def scaled(self, k: float) -> Polygon:
-        """Return the drawing k times as large, k > 0 (a change of unit)."""
+        """The outline k times as large, k > 0, as for a change of unit."""
         return Polygon(self.vertices * _positive(k), self.bound.scaled(k))
 
     def box(self) -> Box:
@@ -94,18 +94,18 @@ class ArcSpline(ArcChain):
         return _polygon_area(self.points) + float(segment.sum())
 
     def mirrored(self) -> ArcSpline:
-        """Mirror about the x axis, again counter-clockwise, from the same first point.
+        """The mirror image in the x axis, again counter-clockwise, from the same first point.
 
         Mirroring turns the sign of every bulge and so does running backwards: the bulges keep theirs.
         """
         return ArcSpline(_mirrored_loop(self.points), self.bulges[::-1].copy(), self.bound)
 
     def turned(self, angle: float) -> ArcSpline:
-        """Turn counter-clockwise about the origin, rad."""
+        """The outline turned counter-clockwise about the origin by an angle, rad."""
         return ArcSpline(_turned_loop(self.points, angle), self.bulges, self.bound)
 
     def scaled(self, k: float) -> ArcSpline:
-        """Return the drawing k times as large, k > 0 (a change of unit); bulges have no unit."""
+        """The chain k times as large, k > 0, as for a change of unit; bulges have no unit."""
         return ArcSpline(self.points * _positive(k), self.bulges, self.bound.scaled(k))
 
     def box(self) -> Box:
@@ -208,13 +208,13 @@ class BSpline:
         return 0.5 * float(np.sum(x * slope[:, :, 1] - y * slope[:, :, 0]))
 
     def mirrored(self) -> BSpline:
-        """Mirror about the x axis, run backwards so that it is counter-clockwise again."""
+        """The mirror image in the x axis, run backwards so that it is counter-clockwise again."""
         control = self.control[::-1] * np.array([1.0, -1.0])
         knots = (self.knots[0] + self.knots[-1]) - self.knots[::-1]
         return BSpline(self.degree, control, knots, self.spans, self.bound)
 
     def scaled(self, k: float) -> BSpline:
-        """Return the drawing k times as large, k > 0 (a change of unit)."""
+        """The outline k times as large, k > 0, as for a change of unit."""
         return BSpline(self.degree, self.control * _positive(k), self.knots, self.spans, self.bound.scaled(k))
 
     def beziers(self) -> Array:
@@ -261,8 +261,8 @@ Outline = Polygon | ArcSpline | BSpline
 
 def _numbers(what: str, array: Array, shape: tuple[int, ...]) -> None:
     if not isinstance(array, np.ndarray) or array.dtype != np.float64 or array.shape != shape:
-        found = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
-        raise ValueError(f"{what} must be float64 of shape {shape}, not {found}")
+        kind = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+        raise ValueError(f"{what} must be float64 of shape {shape}, not {kind}")
     if not bool(np.all(np.isfinite(array))):
         raise ValueError(f"{what} must be finite")
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.edges import Edges, Sagittas, frames, look, placed, proved
+from camgeo.fit.edges import Edges, Sagittas, node_frames, place_edges, prove_edges, sagittas
 from camgeo.fit.inflection import REACH, crossings, inflections, reaches
-from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
+from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshare, rounding
 from camgeo.fit.pieces import Bound, Polygon
 from kin.numeric.records import dataclass
 
@@ -31,13 +31,13 @@ SHORTENINGS = 3  # of edges across inflections after a proof, before less is aim
 SHORTENED = 1.05  # times, at least
 FREE_TRIES = 4  # counts tried with edges across the breaks
 LEVELLINGS = 16  # steps for each
-FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
+FULL = 0.93  # of the tolerance used is enough; below it fewer edges are sought
 SLIGHT = 1.0  # shares: what bends the other way for less than this is not worth two crossings
 CROSSING = 0.9995  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
 GRID = 2.0  # times what the density says: an edge across an inflection that reaches farther is begun with by its cubic
-ROOM = 0.45  # of a part between two inflections that one crossing may take
+CROSSING_SHARE = 0.45  # of a part between two inflections that one crossing may take
 EXACT = 1.0 + 1e-9
-SEEN = 1.03  # how much a look at an edge across an inflection may overrate it
+SEEN = 1.03  # how much samples of an edge across an inflection may overrate it
 
 
 def polygon_density(frame: Frame) -> Array:
@@ -56,8 +56,8 @@ def least_vertices(curve: Curve, tolerance: float) -> float:
 class _Part:
     """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices (1 outside).
 
-    `crossed` if an edge leads on from the part across an inflection; `least` is the fewest edges not yet known to fail,
-    `tried` counts the tries to level them.
+    `crossed` says whether an edge follows the part across an inflection; `least` is the fewest edges not yet known to
+    fail, `tried` counts the tries to level them.
     """
 
     nodes: Array
@@ -68,7 +68,7 @@ class _Part:
 
     @property
     def count(self) -> int:
-        """Edges of the part."""
+        """Number of edges of the part."""
         return int(self.nodes.size - 1)
 
 
@@ -92,7 +92,7 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
 
 
 def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
-    """Edges of one run, proved to lie within the tolerance; `full` is what it was before rounding was taken off."""
+    """Edges of one run, proved to lie within the tolerance; `full` is the tolerance before rounding was taken off."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", full, 2.0, lost=full - tolerance)
@@ -100,31 +100,31 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
     best = math.inf
     for aim in AIMS:
         goal = aim * tolerance
-        parts, height = _settled(curve, run, _parts(curve, run, densities, bends, sense=sense, tolerance=goal), goal)
+        parts, height = _settle(curve, run, _parts(curve, run, densities, bends, sense=sense, tolerance=goal), goal)
         if len(densities) > 1 and height < FULL * goal:
             parts, height = _across_breaks(curve, run, densities, parts, goal) or (parts, height)
-        edges = _balanced(curve, run, parts, min(height, goal), tolerance)
+        edges = _balance(curve, run, parts, min(height, goal), tolerance)
         for _ in range(SHORTENINGS):
-            if not _shortened(parts, edges, tolerance):
+            if not _shorten_failing(parts, edges, tolerance):
                 break
-            parts, height = _settled(curve, run, parts, goal)
-            edges = _balanced(curve, run, parts, min(height, goal), tolerance)
+            parts, height = _settle(curve, run, parts, goal)
+            edges = _balance(curve, run, parts, min(height, goal), tolerance)
         best = min(best, max(edges.extremes))
         if best <= tolerance:
             return edges
     raise ToleranceError(f"a polygon within {full:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
-    """Proved edges; moved once more where one side is used more than the other, which runs without corners allow."""
-    nodes, sides = _chained(parts)
-    at = frames(curve, run, nodes)
-    edges = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
+def _balance(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
+    """Proved edges; in a run without corners moved once more where one side is used more than the other."""
+    nodes, sides = _chain(parts)
+    frames = node_frames(curve, run, nodes)
+    edges = prove_edges(curve, place_edges(frames, run, nodes, shift * sides), tolerance)
     outward, inward = edges.extremes
     level = run.closed and bool((sides == sides[0]).all())
     if level and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
         shift = 0.5 * (outward + inward)
-        moved = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
+        moved = prove_edges(curve, place_edges(frames, run, nodes, shift * sides), tolerance)
         if max(moved.extremes) < max(outward, inward):
             return moved
     return edges
@@ -135,38 +135,38 @@ def _parts(
 ) -> list[_Part]:
     """Parts between breaks and inflections, nodes in equal shares."""
     root = math.sqrt(tolerance)
-    whole = Density.joined(densities)
-    bends, sense = _worthwhile(bends, sense, whole, root, closed=run.closed)
+    whole = Density.join(densities)
+    bends, sense = _worthwhile_bends(bends, sense, whole, root, closed=run.closed)
     share = np.array([whole.share(float(t)) for t in bends]) / root
-    room = ROOM * np.diff(np.concatenate([[0.0], share, [whole.total / root]]))
-    low = whole.at(root * (share - np.minimum(REACH, room[:-1])))
-    high = whole.at(root * (share + np.minimum(REACH, room[1:])))
+    reach = CROSSING_SHARE * np.diff(np.concatenate([[0.0], share, [whole.total / root]]))
+    low = whole.parameters_at(root * (share - np.minimum(REACH, reach[:-1])))
+    high = whole.parameters_at(root * (share + np.minimum(REACH, reach[1:])))
     if bends.size:
         # the grid of the density may be far wider than an edge
         before, after = reaches(curve, bends, run, tolerance)
-        least, most = whole.at(root * (share - room[:-1])), whole.at(root * (share + room[1:]))
+        least, most = whole.parameters_at(root * (share - reach[:-1])), whole.parameters_at(root * (share + reach[1:]))
         low = np.where(before > GRID * (bends - low), np.maximum(bends - before, least), low)
         high = np.where(after > GRID * (high - bends), np.minimum(bends + after, most), high)
     edge = crossings(curve, bends, low, high, CROSSING * tolerance)
-    # an edge that would reach beyond the run's own end keeps to the guess, which leaves room
+    # an edge that would reach beyond the run's own end keeps to the guess, which does not
     low = np.where(edge.low > run.low, edge.low, low)
     high = np.where(edge.high < run.high, edge.high, high)
     overlap = np.append(high[:-1] >= low[1:], False) if bends.size else np.zeros(0, dtype=bool)
     for i in np.flatnonzero(overlap):
         # two crossings that meet leave one edge between them
         gap = share[i + 1] - share[i]
-        high[i], low[i + 1] = whole.at(root * (share[i] + gap * np.array([0.4, 0.6])))
+        high[i], low[i + 1] = whole.parameters_at(root * (share[i] + gap * np.array([0.4, 0.6])))
     ends: list[tuple[float, float, float]] = [(run.low, run.low, 1.0)]
     ends += [(float(a), float(b), -1.0) for a, b in zip(low, high, strict=True)]
-    for at in run.breaks:
-        if not ((low <= at) & (at <= high)).any():
-            ends.append((at, at, 1.0))
+    for place in run.breaks:
+        if not ((low <= place) & (place <= high)).any():
+            ends.append((place, place, 1.0))
     ends.append((run.high, run.high, 1.0))
     ends.sort()
     parts = []
     for (_, begin, _), (end, _, flip) in pairwise(ends):
         first, last = whole.share(begin), whole.share(end)
-        nodes = whole.at(np.linspace(first, last, max(1, math.ceil((last - first) / root - 0.05)) + 1))
+        nodes = whole.parameters_at(np.linspace(first, last, max(1, math.ceil((last - first) / root - 0.05)) + 1))
         nodes[0], nodes[-1] = begin, end
         parts.append(_Part(nodes, sense, flip < 0.0))
         sense *= flip
@@ -177,25 +177,25 @@ def _parts(
     return parts
 
 
-def _worthwhile(bends: Array, sense: float, whole: Density, root: float, *, closed: bool) -> tuple[Array, float]:
+def _worthwhile_bends(bends: Array, sense: float, whole: Density, root: float, *, closed: bool) -> tuple[Array, float]:
     """Inflections, and the sense before the first, without the pairs that enclose less than `SLIGHT` shares."""
     share = [whole.share(float(bend)) / root for bend in bends]
-    kept = [float(bend) for bend in bends]
-    while len(kept) > 1:
+    remaining = [float(bend) for bend in bends]
+    while len(remaining) > 1:
         between = np.diff(share)
         least = int(np.argmin(between))
         around = share[0] + whole.total / root - share[-1]
         if closed and around < min(SLIGHT, between[least]):
-            del kept[0], share[0], kept[-1], share[-1]
+            del remaining[0], share[0], remaining[-1], share[-1]
             sense = -sense
         elif between[least] < SLIGHT:
-            del kept[least : least + 2], share[least : least + 2]
+            del remaining[least : least + 2], share[least : least + 2]
         else:
             break
-    return np.array(kept), sense
+    return np.array(remaining), sense
 
 
-def _chained(parts: list[_Part]) -> tuple[Array, Array]:
+def _chain(parts: list[_Part]) -> tuple[Array, Array]:
     """All nodes in order, and for each the side of its vertex; an edge across an inflection joins two parts' nodes."""
     nodes, sides = [parts[0].nodes], [np.full(parts[0].nodes.size, parts[0].sense)]
     for before, part in pairwise(parts):
@@ -205,24 +205,26 @@ def _chained(parts: list[_Part]) -> tuple[Array, Array]:
     return np.concatenate(nodes), np.concatenate(sides)
 
 
-def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
-    """Parts with the fewest edges found whose sagittas keep within twice the tolerance, and half the greatest."""
+def _settle(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
+    """Parts with the fewest edges whose sagittas keep within twice the tolerance, and half the greatest sagitta, mm."""
     allowed = 2.0 * tolerance
     noise = 0.5 * rounding(curve.size)
     height = math.inf
     for _ in range(TRIES):
-        nodes, sides = _chained(parts)
-        seen = look(curve, placed(frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance)
+        nodes, sides = _chain(parts)
+        seen = sagittas(
+            curve, place_edges(node_frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance
+        )
         height = 0.5 * float(seen.load.max())
         busy = False
         first_edges = list(accumulate((part.count + part.crossed for part in parts), initial=0))
         for part, k in zip(parts, first_edges, strict=False):
-            mine = slice(k, k + part.count)
-            busy |= _improve(part, Sagittas(seen.load[mine], seen.by_low[mine], seen.by_high[mine]), allowed, noise)
+            rows = slice(k, k + part.count)
+            busy |= _improve(part, Sagittas(seen.load[rows], seen.by_low[rows], seen.by_high[rows]), allowed, noise)
         for (first, second), k in zip(pairwise(parts), first_edges[1:], strict=False):
             if first.crossed:
                 over = float(seen.load[k - 1]) / allowed
-                busy |= over > SEEN and _shorter(first, second, over)
+                busy |= over > SEEN and _shorten(first, second, over)
         check_count(sum(part.count for part in parts), "straight edges", tolerance, 2.0)
         if not busy:
             break
@@ -233,7 +235,7 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
 def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bool:
     """Give a part better nodes; False where it has the fewest edges and none is too high.
 
-    Loads are seen with a rounding of `noise`, which no levelling takes off.
+    Loads have a rounding error of `noise`, mm, which levelling does not remove.
     """
     load = samples.load
     shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
@@ -242,32 +244,32 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
     if fits and best >= part.count:
         return False
     if best < part.count and part.tried == 0:
-        part.nodes = reshared(part.nodes, load, 2.0, best)
+        part.nodes = reshare(part.nodes, load, 2.0, best)
         part.tried = 1
     elif fits:
         return False
     elif best == part.count and part.tried < ROUNDS and float(load.max() - load.mean()) > noise:
-        part.nodes = levelled(part.nodes, load, samples.by_low, samples.by_high)
+        part.nodes = level_loads(part.nodes, load, samples.by_low, samples.by_high)
         part.tried += 1
     else:
         part.least = max(part.count + 1, math.ceil(shares * (1.0 + 0.5 * noise / allowed) - 1e-9))
-        part.nodes = reshared(part.nodes, load, 2.0, part.least)
+        part.nodes = reshare(part.nodes, load, 2.0, part.least)
         part.tried = 1
     return True
 
 
-def _shortened(parts: list[_Part], edges: Edges, tolerance: float) -> bool:
-    """Whether edges across inflections were shortened that a proof found too high, by less than it gives up at."""
+def _shorten_failing(parts: list[_Part], edges: Edges, tolerance: float) -> bool:
+    """Shorten edges across inflections that a proof found too high; whether there were any."""
     last = list(accumulate((part.count + part.crossed for part in parts), initial=-1))[1:]
     shorter = False
     for (first, second), k in zip(pairwise(parts), last, strict=False):
         if first.crossed and tolerance < edges.heights[k] < math.inf:
             # as much as its height and not less than `SHORTENED`: a crossing is no cubic throughout
-            shorter |= _shorter(first, second, max(float(edges.heights[k]) / tolerance, SHORTENED) ** 3)
+            shorter |= _shorten(first, second, max(float(edges.heights[k]) / tolerance, SHORTENED) ** 3)
     return shorter
 
 
-def _shorter(first: _Part, second: _Part, over: float) -> bool:
+def _shorten(first: _Part, second: _Part, over: float) -> bool:
     """Shorten the edge across an inflection, whose height is `over` times too much and grows as its length cubed."""
     low, high = first.nodes[-1], second.nodes[0]
     move = 0.5 * (1.0 - over ** (-1.0 / 3.0)) * (high - low)
@@ -277,13 +279,13 @@ def _shorter(first: _Part, second: _Part, over: float) -> bool:
     return True
 
 
-def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
+def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
     """Nodes (n + 1,), ends kept, moved by one step of Newton's method towards equal loads (n,) of all edges.
 
     `by_low` and `by_high` (n,) are the derivatives of each load by the parameter of its first and second node.
     """
     if not bool((load > 0.0).all() and (by_low < 0.0).all() and (by_high > 0.0).all()):
-        return reshared(nodes, load, 2.0)
+        return reshare(nodes, load, 2.0)
     # roots of the loads, which grow with the length:  root + by_low d + by_high d+ = level,  d = 0 at both ends;
     # a recurrence, solved by its product and sum
     root = np.sqrt(load)
@@ -293,7 +295,7 @@ def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
     slope = product * np.cumsum(1.0 / by_high / product)
     move = np.concatenate([[0.0], fixed - slope * (fixed[-1] / slope[-1])])
     if not np.isfinite(move).all():
-        return reshared(nodes, load, 2.0)
+        return reshare(nodes, load, 2.0)
     move[-1] = 0.0
     width = np.diff(nodes)
     squeeze = float(np.max(-np.diff(move) / width, initial=0.0))
@@ -304,13 +306,13 @@ def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
 def _across_breaks(
     curve: Curve, run: Run, densities: list[Density], parts: list[_Part], tolerance: float
 ) -> tuple[list[_Part], float] | None:
-    """Fewer edges with no heed of the breaks, where rounding up the stretches' counts has wasted tolerance.
+    """Fewer edges, placed regardless of the breaks, where rounding up the stretches' counts wastes tolerance.
 
-    None where that is not found, or inflections divide the curve.
+    None where there are no fewer, or inflections divide the curve.
     """
     if any(part.crossed for part in parts):
         return None
-    whole = Density.joined(densities)
+    whole = Density.join(densities)
     starts = [0.0]
     if run.closed:
         totals = np.array([density.total for density in densities])
@@ -322,16 +324,18 @@ def _across_breaks(
         for start in starts:
             share = start + np.linspace(0.0, whole.total, count + 1)
             over = share >= whole.total
-            nodes = whole.at(np.where(over, share - whole.total, share)) + np.where(over, run.high - run.low, 0.0)
+            nodes = whole.parameters_at(np.where(over, share - whole.total, share)) + np.where(
+                over, run.high - run.low, 0.0
+            )
             nodes[-1] = nodes[0] + (run.high - run.low)
-            found = _level(curve, run, nodes, parts[0].sense, tolerance)
-            if found is not None:
-                return [_Part(found[0], parts[0].sense, crossed=False)], found[1]
+            level = _level(curve, run, nodes, parts[0].sense, tolerance)
+            if level is not None:
+                return [_Part(level[0], parts[0].sense, crossed=False)], level[1]
     return None
 
 
 def _level(curve: Curve, run: Run, nodes: Array, sense: float, tolerance: float) -> tuple[Array, float] | None:
-    """Nodes moved until no sagitta exceeds twice the tolerance, and half the greatest; None where none are found.
+    """Nodes at which no sagitta exceeds twice the tolerance, and half the greatest; None where none are found.
 
     Newton's method on the edges' heights, which have corners where edges meet breaks: a step that does not make them
     more alike is shortened.
@@ -339,15 +343,17 @@ def _level(curve: Curve, run: Run, nodes: Array, sense: float, tolerance: float)
     sides = np.full(nodes.size, sense)
     best, spread, move, pace = nodes, math.inf, np.zeros_like(nodes), 1.0
     for _ in range(LEVELLINGS):
-        seen = look(curve, placed(frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance)
+        seen = sagittas(
+            curve, place_edges(node_frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance
+        )
         top = float(seen.load.max())
         if top <= 2.0 * tolerance * EXACT:
             return nodes, 0.5 * top
         root = np.sqrt(np.maximum(seen.load, 0.0))
-        found = float(np.std(root) / np.mean(root))
-        if found < spread:
-            best, spread = nodes, found
-            move = levelled(nodes, seen.load, seen.by_low, seen.by_high) - nodes
+        unevenness = float(np.std(root) / np.mean(root))
+        if unevenness < spread:
+            best, spread = nodes, unevenness
+            move = level_loads(nodes, seen.load, seen.by_low, seen.by_high) - nodes
             pace = min(1.0, 2.0 * pace)
         else:
             pace *= 0.3

@@ -1,4 +1,4 @@
-"""How far cubic spans lie from the exact curve: proved, not sampled.
+"""Deviation of cubic spans from the exact curve: proved, not sampled.
 
 A span covers a parameter interval of the curve. Let g be how far outside the curve it meets the normal at t, gamma the
 angle from the curve's tangent to its own, v its speed and k its curvature there. Then
@@ -66,14 +66,14 @@ class Cubics:
 
     @staticmethod
     def of(control: Array) -> Cubics:
-        """Bezier spans (n, 4, 2)."""
+        """Cubics of Bezier spans (n, 4, 2)."""
         z = plane(control)
         leg = np.diff(z, axis=1)
         bend = np.diff(leg, axis=1)
         return Cubics(z[:, 0], 3.0 * leg[:, 0], 3.0 * bend[:, 0], bend[:, 1] - bend[:, 0])
 
     def column(self) -> Cubics:
-        """Give the same, to be used at several places of each (n, 1)."""
+        """The cubics as columns (n, 1), for several places of each."""
         return Cubics(self.start[:, None], self.a[:, None], self.b[:, None], self.c[:, None])
 
     def ahead(self, u: Array) -> Complex:
@@ -118,14 +118,14 @@ def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, toler
 
 
 def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) -> tuple[Array, Array, Array]:
-    """Proved greatest outward and inward distance of each span, and the greatest seen at nodes (each (n,))."""
+    """Proved greatest outward and inward distance of each span, and the greatest at nodes: (n,) each, mm."""
     count = low.size
     share = np.linspace(0.0, 1.0, steps + 1)
     t = low[:, None] + (high - low)[:, None] * share
     t[:, -1] = high
-    at = curve.sample(t.ravel(), np.tile(np.where(share < 1.0, 1, -1), count))
-    point, tangent = plane(at.point).reshape(t.shape), plane(at.tangent).reshape(t.shape)
-    speed, turn = at.speed.reshape(t.shape), at.turn.reshape(t.shape)
+    frames = curve.sample(t.ravel(), np.tile(np.where(share < 1.0, 1, -1), count))
+    point, tangent = plane(frames.point).reshape(t.shape), plane(frames.tangent).reshape(t.shape)
+    speed, turn = frames.speed.reshape(t.shape), frames.turn.reshape(t.shape)
     cubic = spans.column()
     offset = cubic.start - point
     u = np.broadcast_to(share, t.shape).copy()
@@ -201,7 +201,7 @@ def _curvature_bounds(cubic: Cubics, u: Array, pace: Array, wedge: Array) -> _Ra
 def _bend(
     step: Array, bounds: Bounds, rates: _Rates, *, g: Array, angle: Array, speed: Array, turn: Array, excess: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """By how much g'' may differ from what -sigma m is at the step's ends, and where that is confirmed: (n, m)."""
+    """Bound of the change of g'' from -sigma m at the step's ends, and whether it is confirmed: (n, m)."""
     shape, square = step.shape, step**2 / 8.0
     speed_slope, speed_bend = bounds.speed_slope.reshape(shape), bounds.speed_bend.reshape(shape)
     turn_slope, turn_bend = bounds.turn_slope.reshape(shape), bounds.turn_bend.reshape(shape)
@@ -216,8 +216,8 @@ def _bend(
         """Bounds of gamma and g where gamma' is at most `rate`, and of what k (v - sigma) is then."""
         most_lean = lean + half * rate + 1e-15
         tangent, secant = np.tan(np.minimum(most_lean, TURN)), 1.0 / np.cos(np.minimum(most_lean, TURN))
-        room = 1.0 - half * tangent * turns
-        most_off = (off + half * tangent * speeds) / np.where(room > 0.0, room, np.nan)
+        clearance = 1.0 - half * tangent * turns
+        most_off = (off + half * tangent * speeds) / np.where(clearance > 0.0, clearance, np.nan)
         return most_lean, most_off, rates.curvature * (speeds * (secant - 1.0) + most_off * turns * secant)
 
     rate = SPARE * (rates.curvature * (speeds + off * turns) + turns)

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.cubic import LEAST, ORDER, spans_wanted
-from camgeo.fit.handles import handled
-from camgeo.fit.nodes import ToleranceError, check_count, check_precision, reshared, rounding
+from camgeo.fit.cubic import LEAST, ORDER, span_density
+from camgeo.fit.handles import cubic_spans
+from camgeo.fit.nodes import ToleranceError, check_count, check_precision, reshare, rounding
 from camgeo.fit.pieces import Bound, BSpline
 from camgeo.fit.spans import plane, spans_deviation
 from kin.numeric.records import dataclass, replace
@@ -74,16 +74,16 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
         short = length <= nothing
         lost = max(lost, float(length[short].max(initial=0.0)))
         ends = np.flatnonzero(np.diff(np.concatenate([[True], short, [True]]).astype(np.int8)))
-        groups += [part for low, high in ends.reshape(-1, 2) for part in _even(beziers[low:high])]
+        groups += [part for low, high in ends.reshape(-1, 2) for part in _split_uneven(beziers[low:high])]
         first += count
-    spline = _assembled(groups, Bound(outward, inward))
+    spline = _assemble(groups, Bound(outward, inward))
     # joints are no longer given but follow from the knots
     moved = math.sqrt(2.0) * float(np.abs(spline.beziers() - np.concatenate(groups)).max())
     return replace(spline, bound=spline.bound.widened(rounding(size) + moved + lost))
 
 
-def _even(beziers: Array) -> list[Array]:
-    """Runs of spans (n, 4, 2) in which no span's share of the parameter is lost beside the others'.
+def _split_uneven(beziers: Array) -> list[Array]:
+    """Runs of spans (n, 4, 2) in which no span's share of the parameter vanishes beside the others'.
 
     Next to a cusp speeds differ so much from joint to joint that knots would coincide. There a run ends, in a threefold
     knot: the curve stays as smooth as it is, its parameter does not.
@@ -110,23 +110,23 @@ def _steps(beziers: Array) -> Array:
     return steps
 
 
-def _assembled(groups: list[Array], bound: Bound) -> BSpline:
+def _assemble(groups: list[Array], bound: Bound) -> BSpline:
     """One closed clamped B-spline from the Bezier spans of each run (n, 4, 2): C1 in a run, corners between runs."""
     control, knots = [groups[0][0, :1]], [np.zeros(4)]
-    at = 0.0
+    end = 0.0
     steps = [_steps(beziers) for beziers in groups]
-    least = UNEVEN * sum(float(one.sum()) for one in steps)
+    least = UNEVEN * sum(float(lengths.sum()) for lengths in steps)
     for number, (beziers, step) in enumerate(zip(groups, steps, strict=True)):
         # how fast a run goes is free: none so fast that its knots would coincide
-        ends = at + np.cumsum(step * max(1.0, least / float(step.sum())))
-        at = float(ends[-1])
+        ends = end + np.cumsum(step * max(1.0, least / float(step.sum())))
+        end = float(ends[-1])
         control.append(beziers[:, 1:3].reshape(-1, 2))
         knots.append(np.repeat(ends[:-1], 2))
         if number < len(groups) - 1:
             control.append(beziers[-1, 3:])
-            knots.append(np.full(3, at))
+            knots.append(np.full(3, end))
     control.append(groups[0][0, :1])
-    knots.append(np.full(4, at))
+    knots.append(np.full(4, end))
     spans = sum(len(beziers) for beziers in groups)
     return BSpline(3, np.concatenate(control), np.concatenate(knots), spans, bound)
 
@@ -136,13 +136,13 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
 
     Errors are seen up to `tolerance` and proved up to `limit`.
     """
-    wanted = spans_wanted(curve, stretches)
-    out = _beside(curve, wanted.side, tolerance)
-    # what a span may leave its joints' parallel, over what it may leave the curve
-    room = 1.0 + abs(out) / tolerance
-    counts = wanted.totals * (tolerance * (0.5 * room if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
+    density = span_density(curve, stretches)
+    out = _joint_offset(curve, density.side, tolerance)
+    # deviation permitted from the joints' parallel, over that from the curve
+    allowance = 1.0 + abs(out) / tolerance
+    counts = density.totals * (tolerance * (0.5 * allowance if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
     check_count(float(counts.sum()), "spline spans", tolerance, ORDER)
-    nodes = [one.nodes(max(1, math.ceil(count))) for one, count in zip(wanted.densities, counts, strict=True)]
+    nodes = [density.nodes(max(1, math.ceil(count))) for density, count in zip(density.densities, counts, strict=True)]
     done: dict[int, tuple[Array, float, float]] = {}
     states = [_State()] * len(nodes)
     spans, best = _Spans.none(), math.inf
@@ -154,25 +154,25 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
         check_count(2.0 * owner.size, "spline spans", tolerance, ORDER)
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
-        spans = spans.between(curve, low, high, out, room)
+        spans = spans.between(curve, low, high, out, allowance)
         failing = np.bincount(owner[~(spans.load <= tolerance)], minlength=len(nodes))
-        spans = spans.proved(curve, failing[owner] == 0, tolerance)
+        spans = spans.prove(curve, failing[owner] == 0, tolerance)
         reached = np.where(np.isnan(spans.worst), spans.load, spans.worst)
         for i in todo:
-            mine = owner == i
-            worst = float(reached[mine].max())
+            own = owner == i
+            worst = float(reached[own].max())
             best = min(best, worst)
             if failing[i] == 0 and worst <= limit:
-                outward, inward = (float(row[mine].max()) for row in (spans.outward, spans.inward))
-                done[i] = spans.control[mine], max(outward, 0.0), max(inward, 0.0)
+                outward, inward = (float(row[own].max()) for row in (spans.outward, spans.inward))
+                done[i] = spans.control[own], max(outward, 0.0), max(inward, 0.0)
             else:
                 last = attempt >= TRIES - LAST_TRIES
-                nodes[i], states[i] = _denser(nodes[i], reached[mine], tolerance, states[i], last=last)
+                nodes[i], states[i] = _denser(nodes[i], reached[own], tolerance, states[i], last=last)
     raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _beside(curve: Curve, side: float, tolerance: float) -> float:
-    """How far joints lie outside the curve, mm: away from the `side` to which all spans stray, if they all do."""
+def _joint_offset(curve: Curve, side: float, tolerance: float) -> float:
+    """Offset of joints outside the curve, mm: away from the `side` to which all spans stray; 0 without one."""
     if side == 0.0 or not curve.closed:
         return 0.0
     rows = curve.cells.rows
@@ -185,8 +185,8 @@ def _beside(curve: Curve, side: float, tolerance: float) -> float:
 class _Spans:
     """Bezier spans (n, 4, 2) between nodes, over parameters [low, high] (n,).
 
-    `load` (n,) is how far each is seen to stray, times what of it must be within the tolerance; `outward` and `inward`
-    (n,) are proved, not a number where no proof was tried.
+    `load` (n,) is the sampled deviation, scaled to the tolerance; `outward` and `inward` (n,) are proved deviations,
+    mm, nan where no proof was tried.
     """
 
     low: Array
@@ -206,8 +206,8 @@ class _Spans:
         """Greatest proved distance of each from the curve (n,)."""
         return np.maximum(self.outward, self.inward)
 
-    def between(self, curve: Curve, low: Array, high: Array, out: float, room: float) -> _Spans:
-        """Spans over other intervals (m,): as they are where an interval has stayed, found anew elsewhere."""
+    def between(self, curve: Curve, low: Array, high: Array, out: float, allowance: float) -> _Spans:
+        """Spans over other intervals (m,): kept where an interval is one of these, fitted anew elsewhere."""
         place = np.minimum(np.searchsorted(self.low, low), max(0, self.low.size - 1))
         kept = np.zeros(low.size, dtype=bool)
         if self.low.size:
@@ -219,27 +219,27 @@ class _Spans:
             control[kept], load[kept] = self.control[old], self.load[old]
             proved[:, kept] = self.outward[old], self.inward[old]
         if not kept.all():
-            control[~kept], strayed, beside = handled(curve, low[~kept], high[~kept], out)
-            load[~kept] = np.where(np.isfinite(strayed), beside / room, np.inf)
+            control[~kept], strayed, beside = cubic_spans(curve, low[~kept], high[~kept], out)
+            load[~kept] = np.where(np.isfinite(strayed), beside / allowance, np.inf)
         return _Spans(low, high, control, load, *proved)
 
-    def proved(self, curve: Curve, rows: Array, tolerance: float) -> _Spans:
-        """Give the same, those of a mask (n,) proved that were not."""
+    def prove(self, curve: Curve, rows: Array, tolerance: float) -> _Spans:
+        """The spans, with those of a mask (n,) proved that were not."""
         todo = np.flatnonzero(rows & np.isnan(self.outward))
         if not todo.size:
             return self
         outward, inward = self.outward.copy(), self.inward.copy()
-        mine = self.control[todo], self.low[todo], self.high[todo]
-        outward[todo], inward[todo] = spans_deviation(curve, *mine, tolerance)
+        own = self.control[todo], self.low[todo], self.high[todo]
+        outward[todo], inward[todo] = spans_deviation(curve, *own, tolerance)
         return replace(self, outward=outward, inward=inward)
 
 
 @dataclass(frozen=True)
 class _State:
-    """How a stretch's nodes have fared since there were more of them, and how often there were more.
+    """History of a stretch's nodes since their number grew last; `grown` counts how often it grew.
 
-    `shared` counts how often they were shared; `least` is the least of the greatest loads, `stalled` how often in turn
-    that did not fall. `best` are, of all tries, the nodes that fewest spans follow from if those that fail are halved.
+    `shared` counts sharings; `least` is the least of the greatest loads, `stalled` how often in turn it did not fall.
+    `best` are, of all tries, the nodes that give fewest spans if those that fail are halved.
     """
 
     shared: int = 0
@@ -252,41 +252,41 @@ class _State:
 def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last: bool) -> tuple[Array, _State]:
     """Nodes for the next try: shared anew while that helps, then more of them; halved where infinite, or few fail.
 
-    `load` (n,) is each span's error, times what of it must be within the tolerance; `last` allows of halves alone.
+    `load` (n,) is each span's error, scaled to the tolerance; `last` allows halving alone.
     """
     count = nodes.size - 1
     failing = ~(load <= tolerance)
     if not math.isfinite(float(load.max())):
-        return _halved(nodes, ~np.isfinite(load)), _State(grown=state.grown, best=state.best)
-    halved = _halved(nodes, failing)
+        return _halve(nodes, ~np.isfinite(load)), _State(grown=state.grown, best=state.best)
+    halved = _halve(nodes, failing)
     best = halved if state.best is None or halved.size < state.best.size else state.best
     growth = GROWTH * FASTER**state.grown
     few = state.shared >= SETTLING and np.count_nonzero(failing) <= max(growth, HALVED) * count
     if few or last or state.grown >= GROWN:
         return halved, _State(grown=state.grown, best=best)
-    moved, after = _shared(nodes, load, tolerance, state)
+    moved, after = _reshare(nodes, load, tolerance, state)
     if moved.size > nodes.size and state.shared and (state.grown + 1 >= GROWN or best.size <= moved.size):
         # places where the nearest cubic ceases to exist move about as nodes are shared: what came nearest is halved
         return best, _State(grown=state.grown + 1)
     return moved, replace(after, best=best)
 
 
-def _halved(nodes: Array, failing: NDArray[np.bool_]) -> Array:
+def _halve(nodes: Array, failing: NDArray[np.bool_]) -> Array:
     """Nodes (n + 1,) with one more in the middle of each span of a mask (n,)."""
     middle = 0.5 * (nodes[:-1] + nodes[1:])
     return np.sort(np.append(nodes, middle[failing]))
 
 
-def _shared(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
-    """As many nodes shared anew, so that spans become alike, or more of them."""
+def _reshare(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
+    """Nodes shared anew, as many or more, so that spans become alike."""
     mean = float(np.mean(load ** (1.0 / ORDER))) ** ORDER
     worst = float(load.max())
     stalled = 0 if worst < LESS * state.least else state.stalled + 1
     if state.shared < SHARINGS and stalled < PATIENCE and mean < FULL * tolerance:
         if stalled:
-            moved = reshared(nodes, np.maximum(MARGIN * load, tolerance), ORDER)
+            moved = reshare(nodes, np.maximum(MARGIN * load, tolerance), ORDER)
         else:
-            moved = reshared(nodes, load, DAMPED if state.shared else ORDER)
+            moved = reshare(nodes, load, DAMPED if state.shared else ORDER)
         return moved, _State(state.shared + 1, state.grown, min(worst, state.least), stalled)
     count = nodes.size - 1
     if state.shared:
@@ -294,4 +294,4 @@ def _shared(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple
     else:
         share, grown = (mean / tolerance) ** (1.0 / ORDER) - 1.0, state.grown
     more = max(count + 1, math.ceil(count * (1.0 + share)))
-    return reshared(nodes, load, DAMPED if state.shared else ORDER, more), _State(grown=grown)
+    return reshare(nodes, load, DAMPED if state.shared else ORDER, more), _State(grown=grown)

@@ -8,7 +8,7 @@ from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
 from camgeo.fit.arcs import FLOOR, fit_arcs
 from camgeo.fit.nodes import rounding
-from camgeo.fit.parts import CONSTANT, Part, refined
+from camgeo.fit.parts import CONSTANT, Part, refine
 from camgeo.recipe.loading import load
 
 
@@ -22,7 +22,7 @@ class Counted:
 
     def __init__(self, monkeypatch):
         self.free, self.biarcs, self.steps = [], [], 0
-        levelled, biarcs, newton = free_arcs._levelled, fitting._biarcs, free_arcs._newton
+        levelled, biarcs, newton = free_arcs._level_out, fitting._biarcs, free_arcs._newton
 
         def of_free(curve, layout, t, aim):
             self.free.append(layout.part.size)
@@ -36,7 +36,7 @@ class Counted:
             self.steps += 1
             return newton(*given)
 
-        monkeypatch.setattr(free_arcs, "_levelled", of_free)
+        monkeypatch.setattr(free_arcs, "_level_out", of_free)
         monkeypatch.setattr(fitting, "_biarcs", of_biarcs)
         monkeypatch.setattr(free_arcs, "_newton", of_newton)
 
@@ -82,7 +82,7 @@ def test_a_finer_grid_has_the_share_of_a_density_that_is_known():
         return np.append(0.0, np.cumsum(0.5 * (value[1:] + value[:-1]) * np.diff(grid)))
 
     part = Part(coarse, share(coarse), 1.0)
-    (finer,) = refined(curve, [part], 1e-9)
+    (finer,) = refine(curve, [part], 1e-9)
     grid = np.linspace(low, high, 1_000_001)
     truth = np.interp(finer.grid, grid, share(grid))
     arcs = 1e-9 ** (-1.0 / 3.0)
@@ -91,4 +91,4 @@ def test_a_finer_grid_has_the_share_of_a_density_that_is_known():
     assert (np.diff(finer.grid) > 0.0).all()
     assert np.abs(finer.share - truth).max() * arcs < 0.5
     assert np.abs(part.share - np.interp(coarse, grid, share(grid))).max() * arcs > 3.0
-    assert refined(curve, [part], 1.0) == [part]
+    assert refine(curve, [part], 1.0) == [part]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from camgeo.fit.edges import look
+from camgeo.fit.edges import sagittas
 from camgeo.fit.inflection import crossings, inflections
 from camgeo.fit.nodes import Density
 from camgeo.fit.polygon import fit_polygon, least_vertices, polygon_density
@@ -17,7 +17,7 @@ from camgeo.recipe.loading import load, load_text
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
-    from camgeo.fit.edges import Placed, Sagittas
+    from camgeo.fit.edges import PlacedEdges, Sagittas
     from kin.numeric.arrays import Array
 
 RECIPES = Path(__file__).parents[2] / "recipes"
@@ -32,12 +32,12 @@ def test_edges_and_rounds_are_few_where_rounding_shows(
     curve: Curve = load(RECIPES / f"{recipe}.yaml").cam.exact().surfaces[0].curve
     rounds = 0
 
-    def counted(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Sagittas:
+    def counted(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -> Sagittas:
         nonlocal rounds
         rounds += 1
-        return look(curve, edges, sides, tolerance)
+        return sagittas(curve, edges, sides, tolerance)
 
-    monkeypatch.setattr("camgeo.fit.polygon.look", counted)
+    monkeypatch.setattr("camgeo.fit.polygon.sagittas", counted)
     polygon = fit_polygon(curve, tolerance)
     assert 0.9 * tolerance < polygon.bound.worst <= tolerance
     # a part of the tolerance, at most, is kept for the proof
@@ -59,7 +59,7 @@ def test_a_root_that_is_far_off_for_a_fine_edge_is_followed(monkeypatch: pytest.
     def stopped(*_: object) -> None:
         raise InterruptedError
 
-    monkeypatch.setattr("camgeo.fit.polygon._settled", stopped)
+    monkeypatch.setattr("camgeo.fit.polygon._settle", stopped)
     for tolerance in (1e-3, 1e-5, 1e-7, 1e-8, 1e-9):
         with pytest.raises(InterruptedError):
             fit_polygon(curve, tolerance)

@@ -231,14 +231,14 @@ def test_a_curvature_that_is_off_breaks_the_bound() -> None:
 def test_what_newton_claims_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Too few arcs, said to hold the tolerance: the proof refuses them, and nothing beyond it comes out."""
     curve = Curve.whole(SHAPES["fourier"])
-    solve, levels = free_arcs._levelled, []
+    solve, levels = free_arcs._level_out, []
 
     def boasting(*given: object) -> object:
         joints, frame, level = solve(*given)  # handed on as it came
         levels.append(level)
         return joints, frame, np.zeros_like(level)
 
-    monkeypatch.setattr(free_arcs, "_levelled", boasting)
+    monkeypatch.setattr(free_arcs, "_level_out", boasting)
     monkeypatch.setattr(
         Part, "count", lambda part, tolerance: max(2, math.floor(0.7 * part.total / math.cbrt(tolerance)))
     )

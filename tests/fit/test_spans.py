@@ -12,7 +12,7 @@ from support.shapes import booth
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import spans
-from camgeo.fit.handles import handled
+from camgeo.fit.handles import cubic_spans
 from camgeo.fit.spans import Cubics, plane, spans_deviation
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 
@@ -79,7 +79,7 @@ def test_it_exceeds_the_truth_by_a_fiftieth_at_most(name: str, length: float) ->
     begin, end = curve.runs[0].stretches[0]
     low = begin + (end - begin) * np.linspace(0.05, 0.95, 7) - 0.02 * length
     high = low + 0.04 * length * (end - begin)
-    control, worst, _ = handled(curve, low, high, 0.0)
+    control, worst, _ = cubic_spans(curve, low, high, 0.0)
     tolerance = max(1.2 * float(worst.max()), 1e-11)
     outward, inward = spans_deviation(curve, control, low, high, tolerance)
     for i in range(low.size):
@@ -91,7 +91,7 @@ def test_it_exceeds_the_truth_by_a_fiftieth_at_most(name: str, length: float) ->
 def test_the_error_of_the_proof_falls_as_the_fourth_power_of_the_step() -> None:
     curve = CURVES["fourier"]
     low, high = np.array([0.9]), np.array([1.1])
-    control = handled(curve, low, high, 0.0)[0]
+    control = cubic_spans(curve, low, high, 0.0)[0]
     beyond = [np.subtract(*spans._ranges(curve, Cubics.of(control), low, high, n)[:3:2]).max() for n in (8, 16, 32)]
     assert 12 < beyond[0] / beyond[1] < 20
     assert 12 < beyond[1] / beyond[2] < 20

@@ -15,8 +15,8 @@ from camgeo.capabilities.study.least_pieces import least_pieces, least_spline
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import spline as module
-from camgeo.fit.cubic import LEAST, contact, spans_wanted
-from camgeo.fit.handles import LOOKS, PLACES, Spans, handled, seen
+from camgeo.fit.cubic import LEAST, contact, span_density
+from camgeo.fit.handles import LOOKS, PLACES, Spans, cubic_spans, sampled_gap
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.spans import plane
 from camgeo.fit.spline import fit_spline
@@ -85,7 +85,7 @@ def test_small_spans_err_as_theory_says() -> None:
         speed = curve.sample(middle).speed
         low, high = middle - 0.5 * length / speed, middle + 0.5 * length / speed
         miss = np.abs(contact(*curve.shape.series(middle, 4)).miss)
-        _, worst, _ = handled(curve, low, high, 0.0)
+        _, worst, _ = cubic_spans(curve, low, high, 0.0)
         ratio = worst / (miss * length**6 / module.ON_CURVE)
         clear = miss * length**6 / module.ON_CURVE > 1e-12  # of rounding
         assert clear.sum() > 20
@@ -96,14 +96,14 @@ def test_no_span_of_a_right_length_does_better() -> None:
     """A span's handles are near the best there are: no others of a grid about them stray less by more than 2 %."""
     curve = support(25.0, {3: 2.0})
     low, high = np.array([0.9]), np.array([1.2])
-    control, worst, _ = handled(curve, low, high, 0.0)
+    control, worst, _ = cubic_spans(curve, low, high, 0.0)
     a, b = curve.span(low, high)
     spans = Spans(low, high, *(plane(x) for x in (a.point, a.tangent, b.point, b.tangent)))
     own = np.array([np.hypot(*(control[0, i + 1] - control[0, i])) for i in (0, 2)])
     feet = (low + (high - low) * PLACES)[None]
     for i in np.linspace(-0.02, 0.02, 21):
         for j in np.linspace(-0.02, 0.02, 21):
-            gap = seen(curve, spans, (own * (1 + np.array([i, j])))[None], feet)
+            gap = sampled_gap(curve, spans, (own * (1 + np.array([i, j])))[None], feet)
             assert gap.shape == (1, LOOKS - 1)
             assert np.abs(gap).max() > 0.98 * worst[0]
 
@@ -113,7 +113,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
     assert contour is not None
-    totals = spans_wanted(contour, stretches(contour)).totals
+    totals = span_density(contour, stretches(contour)).totals
     ratios = []
     for exponent in (-3, -4, -5, -6):
         tolerance = 10.0**exponent
@@ -145,7 +145,7 @@ def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
     for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
         contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
         assert contour is not None
-        totals = spans_wanted(contour, stretches(contour)).totals
+        totals = span_density(contour, stretches(contour)).totals
         for exponent in (-4, -6):
             found = fit_spline(contour, 10.0**exponent)
             assert found.count <= np.ceil(1.02 * totals * 10.0 ** (-exponent / 6)).sum() + 1
@@ -198,9 +198,9 @@ def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(
 
     def counted(curve: Curve, low: np.ndarray, *rest: object) -> tuple[np.ndarray, ...]:
         found_anew.append(low.size)
-        return handled(curve, low, *rest)
+        return cubic_spans(curve, low, *rest)
 
-    monkeypatch.setattr(module, "handled", counted)
+    monkeypatch.setattr(module, "cubic_spans", counted)
     found = fit_spline(contour, times * floor)
     assert found.bound.worst <= times * floor
     assert sum(found_anew) <= 30 * found.count
@@ -213,9 +213,9 @@ def test_spans_between_nodes_that_stay_are_not_sought_again(monkeypatch: pytest.
     curve = support(25.0, {3: 2.0})
     nodes = np.linspace(0.0, 6.0, 13)
     first = module._Spans.none().between(curve, nodes[:-1], nodes[1:], 0.0, 1.0)
-    first = first.proved(curve, np.ones(12, dtype=bool), 1.0)
+    first = first.prove(curve, np.ones(12, dtype=bool), 1.0)
     sought = []
-    monkeypatch.setattr(module, "handled", lambda *a: sought.append(a[1:3]) or handled(*a))
+    monkeypatch.setattr(module, "cubic_spans", lambda *a: sought.append(a[1:3]) or cubic_spans(*a))
     finer = np.sort(np.append(nodes, [0.75, 5.1]))
     again = first.between(curve, finer[:-1], finer[1:], 0.0, 1.0)
     assert [x.tolist() for x in sought[0]] == [[0.5, 0.75, 5.0, 5.1], [0.75, 1.0, 5.1, 5.5]]

@@ -12,7 +12,7 @@ from support.cases import few
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import deviation
-from camgeo.fit.deviation import FEW, MOST_NODES, SLACK, Chain, chain_deviation, foot, radial, seen_deviation
+from camgeo.fit.deviation import FEW, MOST_NODES, SLACK, Chain, chain_deviation, foot, radial, sampled_deviation
 from kin.law.support_function import lift_from_fourier
 
 CURVE = Curve.whole(SupportShape(lift_from_fourier(25.0, {3: 2.0}, {5: 0.1}, (18.0, 8.5))))
@@ -74,7 +74,7 @@ def test_what_is_proved_holds_and_is_sharp_on_both_sides(count: int, bend: float
     assert (found.outside - high <= 1.01 * SLACK * tolerance).all()
     assert (low - found.inside <= 1.01 * SLACK * tolerance).all()
     assert np.array_equal(found.worst, np.maximum(found.outside, -found.inside))
-    assert (seen_deviation(CURVE, chain, 8) <= found.worst).all()
+    assert (sampled_deviation(CURVE, chain, 8) <= found.worst).all()
 
 
 @pytest.mark.parametrize("bend", [0.0, 2.0])
@@ -128,7 +128,7 @@ def test_a_piece_run_backwards_is_never_proved() -> None:
     chain = pieces(36)
     found = chain_deviation(CURVE, replace(chain, tangent=-chain.tangent), 1.0)
     assert np.isinf(found.worst).all()
-    assert np.isinf(seen_deviation(CURVE, replace(chain, tangent=-chain.tangent), 4)).all()
+    assert np.isinf(sampled_deviation(CURVE, replace(chain, tangent=-chain.tangent), 4)).all()
 
 
 def test_a_foot_is_found_or_told_how_far_off_it_is() -> None:

@@ -56,7 +56,7 @@ def test_an_impossible_stl_is_refused_before_anything_is_fitted(
     def fitted(*_: object) -> None:
         pytest.fail("fitted what cannot be written")
 
-    monkeypatch.setattr("camgeo.fit.cache._fitted", fitted)
+    monkeypatch.setattr("camgeo.fit.cache._fit", fitted)
     recipe = "cam: {kind: support, p: 25 + sin(3*t)}\npart: {thickness: 8}\n"
     assert exported(tmp_path, recipe + FILES, "--tolerance", "1e-9") == 2
     assert "single precision" in capsys.readouterr().err

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.cubic import ORDER, spans_wanted
+from camgeo.fit.cubic import ORDER, span_density
 from camgeo.fit.nodes import Density
 from camgeo.fit.polygon import least_vertices
 
@@ -41,7 +41,7 @@ def least_spline(curve: Curve, tolerance: float) -> float:
     """Leading-order count of cubic spans with a continuous tangent, and one at least for each smooth stretch."""
     stretches = np.concatenate([run.stretches for run in curve.runs])
     scale = math.pow(tolerance, -1.0 / ORDER)
-    return float(np.maximum(1.0, scale * spans_wanted(curve, stretches).totals).sum())
+    return float(np.maximum(1.0, scale * span_density(curve, stretches).totals).sum())
 
 
 def _arc_density(frame: Frame) -> Array:
