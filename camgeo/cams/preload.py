@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.family import ExactCam, GrownError, Preload
 from camgeo.schema.fields import MOST, Field, Kind, length, mapping
-from kin.law.contacts import eased
+from kin.law.contacts import eased_contact
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class PreloadedCam(ExactCam):
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
         """Followers that judge files: the contacts stand back by the growth of the metal."""
-        return self._followers(list(map(eased, self.follower.contacts, self.preload.overlaps)))
+        return self._followers(list(map(eased_contact, self.follower.contacts, self.preload.overlaps)))
 
     @property
     def running(self) -> dict[str, Gauge]:

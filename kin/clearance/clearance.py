@@ -211,7 +211,7 @@ class _Search:
                 chosen = _lowest(cells.lower, AT_ONCE)
                 stack += [cells.within(~chosen), cells.within(chosen)]
             elif len(cells.phi):
-                stack += self._looked_at(cells)
+                stack += self._look(cells)
 
     def _begin(self, regions: tuple[Region, Region]) -> list[_Cells]:
         """Intervals to begin with, the most promising ones apart; a single angle if the bodies move as one."""
@@ -234,7 +234,7 @@ class _Search:
         self.proved = min(self.proved, float(lower[~open_].min(initial=math.inf)))
         return open_
 
-    def _looked_at(self, cells: _Cells) -> list[_Cells]:
+    def _look(self, cells: _Cells) -> list[_Cells]:
         """Work out D at the middle of each interval; what is left, halved."""
         meeting = self._meeting(cells)
         self.evaluations += len(cells.phi)

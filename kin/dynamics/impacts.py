@@ -127,13 +127,13 @@ class _Course:
             try:
                 after = self._turn(state, log)
             except SpentError:
-                return Course(tuple(done), state, settled, self._stopped(len(done), log), self.work.places)
+                return Course(tuple(done), state, settled, self._reason(len(done), log), self.work.places)
             done.append(log.turn())
             settled = after.contact == state.contact and self._alike(state, after)
             state = after
         return Course(tuple(done), state, settled, None, self.work.places)
 
-    def _stopped(self, turns: int, log: Log) -> str:
+    def _reason(self, turns: int, log: Log) -> str:
         train, rpm = self.running.train, self.running.rpm
         return (
             f"followed from rest to {math.degrees(log.reached):.4g} degrees of turn {turns + 1} and no further: "
@@ -195,7 +195,7 @@ class _Course:
         x = (phi - self.lower.knots[at]) / self.lower.half[at] - 1.0
         return np.stack([evaluated(self.gap[:, row], at, x) for row in (0, 1)])
 
-    def _pressed(self, contact: int, place: int, free: Free) -> Pressed:
+    def _pressed_face(self, contact: int, place: int, free: Free) -> Pressed:
         """A face that bears on one stretch."""
         half = float(self.found[contact].half[place])
         k, c = self.contact
@@ -260,7 +260,7 @@ class _Course:
             if landed is not None:
                 return flight.face(landed), place, landed, here.moved(place, free, landed)
             return here.moved(place, free, end)
-        span = self._pressed(contact, place, free)
+        span = self._pressed_face(contact, place, free)
         bound = here.oscillator.bound(np.array([[free.z], [free.v]]))
         ringing = time + float(here.lasting(bound, np.array([place]))[0])
         for at in windows(time, end, ringing, here.step):
@@ -284,7 +284,7 @@ class _Course:
         samples = ContactSamples(at.stretch, at.time, level, here.drive.knots)
 
         def span_of(stretch: int) -> Pressed:
-            return self._pressed(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
+            return self._pressed_face(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
 
         doubtful = np.union1d(np.flatnonzero(level < self.limit), dips(level))
         for stretch in np.unique(at.stretch[doubtful]).tolist():

@@ -110,7 +110,7 @@ class _Search:
         left = [widest]
         while left:
             part = left.pop()
-            if self._passed(part):
+            if self._is_past(part):
                 self.holds = part.high.rpm
                 continue
             low, high = part.low, part.high
@@ -120,7 +120,7 @@ class _Search:
             left += [Range(*ends) for ends in pairwise(looks)][::-1]
         return None
 
-    def _passed(self, part: Range) -> bool:
+    def _is_past(self, part: Range) -> bool:
         if part.sure:
             return True
         if part.high.swings and part.width > max(_WIDE, _DAMPED * part.high.fading):

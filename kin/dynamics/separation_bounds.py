@@ -60,13 +60,13 @@ class Look:
         self.swings = train.damping_ratio < _BLUNT
         self.fading = self.oscillator.fading if self.swings else 0.5 * self.oscillator.fading
         self.gain = self._gain()
-        q, rate, remainder = self._followed(running.forcing.series(response.drive))
+        q, rate, remainder = self._particular(running.forcing.series(response.drive))
         slow = response.slow[:, None]
         self._q, self._rate = np.where(slow, response.p, q), np.where(slow, response.v, rate)
         each = self._size(np.array([[0.0], [1.0]]))[0]
         self.inner = np.where(response.slow, 0.0, 2.0 * response.half * remainder * each)
 
-    def _followed(self, g: Array) -> tuple[Array, Array, Array]:
+    def _particular(self, g: Array) -> tuple[Array, Array, Array]:
         """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of what q leaves of g.
 
         g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less.

@@ -78,7 +78,7 @@ def follower_of(
     return FlatFace(placed, Lift(raised))
 
 
-def unled(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
+def still_follower(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
     """Make the follower of contacts for a contour that no motion is known of: it is meant to stand still.
 
     Raises ValueError as `follower_of` does.

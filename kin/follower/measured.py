@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.follower.follower import unled
+from kin.follower.follower import still_follower
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -114,10 +114,10 @@ def measured(
     is `contour`: the roller rests on it as contact 2. Raises ContactError where the touch meets nothing, ValueError
     for contacts that `follower_of` does not know.
     """
-    follower = unled(contacts, side)
+    follower = still_follower(contacts, side)
     first, *others = follower.resting(contour)
     if outer is not None:
-        others = unled(contacts, -1).resting(outer)
+        others = still_follower(contacts, -1).resting(outer)
 
     def position(angle: Array) -> Array:
         """Position of contact 1 (n,)."""
@@ -152,7 +152,7 @@ def measured(
 
 def positions(contour: Contour, contact: Contact[Guide, Touch], side: Side, phi: Array) -> Array:
     """Positions of a follower of one contact at shaft angles phi (n,), mm or rad (n,); see `measured`."""
-    follower = unled((contact,), side)
+    follower = still_follower((contact,), side)
     rows: Array = follower.resting(contour)[0].rows(phi)[0] / follower.si
     return rows
 

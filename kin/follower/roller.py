@@ -196,7 +196,9 @@ class _Rollers(Moved):
 
         def rollers(obstacle: Arcs, looked: int, *signs: int) -> list[Held]:
             # a roller that stands turned meets the contour as one that does not meets it turned back
-            return [held_on(obstacle.turned(-one.turned), guide, at[:looked], one, signs) for one, guide, at in each]
+            return [
+                hold_roller(obstacle.turned(-one.turned), guide, at[:looked], one, signs) for one, guide, at in each
+            ]
 
         held = bounds = rollers(obstacle, max(len(at) for _, _, at in each), 1, -1)
         few = len(obstacle) <= MOST_PIECES
@@ -319,7 +321,9 @@ class DoubleRoller(OfTransmission, _Rollers):
         return sampled_play(signed_distance(contour.as_arcs()[0], second) - self.radius, angle)
 
 
-def held_on(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], signs: tuple[int, ...]) -> Held:
+def hold_roller(
+    obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], signs: tuple[int, ...]
+) -> Held:
     """Hold a roller at shaft angles `looked` (n,) first, and where pieces end if they are few. ContactError if loose.
 
     `signs` are those of the errors that are looked for: those outwards do without the ends.

@@ -46,7 +46,7 @@ def judge_closures(
             continue
         pair = by_name[closure.pushes], by_name[closure.stops]
         try:
-            verdict, more = _judged(closure, pair, limits, uneven)
+            verdict, more = _judge_closure(closure, pair, limits, uneven)
         except (ContactError, UnsettledError) as error:
             checks.append(failed(closure.name, str(error), unit=pair[0][0].gauge.unit))
             continue
@@ -55,7 +55,7 @@ def judge_closures(
     return tuple(verdicts), checks
 
 
-def _judged(
+def _judge_closure(
     closure: ClosureIntent, pair: tuple[Surface, Surface], limits: Limits, uneven: float
 ) -> tuple[ClosureVerdict, list[Check]]:
     gauges = tuple(surface.gauge for surface, _ in pair)

@@ -236,7 +236,7 @@ def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: floa
         total += (solid - sum(hole.contour.area for hole in layer.holes)) * _height(layer)
         if layer.outline is not None:
             inside = [cross_hole for cross_hole in cross_holes if layer.low < cross_hole.z < layer.high]
-            total -= sum(_bored(cross_hole, layer.outline, layer.holes[0]) for cross_hole in inside)
+            total -= sum(_cross_hole_volume(cross_hole, layer.outline, layer.holes[0]) for cross_hole in inside)
     return float(total)
 
 
@@ -346,7 +346,7 @@ def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
     return places
 
 
-def _bored(cross: CrossHole, outline: Hole, hole: Hole) -> float:
+def _cross_hole_volume(cross: CrossHole, outline: Hole, hole: Hole) -> float:
     """Volume that a cross hole takes from between a hole and an outline.
 
     The integral of the height of the bore times the way from hole to outline over its width, y = r sin a, by Gauss's

@@ -93,7 +93,7 @@ def _rapid_check(program: Program, milling: Milling) -> Check:
         low = min(move.start[2], move.end[2])
         if move.rapid and low <= 0.0 and (across(move) or move.end[2] < move.start[2]):
             bad.append(f"line {move.line} moves fast at z = {length_words(low)} {UNIT}")
-    return _counted("rapid", bad)
+    return _count_check("rapid", bad)
 
 
 def _hub_check(program: Program, milling: Milling) -> Check | None:
@@ -118,7 +118,7 @@ def _from_shaft(move: Move) -> float:
     return float(nearest(arcs_of([move]), np.zeros((1, 2)))[1][0])
 
 
-def _counted(name: str, faults: list[str]) -> Check:
+def _count_check(name: str, faults: list[str]) -> Check:
     more = f"; and {len(faults) - MOST_NAMED} more" if len(faults) > MOST_NAMED else ""
     return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
 
@@ -200,7 +200,7 @@ def _direction_check(features: list[Feature], milling: Milling) -> Check:
                 clockwise = cut.area < 0.0
                 if clockwise != (milling.climb == (edge.side > 0)):
                     bad.append(f"the path from line {cut.loop[0].line} runs the wrong way round")
-    return _counted("direction", bad)
+    return _count_check("direction", bad)
 
 
 def _entry_check(features: list[Feature]) -> Check:

@@ -150,7 +150,7 @@ class Contact(Generic[G_co, T_co]):
         return replace(self, datum=self.datum - self.sense * by)
 
 
-def eased(contact: Contact[Guide, Touch], room: float) -> Contact[Guide, Touch]:
+def eased_contact(contact: Contact[Guide, Touch], room: float) -> Contact[Guide, Touch]:
     """The contact of a gauge that stands off by `room`, mm, along its normal: metal grown by as much just fits it.
 
     Raises ValueError where nothing would be left of a round touch.

@@ -79,7 +79,9 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
         best, nearest_yet = extremes, coefficients
         if extremes.greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least) or not search.least(reference):
             break
-        coefficients = coefficients + search.levelled(reference, reference.error, search.rows(coefficients, reference))
+        coefficients = coefficients + search.levelling_change(
+            reference, reference.error, search.rows(coefficients, reference)
+        )
     if not best.greatest <= max(_NOTHING, (1 + _CLOSE) * least):
         other = "a smaller stroke" if harmonics == MOST_HARMONICS else "other harmonics"
         raise IntentError(
@@ -147,7 +149,7 @@ class _Search:
         rate = 1.0 / np.sqrt(1.0 - inside * inside)
         return -(np.arcsin(inside) + rate * (d - inside)), -rate * slope
 
-    def _shown(self, coefficients: Array, tau: Array) -> tuple[Array, Array]:
+    def _error_at(self, coefficients: Array, tau: Array) -> tuple[Array, Array]:
         """Error at parameters of the wanted law (n,), and the polar angles of the made one there."""
         phi, wanted = (rows[0] for rows in self.wanted.at(tau, 0))
         shaft = phi - 0.5 * self.wanted.alpha
@@ -163,7 +165,7 @@ class _Search:
     def extremes(self, coefficients: Array) -> _Extremes:
         """Every local extreme of the error over the period, between the places looked at by golden sections."""
         tau = self.grid
-        error, _ = self._shown(coefficients, tau)
+        error, _ = self._error_at(coefficients, tau)
         size = np.abs(error)
         before, after = np.roll(size, 1), np.roll(size, -1)
         top = np.flatnonzero((size >= before) & (size >= after) & ((size > before) | (size > after)))
@@ -174,18 +176,18 @@ class _Search:
         high = np.where(top + 1 < len(tau), tau[(top + 1) % len(tau)], tau[0] + period)
         sign = np.sign(error[top])
         inner, outer = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        at_inner, at_outer = (sign * self._shown(coefficients, x)[0] for x in (inner, outer))
+        at_inner, at_outer = (sign * self._error_at(coefficients, x)[0] for x in (inner, outer))
         for _ in range(_SECTIONS):
             left = at_inner > at_outer
             low, high = np.where(left, low, inner), np.where(left, outer, high)
             fresh = np.where(left, high - _GOLDEN * (high - low), low + _GOLDEN * (high - low))
-            at_fresh = sign * self._shown(coefficients, fresh)[0]
+            at_fresh = sign * self._error_at(coefficients, fresh)[0]
             inner, outer = np.where(left, fresh, outer), np.where(left, inner, fresh)
             at_inner, at_outer = np.where(left, at_fresh, at_outer), np.where(left, at_inner, at_fresh)
         best = np.where(
             np.maximum(at_inner, at_outer) > size[top], np.where(at_inner > at_outer, inner, outer), tau[top]
         )
-        error, t = self._shown(coefficients, best)
+        error, t = self._error_at(coefficients, best)
         return _Extremes(best, t, error)
 
     def reference(self, extremes: _Extremes) -> _Extremes:
@@ -227,7 +229,7 @@ class _Search:
         rows: Array = (weight * np.concatenate([np.cos(angles), np.sin(angles)])).T
         return rows
 
-    def levelled(self, reference: _Extremes, error: Array, rows: Array) -> Array:
+    def levelling_change(self, reference: _Extremes, error: Array, rows: Array) -> Array:
         """The change of the coefficients that gives all of a reference one error in turn, as far as it is linear."""
         solved: Array = np.linalg.solve(np.column_stack([rows, -np.sign(reference.error)]), -error)
         return solved[:-1]
@@ -237,16 +239,16 @@ class _Search:
 
         A step is halved until the greatest error falls, so that a first series far off leads there too.
         """
-        error, t = self._tried(coefficients)
+        error, t = self._sampled_error(coefficients)
         while not np.isfinite(error).all():
             coefficients = 0.5 * coefficients
-            error, t = self._tried(coefficients)
+            error, t = self._sampled_error(coefficients)
         for _ in range(_STEPS):
             places = _Extremes(self.grid, t, error)
-            step = self._exchanged(places, self.rows(coefficients, places))
+            step = self._best_change(places, self.rows(coefficients, places))
             for halving in range(_HALVINGS):
                 trial = coefficients + 0.5**halving * step
-                error, t = self._tried(trial)
+                error, t = self._sampled_error(trial)
                 if np.abs(error).max() < places.greatest:
                     break
             else:
@@ -256,14 +258,14 @@ class _Search:
                 return coefficients
         return coefficients
 
-    def _tried(self, coefficients: Array) -> tuple[Array, Array]:
+    def _sampled_error(self, coefficients: Array) -> tuple[Array, Array]:
         """Error and polar angles on the grid: infinite of a series that turns so steeply that none are found."""
         try:
-            return self._shown(coefficients, self.grid)
+            return self._error_at(coefficients, self.grid)
         except UnsettledError:
             return np.full(self.grid.shape, math.inf), self.grid
 
-    def _exchanged(self, places: _Extremes, rows: Array) -> Array:
+    def _best_change(self, places: _Extremes, rows: Array) -> Array:
         """The change of the coefficients (2 m,) that is best for the linear problem at places."""
         change, error = np.zeros(rows.shape[1]), places.error
         for _ in range(_STEPS):
@@ -272,7 +274,7 @@ class _Search:
             if not level or np.abs(error).max() <= (1 + 1e-3) * level:
                 break
             kept = reference.tau.astype(np.intp)
-            change = self.levelled(reference, places.error[kept], rows[kept])
+            change = self.levelling_change(reference, places.error[kept], rows[kept])
             error = places.error + rows @ change
         return change
 

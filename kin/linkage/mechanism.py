@@ -193,14 +193,14 @@ class Mechanism:
         """Relative angles (n,) at shaft angles (n,), any real numbers. PlaceError unless the mechanism turns."""
         shaft = np.atleast_1d(np.asarray(shaft, dtype=float))
         turns = np.floor(shaft / TURN) * TURN
-        cell, share = self._followed.reach(shaft - turns)
-        low, high = self._followed.low[cell], self._followed.high[cell]
+        cell, share = self._relation.reach(shaft - turns)
+        low, high = self._relation.low[cell], self._relation.high[cell]
         return low + share * (high - low) + turns
 
     def output(self, shaft: Array) -> Array:
         """Output (n,) at shaft angles (n,), likewise, by polynomials that follow it to its rounding."""
-        cell, share = self._followed.reach(np.mod(shaft, TURN))
-        return values(self._followed.coefficients[1, cell], share)
+        cell, share = self._relation.reach(np.mod(shaft, TURN))
+        return values(self._relation.coefficients[1, cell], share)
 
     @cached_property
     def _mobility(self) -> Mobility:
@@ -250,7 +250,7 @@ class Mechanism:
 
     def _longest(self, band: float, over: Literal["shaft", "relative"], most: int) -> tuple[Dwell, ...]:
         if over == "relative":
-            return dwells(lambda theta, _: self._followed.at(theta)[1:], self.breaks, band, TURN, most)
+            return dwells(lambda theta, _: self._relation.at(theta)[1:], self.breaks, band, TURN, most)
 
         shaft = self.at(self.breaks, 0).shaft[0] if len(self.breaks) else self.breaks
         return dwells(lambda phi, _: self.output(phi)[None], shaft, band, TURN, most)
@@ -316,7 +316,7 @@ class Mechanism:
         return found
 
     @cached_property
-    def _followed(self) -> Cells:
+    def _relation(self) -> Cells:
         """Shaft angle and output over the relative angle, to their rounding."""
         self._demand_turning()
 

@@ -162,10 +162,12 @@ def lateness(readings: Sequence[Readings]) -> float:
         )
 
     late = min(every.tolist(), key=scatter)
-    return math.remainder(_settled(readings, _settled(few, late, variances), variances), TURN)
+    return math.remainder(
+        _least_squares_lateness(readings, _least_squares_lateness(few, late, variances), variances), TURN
+    )
 
 
-def _settled(readings: Sequence[Readings], late: float, variances: Sequence[float]) -> float:
+def _least_squares_lateness(readings: Sequence[Readings], late: float, variances: Sequence[float]) -> float:
     """The lateness of least squares near one, rad: Gauss and Newton. Each cam counts by its share of its variance."""
     h = TURN / COARSE_TURNS / 8.0
     for _ in range(STEPS):

@@ -98,17 +98,17 @@ class Errors:
     @property
     def phase(self) -> tuple[float, Array]:
         """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
-        turn, remaining = self._settled(0.0)
+        turn, remaining = self._least_squares_turn(0.0)
         rest = float(remaining @ remaining)
         if rest > UNEXPLAINED * float(self.remaining @ self.remaining):  # a turn of many degrees
             made = np.fft.rfft(self.intended[0] + self.rows[0])
             likeness = np.fft.irfft(made * np.conj(np.fft.rfft(self.intended[0])), len(self.shaft))
-            other = self._settled(math.remainder(int(np.argmax(likeness)) * TURN / len(self.shaft), TURN))
+            other = self._least_squares_turn(math.remainder(int(np.argmax(likeness)) * TURN / len(self.shaft), TURN))
             if float(other[1] @ other[1]) < UNEXPLAINED * rest:
                 return other
         return turn, remaining
 
-    def _settled(self, turn: float) -> tuple[float, Array]:
+    def _least_squares_turn(self, turn: float) -> tuple[float, Array]:
         """The turn of least squares near one, rad, and what remains without it (n,): Gauss and Newton."""
         made = self.intended[0] + self.rows[0]
         for _ in range(STEPS):

@@ -134,7 +134,7 @@ class _Machine:
         if not words:
             return
         if self.ended:
-            raise self._refused(number, "stands after the end of the program")
+            raise self._error(number, "stands after the end of the program")
         codes = self._codes(number, words)
         numbers = self._numbers(number, words)
         self._modes(number, codes)
@@ -143,14 +143,14 @@ class _Machine:
         self.speed = numbers.get("S", self.speed)
         for value in (numbers.get("F", 1.0), numbers.get("S", 1.0)):
             if not value > 0.0:
-                raise self._refused(number, "a feed and a speed must be above 0")
+                raise self._error(number, "a feed and a speed must be above 0")
         self._spindle(number, codes)
         if any(axis in numbers for axis in "XYZIJ"):
             self._move(number, numbers)
         if any(code in _END for letter, code in codes if letter == "M"):
             self.ended = True
 
-    def _refused(self, number: int, what: str, reason: str = "unsupported") -> ReadError:
+    def _error(self, number: int, what: str, reason: str = "unsupported") -> ReadError:
         return ReadError(reason, f"line {number}: {what}", self.path)
 
     def _words(self, number: int, line: str) -> list[tuple[str, str]]:
@@ -165,7 +165,7 @@ class _Machine:
         words = _WORD.findall(bare)
         if "".join(letter + value for letter, value in words) != bare:
             left = _WORD.sub(" ", bare).split()
-            raise self._refused(number, f"{left[0] if left else bare} is not read", "syntax")
+            raise self._error(number, f"{left[0] if left else bare} is not read", "syntax")
         return [word for word in words if word[0] != "N"]
 
     def _codes(self, number: int, words: list[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -182,9 +182,9 @@ class _Machine:
                 else {**dict.fromkeys(_SPINDLE, "spindle"), **dict.fromkeys(_END, "end")}.get(code)
             )
             if group is None:
-                raise self._refused(number, f"{letter}{text} is not read")
+                raise self._error(number, f"{letter}{text} is not read")
             if group in groups:
-                raise self._refused(number, f"two words set the {group}", "syntax")
+                raise self._error(number, f"two words set the {group}", "syntax")
             groups.add(group)
             codes.append((letter, code))
         return codes
@@ -196,12 +196,12 @@ class _Machine:
                 continue
             if letter not in "XYZIJFS":
                 remedy = f", an arc by its radius; {CENTRES}" if letter == "R" else ""
-                raise self._refused(number, f"{letter}{text} is not read{remedy}")
+                raise self._error(number, f"{letter}{text} is not read{remedy}")
             if letter in numbers:
-                raise self._refused(number, f"{letter} stands twice", "syntax")
+                raise self._error(number, f"{letter} stands twice", "syntax")
             numbers[letter] = float(text)
             if not abs(numbers[letter]) <= LARGEST:
-                raise self._refused(number, f"{letter}{text} is out of range", "range")
+                raise self._error(number, f"{letter}{text} is out of range", "range")
         return numbers
 
     def _modes(self, number: int, codes: list[tuple[str, str]]) -> None:
@@ -210,12 +210,12 @@ class _Machine:
                 self.modes[_GROUP_OF[code]] = code
         unit = {"20": 25.4, "21": 1.0}.get(self.modes.get("units", ""), 0.0)
         if self.unit and unit != self.unit:
-            raise self._refused(number, "the unit changes within the program")
+            raise self._error(number, "the unit changes within the program")
         self.unit = unit
 
     def _length(self, number: int, value: float) -> float:
         if not self.unit:
-            raise self._refused(number, "a length stands before G20 or G21", "syntax")
+            raise self._error(number, "a length stands before G20 or G21", "syntax")
         return value * self.unit
 
     def _spindle(self, number: int, codes: list[tuple[str, str]]) -> None:
@@ -223,16 +223,16 @@ class _Machine:
             if letter == "M" and code in _SPINDLE:
                 self.turning = code == "3"
                 if self.turning and not self.speed > 0.0:
-                    raise self._refused(number, "M3 without a speed S", "syntax")
+                    raise self._error(number, "M3 without a speed S", "syntax")
             elif letter == "M":
                 self.turning = False
 
     def _move(self, number: int, numbers: dict[str, float]) -> None:
         motion, distance = self.modes.get("motion"), self.modes.get("distance")
         if motion is None or distance is None:
-            raise self._refused(number, "a coordinate stands before G0 to G3, and G90 or G91", "syntax")
+            raise self._error(number, "a coordinate stands before G0 to G3, and G90 or G91", "syntax")
         if motion in "23" and self.modes.get("plane") is None:
-            raise self._refused(number, "an arc stands before G17", "syntax")
+            raise self._error(number, "an arc stands before G17", "syntax")
         start = list(self.at)
         for k, axis in enumerate("XYZ"):
             if axis not in numbers:
@@ -240,19 +240,19 @@ class _Machine:
             value, here = self._length(number, numbers[axis]), self.at[k]
             if distance == "91":
                 if here is None:
-                    raise self._refused(number, f"{axis} moves from an unknown place", "syntax")
+                    raise self._error(number, f"{axis} moves from an unknown place", "syntax")
                 value += here
             self.at[k] = value
         centred = "I" in numbers or "J" in numbers
         if centred != (motion in "23"):
             what = f"an arc has no centre I, J; {CENTRES}" if motion in "23" else "a straight move has a centre"
-            raise self._refused(number, what, "syntax")
+            raise self._error(number, what, "syntax")
         if motion != "0" and not (self.feed > 0.0 and self.turning):
-            raise self._refused(number, "a feed move without a feed F and a turning spindle M3", "syntax")
+            raise self._error(number, "a feed move without a feed F and a turning spindle M3", "syntax")
         begin = [now if was is None else was for was, now in zip(start, self.at, strict=True)]
         if any(value is None for value in self.at):  # the first moves are to a place from nowhere known
             if motion != "0":
-                raise self._refused(number, "a feed move from an unknown place", "syntax")
+                raise self._error(number, "a feed move from an unknown place", "syntax")
             return
         # from nowhere known a coordinate comes as it is reached
         first = (float(begin[0] or 0.0), float(begin[1] or 0.0), float(begin[2] or 0.0))
@@ -270,14 +270,12 @@ class _Machine:
             y + self._length(number, numbers.get("J", 0.0)),
         )
         if z != z2:
-            raise self._refused(number, "an arc that climbs is not read")
+            raise self._error(number, "an arc that climbs is not read")
         first, last = math.hypot(x - centre[0], y - centre[1]), math.hypot(x2 - centre[0], y2 - centre[1])
         if not abs(first - last) <= ARC_MM:
-            raise self._refused(
-                number, f"the ends of the arc lie {first:.9g} and {last:.9g} mm from its centre", "range"
-            )
+            raise self._error(number, f"the ends of the arc lie {first:.9g} and {last:.9g} mm from its centre", "range")
         if not min(first, last) > 0.0:
-            raise self._refused(number, "an arc of radius 0", "range")
+            raise self._error(number, "an arc of radius 0", "range")
         sweep = math.atan2(y2 - centre[1], x2 - centre[0]) - math.atan2(y - centre[1], x - centre[0])
         turn = 2.0 * math.pi
         if (x, y) == (x2, y2):

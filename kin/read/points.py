@@ -113,11 +113,11 @@ def read_points(path: Path) -> PointTable:
         raise ReadError("syntax", "not a text; save the points as CSV", path)
     text = _decoded(data)
     if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
-        return _checked(_dmis(text, path), path)
+        return _demand_sound(_dmis(text, path), path)
     if text.lstrip().upper().startswith("DMISMN"):
         message = "a program that measures, and no point FA(label)=FEAT/POINT,CART of what it measured: give its output"
         raise ReadError("empty", message, path)
-    return _checked(_table(text, path), path)
+    return _demand_sound(_table(text, path), path)
 
 
 def read_contour_points(path: Path, unit: float) -> list[Contour]:
@@ -190,14 +190,14 @@ def _table(text: str, path: Path) -> PointTable:
         rows = read_rows(text, COMMENT)
         if len(rows.lines) > MOST_POINTS:
             raise ReadError("range", f"{len(rows.lines)} rows; up to {MOST_POINTS} are read: leave some out", path)
-        return _headed(rows, path) if rows.heading else _bare(rows, path)
+        return _with_heading(rows, path) if rows.heading else _without_heading(rows, path)
     except RowError as error:
         if error.line is None:
             raise ReadError("empty", error.message, path) from None
         raise ReadError("syntax", f"line {error.line}: {error.message}", path) from None
 
 
-def _bare(rows: Rows, path: Path) -> PointTable:
+def _without_heading(rows: Rows, path: Path) -> PointTable:
     names = {2: "x y", 3: "x y z", 6: "x y z nx ny nz"}.get(rows.columns)
     if names is None:
         count = f"line {rows.numbers[0]}: {rows.columns} numbers without a heading"
@@ -208,7 +208,7 @@ def _bare(rows: Rows, path: Path) -> PointTable:
     return PointTable("places", columns, rows.numbers)
 
 
-def _headed(rows: Rows, path: Path) -> PointTable:
+def _with_heading(rows: Rows, path: Path) -> PointTable:
     known = [_column(cell) for cell in rows.heading]
     names = [name for name, _, _ in known]
     surfaces = list(dict.fromkeys(prefix for name, prefix, _ in known if name == "x" and prefix))
@@ -302,7 +302,7 @@ def _column(cell: str) -> tuple[str, str, str]:
     return known, prefix, unit
 
 
-def _checked(table: PointTable, path: Path) -> PointTable:
+def _demand_sound(table: PointTable, path: Path) -> PointTable:
     """Refuse numbers that are none, too large ones, too few points."""
     for name, column in table.columns.items():
         wrong = ~(np.abs(column) <= LARGEST)

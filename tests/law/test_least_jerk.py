@@ -17,8 +17,8 @@ from kin.law.sources.least_jerk import (
     Space,
     Touch,
     curve_through,
+    excess_of_bounds,
     least,
-    missed_by,
     pulls,
 )
 
@@ -58,7 +58,7 @@ def test_the_integral_is_that_of_the_kernel(reading):
 
 def conditions(found, space, limits):
     """Bounds are kept, multipliers have their signs, and vanish where no bound is touched."""
-    miss, _ = missed_by(found.curve, limits)
+    miss, _ = excess_of_bounds(found.curve, limits)
     assert miss.max() <= 1e-5
     assert (found.pull * np.where(found.upper, -1.0, 1.0) > 0).all()
     assert found.curve(found.x) == pytest.approx(found.values, abs=1e-9 * np.abs(found.values).max())
@@ -147,7 +147,7 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     monkeypatch.setattr("kin.law.sources.least_jerk._FEW", 100)
     few = least(space, limits)
     assert few.square == pytest.approx(plain.square, rel=1e-9)
-    assert missed_by(few.curve, limits)[0].max() <= 1e-5
+    assert excess_of_bounds(few.curve, limits)[0].max() <= 1e-5
 
 
 @pytest.mark.thin(2)

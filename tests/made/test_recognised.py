@@ -8,7 +8,7 @@ from support.measured import disc, points, surfaces
 
 from camgeo.recipe.recipe import read
 from camgeo.synthesis.design import designed
-from kin.follower.follower import unled
+from kin.follower.follower import still_follower
 from kin.law.sources.laws import NAMES
 from kin.made.point_motion import SurfaceRun, measured_motion
 from kin.made.recognised import recognised
@@ -20,7 +20,7 @@ READING = 0.01
 def motion_of(text, noise=0.0005, deviation=lambda t: 0.0 * t):
     ((_, part, surface),) = surfaces(text)
     contact = designed(read(text.encode(), "part.yaml")).exact.follower.contacts[0]
-    still = unled([contact], surface.side)
+    still = still_follower([contact], surface.side)
     return measured_motion([SurfaceRun(still, surface.side, points(part, surface, deviation, noise), None)])
 
 

@@ -19,7 +19,7 @@ from camgeo.capabilities.budget.read_metal import read_metal
 from camgeo.capabilities.budget.sums import spread
 from camgeo.capabilities.budget.words import BORE, PROFILE, WORDS
 from kin.follower.influence import bearing
-from kin.law.contacts import eased
+from kin.law.contacts import eased_contact
 from kin.linkage.influence import QUARTER
 from kin.numeric.angles import TURN
 
@@ -224,7 +224,7 @@ def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, C
     """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`."""
     contacts, preload = design.follower.contacts, design.exact.preload
     if preload is not None:  # their errors are those beside what each overlaps the metal by
-        contacts = tuple(map(eased, contacts, preload.overlaps))
+        contacts = tuple(map(eased_contact, contacts, preload.overlaps))
     position = design.motion.travel(shaft, 1)
     parameters = list(design.motion.parameters(shaft, shaft).values())
     first = np.exp(1j * (shaft + contacts[0].turned))

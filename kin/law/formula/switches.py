@@ -73,7 +73,7 @@ def branches(expression: Expression, places: list[int], lower: float, upper: flo
     for a, b in pairwise((lower, *inside, upper)):
         middle = a + 0.5 * (b - a)
         builds = {place: switch.builds[bisect(switch.changes, middle)] for place, switch in settled.items()}
-        expressions.append(_replaced(expression, builds))
+        expressions.append(_with_steps(expression, builds))
     at_start = any(switch.at_start for switch in settled.values())
     return Branches(tuple(inside), tuple(expressions), at_start, any(switch.at_end for switch in settled.values()))
 
@@ -97,7 +97,7 @@ def _settled(signs: Signs, build: Callable[[int], Build]) -> _Settled:
 
 def _deciding(expression: Expression, step: Instruction) -> Expression:
     """Return what is compared with 0: the argument, or the difference of two."""
-    builder, places = _copied(expression, {})
+    builder, places = _copy(expression, {})
     args = tuple(places[i] for i in step.args)
     return builder.expression(builder.apply("sub", args, step.column) if step.op in {"min", "max"} else args[0])
 
@@ -119,7 +119,7 @@ def _case(step: Instruction, sign: int) -> Build:
 
 def _settle_angle(expression: Expression, step: Instruction, lower: float, upper: float) -> _Settled:
     """Turn by a quarter where y keeps its sign: atan2(y, x) = pi/2 + atan2(-x, y) for y > 0, the cut out of reach."""
-    builder, places = _copied(expression, {})
+    builder, places = _copy(expression, {})
     y, x = (builder.expression(places[i]) for i in step.args)
     changes = signs(y, lower, upper)
 
@@ -147,7 +147,7 @@ def _may_be_left(x: Expression, angle: float) -> bool:
     return not bool(x.ball(angle, angle, 0).rows.positive.all())
 
 
-def _copied(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder, list[int]]:
+def _copy(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder, list[int]]:
     """Return a builder with the expression in it, some steps built otherwise, and where each step now stands."""
     builder = Builder(expression.variables)
     places: list[int] = []
@@ -157,6 +157,6 @@ def _copied(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builde
     return builder, places
 
 
-def _replaced(expression: Expression, builds: Mapping[int, Build]) -> Expression:
-    builder, places = _copied(expression, builds)
+def _with_steps(expression: Expression, builds: Mapping[int, Build]) -> Expression:
+    builder, places = _copy(expression, builds)
     return builder.expression(places[-1])

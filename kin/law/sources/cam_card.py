@@ -143,7 +143,7 @@ class _Programme(NamedTuple):
     nose: float | None
     within: float = 0.0
 
-    def missed(self) -> tuple[float, list[Array]]:
+    def least_miss(self) -> tuple[float, list[Array]]:
         """By how much the rows are missed at best, 0 where they can be met, and the weights of each side that do."""
         rows, right = self._rows()
         solution = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
@@ -287,7 +287,7 @@ def _solved(
     peak rises. All pairs of angles that turn up are tried with any acceleration in common, and the best is taken.
     """
     alone = [_side(lift, card, nose, most) for card in sides]
-    best = _joined(lift, sides, alone, nose)
+    best = _one_acceleration(lift, sides, alone, nose)
     bound = max(side.peak for side in alone) * (1.0 + _CLOSE)
     if len(sides) == 1 or best.peak <= bound:
         return best.solved
@@ -302,16 +302,16 @@ def _solved(
         return [_side(lift, card, level, most) for card in sides]
 
     worse = max(range(len(sides)), key=lambda i: alone[i].peak)
-    best = min(best, _joined(lift, sides, tried(ends[worse]), None), key=_peak)
+    best = min(best, _one_acceleration(lift, sides, tried(ends[worse]), None), key=_peak)
     for _ in range(_LEVELS):
         if best.peak <= bound:
             break
         level = 0.5 * (ends[0] + ends[1])
         own = tried(level)
-        best = min(best, _joined(lift, sides, own, None), key=_peak)
+        best = min(best, _one_acceleration(lift, sides, own, None), key=_peak)
         ends[own[0].peak > own[1].peak] = level
     if bound < best.peak < math.inf:
-        best = min(best, _joined(lift, sides, tried(best.nose), None), key=_peak)
+        best = min(best, _one_acceleration(lift, sides, tried(best.nose), None), key=_peak)
     return best.solved
 
 
@@ -343,7 +343,7 @@ class _Joined(NamedTuple):
     solved: list[tuple[_Family, Array]] | None
 
 
-def _joined(lift: float, sides: Sequence[SideCard], own: Sequence[_Side], nose: float | None) -> _Joined:
+def _one_acceleration(lift: float, sides: Sequence[SideCard], own: Sequence[_Side], nose: float | None) -> _Joined:
     """Give the least peak of sides with one acceleration at the nose, each over its own angle; infinite without one."""
     programme = _programme(lift, sides, [side.half for side in own], nose)
     peak, weights = programme.least_peak(_first_cuts(len(sides)))
@@ -408,8 +408,8 @@ def _search(lift: float, card: SideCard, nose: float | None, most: float, within
         programme = _programme(lift, [card], [half], nose, within or 0.0)
         if within is None:
             peak, _ = programme.least_peak(cuts)
-            return (0.0, peak) if math.isfinite(peak) else (programme.missed()[0], peak)
-        return programme.missed()[0], 0.0
+            return (0.0, peak) if math.isfinite(peak) else (programme.least_miss()[0], peak)
+        return programme.least_miss()[0], 0.0
 
     return _best(_angles(card, most, within or 0.0), merit)
 
@@ -483,11 +483,11 @@ def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
 def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: float) -> IntentError:
     """The error of a card that none meets, with the nearest one: the least greatest difference in degrees."""
     low, high = 0.0, 1.0
-    while not _met(lift, sides, nose, most, high) and high < _FARTHEST:
+    while not _meets(lift, sides, nose, most, high) and high < _FARTHEST:
         low, high = high, 2.0 * high
     for _ in range(_NEAREST):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _met(lift, sides, nose, most, middle) else (middle, high)
+        low, high = (low, middle) if _meets(lift, sides, nose, most, middle) else (middle, high)
     near = _nearest(lift, sides, nose, most, high)
     field = f"{next(card for card in sides if card.crossings).field}.duration"
     if near is None:
@@ -509,7 +509,7 @@ def _crank(card: SideCard, crossing: Crossing) -> float:
     return card.crank * math.degrees(crossing.angle)
 
 
-def _met(lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float) -> bool:
+def _meets(lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float) -> bool:
     """Whether mixtures meet all crossings within so many degrees of the crank."""
     return _weights_within(lift, sides, nose, most, within) is not None
 
@@ -526,8 +526,8 @@ def _weights_within(
     mixtures = []
     for card in sides:
         programme = _programme(lift, [card], [_search(lift, card, nose, most, within)], nose, within)
-        missed, (weights,) = programme.missed()
-        if missed > 0.0:
+        least_miss, (weights,) = programme.least_miss()
+        if least_miss > 0.0:
             return None
         mixtures.append((programme.families[0], weights))
     return mixtures

@@ -111,7 +111,7 @@ def stretches(
                 break
             between.append(stretch)
         else:
-            return _moved(kept, between, rows.period), between
+            return _between_stretches(kept, between, rows.period), between
     return [], []
 
 
@@ -125,7 +125,7 @@ def _leave_out(kept: list[Run], which: int, period: float) -> None:
         kept.pop(which)
 
 
-def _moved(kept: Sequence[Run], between: Sequence[Stretch], period: float) -> list[Run]:
+def _between_stretches(kept: Sequence[Run], between: Sequence[Stretch], period: float) -> list[Run]:
     """Runs that begin where the stretch before them ends, and end where the next one begins."""
     moved = []
     for i, run in enumerate(kept):

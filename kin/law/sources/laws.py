@@ -118,7 +118,7 @@ def trapezoid(ramp: float = 0.125, field: str = "law") -> Law:
         half.append(Polynomial((s, v, a / 2, j / 6), begin))
         x = end - begin
         s, v = s + x * (v + x * (a / 2 + x * j / 6)), v + x * (a + x * j / 2)
-    return _of("trapezoid", _imaged(knots, half))
+    return _of("trapezoid", _symmetric(knots, half))
 
 
 def blended(first: float, last: float, field: str = "law") -> Law:
@@ -232,7 +232,7 @@ def _of(name: str, motion: Piecewise, *, reverses: bool = False) -> Law:
     return Law(name, motion, peaks(motion), reverses)
 
 
-def _imaged(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
+def _symmetric(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
     """A symmetric law from its first half."""
     images = [mirrored(function) for function in reversed(half)]
     return Piecewise(np.array([*knots, *(1 - u for u in reversed(knots[:-1]))]), (*half, *images))
@@ -272,13 +272,13 @@ def _catalogue() -> dict[str, _Entry]:
         ),
         "trapezoid": _Entry(trapezoid, "acceleration a trapezoid, ramps of 1/8"),
         "sine-squared": _Entry(
-            lambda: _of("sine-squared", _imaged(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
+            lambda: _of("sine-squared", _symmetric(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
         ),
         "polynomial-23": _Entry(
             lambda: _single("polynomial-23", Polynomial((0.5, 1.5, 0.0, -2.0), 0.5)), "3 u^2 - 2 u^3"
         ),
         "cubic": _Entry(
-            lambda: _of("cubic", _imaged(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
+            lambda: _of("cubic", _symmetric(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
         ),
         "freudenstein-13": _Entry(
             lambda: sines({1: 27 / 28, 3: 1 / 28}, "freudenstein-13"), "u - 27/(56 pi) (sin 2 pi u + sin 6 pi u/81)"

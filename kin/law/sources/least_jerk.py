@@ -445,11 +445,11 @@ def least(
         if not len(dips):
             return nearest
         share = 1.0 if turn < _MOVES else _CLOSE
-        bounds, touch = _held_up(space, bounds, nearest, dips, limit=limit, share=share)
+        bounds, touch = _with_limit(space, bounds, nearest, dips, limit=limit, share=share)
     raise UnsolvedError
 
 
-def _held_up(
+def _with_limit(
     space: Space, bounds: Bounds, nearest: Least, dips: Array, *, limit: LowerLimit, share: float
 ) -> tuple[Bounds, Touch]:
     """Bounds with one at the limit at each dip; where one holds the function up beside it, that moves towards the dip.
@@ -500,7 +500,7 @@ def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) ->
         elif len(chosen) == n or nearest.square > ample:
             return nearest
         else:
-            miss, _ = missed_by(nearest.curve, bounds)
+            miss, _ = excess_of_bounds(nearest.curve, bounds)
             miss[chosen] = -1.0
             missed = _worst(miss)
             if not len(missed):
@@ -509,7 +509,7 @@ def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) ->
         chosen = np.union1d(chosen, missed)
 
 
-def missed_by(curve: Curve, bounds: Bounds) -> tuple[Array, NDArray[np.bool_]]:
+def excess_of_bounds(curve: Curve, bounds: Bounds) -> tuple[Array, NDArray[np.bool_]]:
     """By how many units each bound is missed, below 0 inside, and whether the upper one is the nearer, (n,) each."""
     s = curve(bounds.x)
     under, over = (bounds.lo - s) / bounds.unit, (s - bounds.hi) / bounds.unit
@@ -546,12 +546,12 @@ class _Search:
 
     def run(self, start: Touch | None, ample: float) -> Least | None:
         """Add bounds that are missed until there are none, or the integral passes `ample`."""
-        state = None if start is None else self._cleaned(start)
+        state = None if start is None else self._without_wrong_signs(start)
         state = state or self._first()
         while state is not None:
             touch, spline, pull = state
             curve = spline.curve()
-            miss, above = missed_by(curve, self.bounds)
+            miss, above = excess_of_bounds(curve, self.bounds)
             miss[touch.which] = -1.0
             added = _worst(miss)
             last = Least(
@@ -567,17 +567,17 @@ class _Search:
                 return last
             above[touch.which] = touch.upper
             which = np.sort(np.concatenate([touch.which, added]))
-            state = self._cleaned(Touch(which, above[which]))
+            state = self._without_wrong_signs(Touch(which, above[which]))
             if state is None or not state.spline.square > spline.square * (1.0 + _GROWS):
                 worst = np.array([np.argmax(miss)])
-                state = self._climbed(last, touch, added, above) or self._climbed(last, touch, worst, above)
-            if state is None or self._seen(state.touch):
+                state = self._with_more(last, touch, added, above) or self._with_more(last, touch, worst, above)
+            if state is None or self._is_repeated(state.touch):
                 if miss.max() > _STALLED:
                     raise UnsolvedError
                 return last
         return None
 
-    def _seen(self, touch: Touch) -> bool:
+    def _is_repeated(self, touch: Touch) -> bool:
         """Whether the same bounds were touched before, which rounding alone can bring about."""
         key = touch.which.tobytes() + touch.upper.tobytes()
         again = key in self._before
@@ -605,7 +605,7 @@ class _Search:
         which = np.array(sorted((i, j)), dtype=np.intp)
         return self._solved(Touch(which, which == j))
 
-    def _cleaned(self, touch: Touch) -> _State | None:
+    def _without_wrong_signs(self, touch: Touch) -> _State | None:
         """Only those bounds of a set whose multipliers have their signs; None where too few are left."""
         while len(touch.which) >= self.least:
             state = self._solved(touch)
@@ -615,7 +615,7 @@ class _Search:
             touch = Touch(touch.which[right], touch.upper[right])
         return None
 
-    def _climbed(self, last: Least, touch: Touch, added: Indices, upper: NDArray[np.bool_]) -> _State | None:
+    def _with_more(self, last: Least, touch: Touch, added: Indices, upper: NDArray[np.bool_]) -> _State | None:
         """From multipliers with their signs towards those of more bounds, letting go of those that come to 0."""
         size = np.zeros(len(self.bounds.x))
         size[touch.which] = np.abs(last.pull)

@@ -223,7 +223,7 @@ def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
 
 def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:
     """v, a and j at the end of matched segment i on the side `way` (-1 its start), (3,)."""
-    stated = _given(parts[i], way)
+    stated = _matched_state(parts[i], way)
     if stated is not None:
         return stated
     sign, n = 1.0, i + way
@@ -235,7 +235,7 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
     if other.built is not None and not _is_matched(other):
         at, side = (other.end, -1) if way < 0 else (other.begin, 1)
         return sign * other.built.derivatives(at, 3, side)[1:, 0]
-    state = _given(other, -way)
+    state = _matched_state(other, -way)
     if state is None:
         first = parts[i] if way > 0 else other
         where = math.degrees(first.end)
@@ -252,7 +252,7 @@ def _is_matched(part: _Part) -> bool:
     return isinstance(part.step, Move) and isinstance(part.step.law, Matched)
 
 
-def _given(part: _Part, way: int) -> Array | None:
+def _matched_state(part: _Part, way: int) -> Array | None:
     """The state that a matched segment has been given at its end on a side, if it is matched and has."""
     if not (isinstance(part.step, Move) and isinstance(part.step.law, Matched)):
         return None

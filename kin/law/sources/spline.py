@@ -111,14 +111,14 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     span, rows = basis.rows(x[inner])
     matrix = np.zeros((len(span), basis.size))
     np.add.at(matrix, (np.arange(len(span)), basis.columns(span)), rows)
-    fixed = _fixed(basis, ends)
+    fixed = _end_coefficients(basis, ends)
     free = np.isnan(fixed)
     known = np.where(free, 0.0, fixed)
     fixed[free] = np.linalg.solve(matrix[:, free], s[inner] - matrix @ known)
     return basis.spans(fixed)
 
 
-def _fixed(basis: Basis, ends: Ends | None) -> Array:
+def _end_coefficients(basis: Basis, ends: Ends | None) -> Array:
     """Coefficients that the ends settle, nan where they are free."""
     fixed = np.full(basis.size, np.nan)
     if ends is not None:

@@ -75,7 +75,7 @@ def from_table(
         problem = f"no motion was found within {layout.tell(reading)} of rows over {stroke}: rounding stands in the way"
         raise IntentError(f"{problem}; give a greater reading, or leave rows out", field) from None
     except CrowdedError:
-        raise IntentError(_scattered(layout, reading), field) from None
+        raise IntentError(_scatter_advice(layout, reading), field) from None
 
 
 def _motion(
@@ -134,7 +134,7 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
         at, value = min(lows, key=lambda low: low[1])
         if value - limit.level <= _TOUCHES * layout.stroke:
             break
-        bounds = _pinned(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), limit.level, total)
+        bounds = _with_level(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), limit.level, total)
     if around is None:
         return joined(*_pieces(dwells, moving, 0.0), None).raised(-dwells[0].level)
     turn, curve = layout.period, whole.curve
@@ -167,7 +167,7 @@ def _least_level(layout: Tabled, plain: Least) -> float | None:
     return 0.0 if level > 0.0 and abs(plain.curve.lowest()[1]) <= _ZERO * reading else None
 
 
-def _pinned(bounds: Bounds, at: float, level: float, period: float) -> Bounds:
+def _with_level(bounds: Bounds, at: float, level: float, period: float) -> Bounds:
     """With a bound that brings the motion down to a level at an angle."""
     same = np.array([level])
     return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])), period)
@@ -207,7 +207,7 @@ def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
         raise IntentError(f"{problem}; give reading: {layout.advised(0.05 * layout.stroke)} or less", field)
 
 
-def _scattered(layout: Tabled, reading: float) -> str:
+def _scatter_advice(layout: Tabled, reading: float) -> str:
     """Say that rows scatter, and with what reading a smooth curve through means of successive rows would do."""
     count = len(layout.x)
     groups = np.array_split(np.arange(count), min(_CALM, count))

@@ -150,7 +150,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
     if over > total - SAME_ANGLE:
         _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):
-            problem = f"the motion does not close: {_written(apart, rows)} off the first row, a turn later"
+            problem = f"the motion does not close: {_decimals(apart, rows)} off the first row, a turn later"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
         s, readings = rows.s[:-1].copy(), within[:-1].copy()
@@ -163,7 +163,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
         _demand_no_rest(rest, field)
         return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
     if rest is None and apart > allowed:
-        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_written(apart, rows)} off its first row"
+        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_decimals(apart, rows)} off its first row"
         remedy = "add the rows that are missing, or give rest: mirror, cycle or dwell"
         raise TableError(f"{ends}: the rest of the turn can be no dwell; {remedy}", field, line)
     x, s, like = _rest(rows, total, rest or "dwell", field)
@@ -219,7 +219,7 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
     return x[more], rows.s[like[more]], like[more]
 
 
-def _written(value: float, rows: Samples) -> str:
+def _decimals(value: float, rows: Samples) -> str:
     return f"{value / rows.unit:.6g}{_UNITS.get(rows.unit, '')}"
 
 

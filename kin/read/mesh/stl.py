@@ -170,7 +170,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     try:
         chains = sectioned(outline, path, deepest, across=whole is None)
     except ReadError as error:
-        raise _named(read, error, path) from None
+        raise _named_bodies(read, error, path) from None
     sections = []
     for wanted in heights:
         if whole is None:
@@ -204,7 +204,7 @@ def _steps(corners: Corners, apart: float) -> Array:
     return levels[np.diff(levels, prepend=-np.inf) > apart]
 
 
-def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
+def _named_bodies(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
     """Return an error on a section, or where there are several closed bodies one that names them."""
     if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
         return error

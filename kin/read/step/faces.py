@@ -218,7 +218,7 @@ class Face:
                     here = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
                     pieces += self._chords(space, here, along[:2] * (-side if self.outward else side))
                 return pieces
-        self._paired(space, crossings)
+        self._demand_ends(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
 
     def _chords(self, space: Space, crossings: list[Crossing], along: Array) -> list[Shape]:
@@ -251,7 +251,7 @@ class Face:
             pieces.append(_arc(surface.centre, radius, first, sense * sweep))
         return pieces
 
-    def _paired(self, space: Space, crossings: list[Crossing]) -> None:
+    def _demand_ends(self, space: Space, crossings: list[Crossing]) -> None:
         """Refuse a swept face that is bounded by anything but the ends of its curve."""
         if len(crossings) != 2 or crossings[0][1] == crossings[1][1] or not isinstance(self.surface, Swept):
             raise self._contrary(space)

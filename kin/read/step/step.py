@@ -123,7 +123,7 @@ def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSol
 
 def _solid(body: _Body, sought: Sought) -> StepSolid:
     misfit, heights = body.misfit, sought.heights
-    cuts = [body.checked(z) for z in heights] or [body.widest()]
+    cuts = [body.demand_reached(z) for z in heights] or [body.widest()]
     drawings = [body.section(z) for z in cuts]
     sections = [Section(drawing.chains, z) for z, drawing in zip(cuts, drawings, strict=True)]
     first = drawings[0]
@@ -211,7 +211,7 @@ class _Body:
         """Whether all walls stand upright over the whole height."""
         return len(self.levels) == 2 and all(face.surface.level or face.surface.upright for face in self.faces)
 
-    def checked(self, z: float) -> float:
+    def demand_reached(self, z: float) -> float:
         """Return a height that is asked for; raises ReadError where the part does not reach there."""
         low, high = self.levels[0], self.levels[-1]
         if not low < z < high:
@@ -252,7 +252,7 @@ class _Body:
                 (surface for surface in tubes if abs(0.5 * (low + high) - surface.point[2]) < surface.radius), None
             )
             if tube is not None:
-                total += self._bored(tube, low, high)
+                total += self._volume_round(tube, low, high)
             elif self._same_between(low, high):
                 total += (high - low) * self._area(0.5 * (low + high))
             else:
@@ -265,7 +265,7 @@ class _Body:
         reaching = [face for face in self.faces if face.heights[0] < high - SAME and face.heights[1] > low + SAME]
         return all(face.surface.level or face.surface.upright for face in reaching)
 
-    def _bored(self, tube: Tube, low: float, high: float) -> float:
+    def _volume_round(self, tube: Tube, low: float, high: float) -> float:
         """Volume of a layer that a level hole runs through: its width is smooth in the angle about its axis."""
         node, weight = gauss(GAUSS)
         first, last = np.arcsin(np.clip((np.array([low, high]) - tube.point[2]) / tube.radius, -1.0, 1.0))
