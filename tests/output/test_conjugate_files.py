@@ -174,6 +174,7 @@ def test_a_table_is_not_judged_against_a_pair(made, tmp_path, capsys):
     assert "readable (pair.csv): a 3MF or STEP holds 2 discs" in capsys.readouterr().out
 
 
+# needs: made
 @pytest.mark.parametrize(
     ("text", "words"), [("", "no row of numbers"), ("a,b\n1,2\n", "no columns of measured points")]
 )
