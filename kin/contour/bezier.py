@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.bernstein import bernstein_product, restrict, rising_root, roots, values
+from kin.numeric.bernstein import bernstein_product, cross_product, derivative, restrict, rising_root, roots, values
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass
 
@@ -146,7 +146,7 @@ class Beziers:
         d = self.degree
         relative = self.control - self.control[:, :1]
         if not self.rational:
-            return d * np.diff(relative, axis=1)
+            return derivative(relative)
         w, dw = self.weight, d * np.diff(self.weight, axis=1)
         x = relative * w[:, :, None]
         dx = d * np.diff(x, axis=1)
@@ -154,6 +154,11 @@ class Beziers:
             [bernstein_product(dx[:, :, c], w) - bernstein_product(x[:, :, c], dw) for c in (0, 1)],
             axis=2,
         )
+
+    @cached_property
+    def bend(self) -> Array:
+        """Bernstein coefficients (m, d-1, 2) of the second derivative by t, of polynomials of degree 2 or more."""
+        return derivative(self.velocity)
 
     @cached_property
     def directions(self) -> tuple[Array, Array]:
@@ -208,6 +213,10 @@ class Beziers:
         if not self.rational:
             return v
         return v / values(self.weight[rows], t)[:, None] ** 2
+
+    def rows(self, rows: Indices, t: Array) -> tuple[Array, Array, Array]:
+        """Points and two derivatives by t, (n, 2) each, of the pieces `rows` at t (n,); see `bend`."""
+        return self.point(rows, t), values(self.velocity[rows], t), values(self.bend[rows], t)
 
     def farthest(self, rows: Indices, theta: Array) -> Array:
         """Parameters t (n,) where x(t).u(theta) is greatest, for pieces that turn one way by less than pi.
@@ -300,9 +309,7 @@ class Beziers:
 
 def turning_numerator(velocity: Array) -> Array:
     """Bernstein coefficients (m, 2k) of v x v', whose sign is that of the curvature; rounding is set to zero."""
-    k = velocity.shape[1] - 1
-    x, y = velocity[:, :, 0], velocity[:, :, 1]
-    dx, dy = k * np.diff(x, axis=1), k * np.diff(y, axis=1)
-    bend = bernstein_product(x, dy) - bernstein_product(y, dx)
-    scale = np.hypot(x, y).max(axis=1) * np.hypot(dx, dy).max(axis=1)
+    change = derivative(velocity)
+    bend = cross_product(velocity, change)
+    scale = np.hypot(*np.moveaxis(velocity, 2, 0)).max(axis=1) * np.hypot(*np.moveaxis(change, 2, 0)).max(axis=1)
     return np.where(np.abs(bend) <= SIGNLESS * scale[:, None], 0.0, bend)

@@ -298,6 +298,12 @@ class Contour(Pieces):
         return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance != self.arcs_within else self
 
     @property
+    def is_spline(self) -> bool:
+        """Whether it consists of polynomial Bezier pieces alone, whose rows are in its order."""
+        every = np.array_equal(self.curve, np.arange(self.beziers.count))
+        return every and not self.beziers.rational
+
+    @property
     def spread(self) -> float:
         """How far the arcs that stand for splines by default may be from them, mm; 0 without splines."""
         return self._fine if self.beziers.count else 0.0

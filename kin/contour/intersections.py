@@ -8,7 +8,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, nearest_on, right
 from kin.contour.nearest import nearest
-from kin.numeric.bernstein import bernstein_product
+from kin.numeric.bernstein import cross_product
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -124,8 +124,8 @@ def seen_whole(contour: Contour, eye: Array) -> bool:
     at_start, at_end = cross(x, chain.tangent), cross(ends, chain.end_tangents)
     reach = np.maximum(np.hypot(x[:, 0], x[:, 1]), np.hypot(ends[:, 0], ends[:, 1])) + chain.length
     least = (at_start + at_end - np.abs(chain.curvature) * reach * chain.length) / 2.0
-    y, v = (beziers.control - eye) * beziers.weight[:, :, None], beziers.velocity
-    moment = bernstein_product(y[:, :, 0], v[:, :, 1]) - bernstein_product(y[:, :, 1], v[:, :, 0])
+    y = (beziers.control - eye) * beziers.weight[:, :, None]
+    moment = cross_product(y, beziers.velocity)
     x, ends = np.concatenate([x, y[:, 0]]), np.concatenate([ends, y[:, -1]])
     angle = np.arctan2(cross(x, ends), dot(x, ends))
     once = abs(float(angle.sum()) - 2.0 * np.pi) < 1.0

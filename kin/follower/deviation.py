@@ -10,18 +10,20 @@ itself within the tube.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.contour.arcs import Arcs, dot, left
-from kin.contour.nearest import nearest
+from kin.contour.arcs import dot, left
 from kin.numeric.extrema import extremes, resolution
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from kin.contour.arcs import Arcs
+    from kin.contour.bezier import Beziers
+    from kin.contour.contour import Contour
     from kin.follower.envelope import Envelope
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.extrema import Extremes
@@ -66,36 +68,84 @@ class Deviation:
         return replace(self, outside=self.outside + by, inside=self.inside + by, bare=self.bare + by)
 
 
-def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
-    """Deviation of a closed chain of lines and arcs from an exact contour."""
+class _OfArcs(NamedTuple):
+    """Lines and arcs, as `deviation` runs along them: by their arc length."""
+
+    pieces: Arcs
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Arc lengths (n,) from which and to which each piece is followed."""
+        return np.zeros(len(self.pieces)), self.pieces.length
+
+    def rows(self, s: Array, piece: Indices) -> tuple[Array, Array, Array]:
+        """Points and two derivatives by the arc length, (k, 2) each."""
+        here = self.pieces.take(piece)
+        tangent = here.tangents(s)
+        return here.points(s), tangent, here.curvature[:, None] * left(tangent)
+
+
+class _OfBeziers(NamedTuple):
+    """Equal parts (n,) of polynomials, by their parameter: the row of each, where it starts and where it ends."""
+
+    beziers: Beziers
+    row: Indices
+    ends: tuple[Array, Array]
+
+    def rows(self, t: Array, piece: Indices) -> tuple[Array, Array, Array]:
+        """Points and two derivatives by the parameter, (k, 2) each."""
+        return self.beziers.rows(self.row[piece], t)
+
+
+def _walk(contour: Contour, within: float | None) -> _OfArcs | _OfBeziers:
+    """The contour in about LEAST_PARTS parts that turn little; arcs within a distance, mm, stand for mixed splines."""
+    if contour.is_spline:
+        count = np.ceil(np.maximum(LEAST_PARTS / len(contour), np.abs(contour.turns) / MOST_TURN)).astype(np.intp)
+        row = np.repeat(np.arange(len(contour)), count)
+        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        return _OfBeziers(contour.beziers.elevated(2), row, (number / count[row], (number + 1.0) / count[row]))
+    chain, _ = contour.as_arcs(within)
     coarse = chain.length.sum() / LEAST_PARTS
     parts = np.ceil(np.maximum(chain.length / coarse, np.abs(chain.curvature) * chain.length / MOST_TURN))
-    pieces, _ = chain.cut(np.maximum(parts, 1.0).astype(np.intp))
-    feet = envelope.feet(pieces.start)
-    zero, end_tangents = np.zeros(len(pieces)), pieces.end_tangents
-    ends, nexts = pieces.ends, np.roll(pieces.start, -1, axis=0)
-    apart = np.abs(ends - nexts).max() > JOINED * np.abs(pieces.start).max()
-    end_feet = envelope.feet(ends) if apart else _rolled(feet)
+    return _OfArcs(chain.cut(np.maximum(parts, 1.0).astype(np.intp))[0])
 
-    def inside(s: Array, piece: Indices) -> Array:
-        here = pieces.take(piece)
-        return _along(envelope.feet(here.points(s)), here.tangents(s), here.curvature)
 
-    at_start = _along(feet, pieces.tangent, pieces.curvature)
-    at_end = _along(end_feet, end_tangents, pieces.curvature)
-    fine = resolution(np.append(pieces.start, [[envelope.extent, 0.0]], axis=0))
-    extremes_of_lift = extremes(zero, pieces.length, at_start, at_end, inside, resolution=fine)
-    bare, bare_at = _bare(chain, envelope, max(extremes_of_lift.greatest, -extremes_of_lift.least))
+def deviation(contour: Contour, envelope: Envelope, within: float | None = None) -> Deviation:
+    """Deviation of a closed contour from an exact one.
+
+    Splines of polynomials are followed themselves; for those beside lines and arcs, and for rational ones, stand arcs
+    within a distance, mm (`Contour.as_arcs`).
+    """
+    walk = _walk(contour, within)
+    low, high = walk.ends
+    every = np.arange(len(low))
+    start, *first = walk.rows(low, every)
+    end, *last = walk.rows(high, every)
+    feet = envelope.feet(start)
+    apart = np.abs(end - np.roll(start, -1, axis=0)).max() > JOINED * np.abs(start).max()
+    end_feet = envelope.feet(end) if apart else _rolled(feet)
+
+    def inside(x: Array, piece: Indices) -> Array:
+        point, *derivatives = walk.rows(x, piece)
+        return _along(envelope.feet(point), *derivatives)
+
+    def parameter(piece: int, x: float) -> float:
+        point, *_ = walk.rows(np.array([x]), np.array([piece]))
+        return float(envelope.feet(point).parameter[0])
+
+    fine = resolution(np.append(start, [[envelope.extent, 0.0]], axis=0))
+    excess = extremes(low, high, _along(feet, *first), _along(end_feet, *last), inside, resolution=fine)
+    bare, bare_at = _bare(contour, envelope, max(excess.greatest, -excess.least), within)
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(
-        outside=extremes_of_lift.greatest,
-        outside_at=_parameter(pieces, envelope, extremes_of_lift.greatest_index, extremes_of_lift.greatest_at),
-        inside=-extremes_of_lift.least,
-        inside_at=_parameter(pieces, envelope, extremes_of_lift.least_index, extremes_of_lift.least_at),
+        outside=excess.greatest,
+        outside_at=parameter(excess.greatest_index, excess.greatest_at),
+        inside=-excess.least,
+        inside_at=parameter(excess.least_index, excess.least_at),
         bare=bare,
         bare_at=bare_at,
         rounds=round(float(advance.sum()) / (2.0 * np.pi)),
-        backwards=_longest_run(np.where(advance < 0.0, np.abs(dot(ends - pieces.start, left(feet.normal))), 0.0)),
+        backwards=_longest_run(np.where(advance < 0.0, np.abs(dot(end - start, left(feet.normal))), 0.0)),
     )
 
 
@@ -116,8 +166,8 @@ def convex_deviation(reach: Extremes) -> Deviation:
     )
 
 
-def _bare(chain: Arcs, envelope: Envelope, width: float) -> tuple[float, float]:
-    """Greatest distance from the chain of the exact contour's tight corners, and the parameter of that place."""
+def _bare(contour: Contour, envelope: Envelope, width: float, within: float | None) -> tuple[float, float]:
+    """Greatest distance from the contour of the exact contour's tight corners, and the parameter of that place."""
     parameter, radius = envelope.radii()
     tight = np.abs(radius) < TIGHT * width
     if not envelope.regular:
@@ -125,7 +175,7 @@ def _bare(chain: Arcs, envelope: Envelope, width: float) -> tuple[float, float]:
     if not tight.any():
         return 0.0, float("nan")
     parameter = parameter[tight]
-    _, distance = nearest(chain, envelope.points(parameter))
+    distance = contour.distance(envelope.points(parameter), within)
     worst = int(np.argmax(distance))
     return float(distance[worst]), float(parameter[worst])
 
@@ -146,25 +196,18 @@ def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> 
     return np.concatenate([parameter, corner]), np.concatenate([tight & kept, np.ones(len(corner), dtype=bool)])
 
 
-def _along(feet: Feet, tangent: Array, curvature: Array) -> Array:
-    """Excess and its two derivatives along pieces (3, n), from the feet of points on them.
+def _along(feet: Feet, first: Array, second: Array) -> Array:
+    """Excess and its two derivatives along a curve (3, n), from the feet of points on it.
 
-    With the pieces' tangents T (n, 2) and curvature k (n,) there, M the quarter turn to the left, N and K the gradient
-    of the excess and the curvature of its line: f' = N.T, f'' = k N.MT + K (T.MN)^2.
+    With the curve's derivatives x' and x'' (n, 2) there, M the quarter turn to the left, N and K the gradient of the
+    excess and the curvature of its line: f' = N.x', f'' = N.x'' + K (x'.MN)^2.
     """
-    side = left(feet.normal)
-    rise = dot(feet.normal, tangent)
-    bend = curvature * dot(feet.normal, left(tangent)) + feet.curvature * dot(side, tangent) ** 2
-    return np.stack([feet.excess, rise, bend])
+    bend = dot(feet.normal, second) + feet.curvature * dot(left(feet.normal), first) ** 2
+    return np.stack([feet.excess, dot(feet.normal, first), bend])
 
 
 def _rolled(feet: Feet) -> Feet:
     return type(feet)(*(np.roll(row, -1, axis=0) for row in feet.rows))
-
-
-def _parameter(pieces: Arcs, envelope: Envelope, piece: int, s: float) -> float:
-    point = pieces.take(np.array([piece])).points(np.array([s]))
-    return float(envelope.feet(point).parameter[0])
 
 
 def _longest_run(length: Array) -> float:

@@ -120,7 +120,8 @@ def motion_error(
     """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
 
     `remainder` is by how much the worst may be exceeded, proved; None where it is but the worst of samples. Radians
-    become degrees if the unit says so. `off`, mm or degrees, is how far arcs in place of splines may put a sample off.
+    become degrees if the unit says so. `off`, mm or degrees, is how far arcs in place of splines put a
+    position off at most.
     """
     scale = 180.0 / np.pi if unit == "deg" else 1.0
     here, further = np.split(errors, 2, axis=-1)
@@ -133,5 +134,5 @@ def motion_error(
         step_deg=STEP_DEG,
         dwell_flatness=None if flatness is None else scale * flatness + 2.0 * off,
         extremes="sampled" if remainder is None else "true",
-        remainder=scale * (ALLOWANCE * worst[0] if remainder is None else remainder),
+        remainder=scale * (ALLOWANCE * worst[0] if remainder is None else remainder) + off,
     )

@@ -1,11 +1,11 @@
 """Rollers on a guide: one, two on rigid arms with the cam between them, and two opposite ones in a translating frame.
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
-angles, with a proved remainder (`kin.follower.tracking`). Arcs within d of splines stand for these: on the arcs a
-roller that is larger by d stays farther out than the roller on the splines, and one that is smaller by d farther in, so
-the bounds are those of these two. On a contour of more than MOST_PIECES pieces, and where the proof does not succeed,
-the error is that of samples: at the given shaft angles, where a piece stands out most and, up to MOST_PIECES, where the
-roller passes from piece to piece and midway along each; more closely about the worst of them.
+angles, with a proved remainder (`kin.follower.tracking`). A smooth contour of polynomials is followed itself
+(`kin.follower.on_spline`); for splines with corners, beside lines and arcs or rational stand arcs, whose distance is
+counted in. On a polygon of more than MOST_PIECES pieces, and where the proof does not succeed, the error is that of
+samples: at the given shaft angles, where a piece stands out most and, up to MOST_PIECES, where the roller passes from
+piece to piece and midway along each; more closely about the worst of them.
 So is the play between two rollers, without the closer look.
 """
 
@@ -26,6 +26,7 @@ from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch, leeway
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
+from kin.follower.on_spline import OnSpline, SplinePath
 from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Side
     from kin.numeric.arrays import Array, Indices
 
+MOST_ARCS = 200_000  # in place of a spline, which repeats nothing
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
 CLOSER = 8  # places about which samples are looked at more closely, and steps to either side
@@ -119,6 +121,7 @@ class _Rollers(Moved):
     """What one roller and two have in common; each of the contacts has a roller of the same radius."""
 
     side: Side  # of the contour on which the metal lies: 1 inside, -1 outside
+    judged: ClassVar[int]  # the first so many contacts, by their motion error
 
     @property
     def radius(self) -> float:
@@ -155,9 +158,9 @@ class _Rollers(Moved):
             for one, guide in zip(self.contacts, self.guides, strict=True)
         ]
 
-    def _obstacle(self, contour: Contour, *spline: float, larger: float = 0.0) -> Arcs:
+    def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
         chain = contour.as_arcs(*spline)[0]
-        return dilated(chain if self.side > 0 else chain.reversed(), self.radius + larger)
+        return dilated(chain if self.side > 0 else chain.reversed(), self.radius)
 
     def _positions(self, obstacle: Arcs, phi: Array, count: int = 2) -> Array:
         """Position with each of the first `count` rollers held: (1 or 2, n)."""
@@ -189,24 +192,18 @@ class _Rollers(Moved):
 
         ContactError where a roller meets nothing.
         """
-        if contour.spread > self.radius:  # no roller is as much smaller: arcs as close as they come stand for splines
-            contour = contour.within(None)
+        try:
+            return self._judged_on_spline(contour, phi)
+        except UnsettledError:
+            pass  # arcs stand for it
         obstacle, steps, spread = self._obstacle(contour), with_steps(phi), contour.spread
+        few = len(obstacle) <= (MOST_ARCS if contour.beziers.count else MOST_PIECES)
         each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
-
-        def rollers(obstacle: Arcs, looked: int, *signs: int) -> list[Held]:
-            # a roller that stands turned meets the contour as one that does not meets it turned back
-            return [
-                hold_roller(obstacle.turned(-one.turned), guide, at[:looked], one, signs) for one, guide, at in each
-            ]
-
-        held = bounds = rollers(obstacle, max(len(at) for _, _, at in each), 1, -1)
-        few = len(obstacle) <= MOST_PIECES
-        if few and 0.0 < spread <= self.radius:
-            bounds = [one for s in (1, -1) for one in rollers(self._obstacle(contour, larger=s * spread), 1, s)]
+        # a roller that stands turned meets the contour as one that does not meets it turned back
+        held = [hold_roller(obstacle.turned(-one.turned), guide, at, one, few) for one, guide, at in each]
         place = [one.position(there.position[: len(steps)]) for (one, _, _), there in zip(each, held, strict=True)]
         errors = np.stack(place) - self.course.rows(steps)[0]
-        worst, remainder = settled(held, bounds, self.course, errors, few=few)
+        worst, remainder = settled(held, self.course, errors, few=few)
         dwells = list(dwell_angles(self.rests, phi))
         kept = self._positions(obstacle, np.concatenate(dwells), len(held)) if dwells else np.empty((1, 0))
         ends = np.cumsum([len(angle) for angle in dwells])[:-1]
@@ -215,6 +212,31 @@ class _Rollers(Moved):
         motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder, off=off)
         play, closure = self._play(contour, obstacle, held, phi), self.closure
         return Judged(motion, play.less_sure(closure.limit(spread)) if spread and play and closure else play)
+
+    def _judged_on_spline(self, contour: Contour, phi: Array) -> Judged:
+        """Judge on the contour's own Bezier pieces, if these are smooth. UnsettledError where they are not."""
+        each = list(zip(self.contacts, self.guides, strict=True))
+        paths = [SplinePath.of(contour, self.side * self.radius, guide, one.turned) for one, guide in each]
+        steps, held = with_steps(phi), [OnSpline(path, one) for path, (one, _) in zip(paths, each, strict=True)]
+        counted = held[: self.judged]
+        angles = np.concatenate(
+            [steps, *(path.ends for path in paths), *(rests := list(dwell_angles(self.rests, phi)))]
+        )
+        place = np.stack([one.contact.position(one.reached(angles)) for one in held])
+        errors = place[: self.judged, : len(steps)] - self.course.rows(steps)[0]
+        floor = Greatest(*greatest(np.abs(errors).max(axis=0), steps), 0.0)
+        proved = greatest_error(counted, self.course, floor)
+        ends = np.cumsum([len(angles) - sum(map(len, rests)), *(len(angle) for angle in rests)])
+        flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(place[: self.judged], ends, axis=1)[1:-1]]
+        worst = proved.error, proved.at
+        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=proved.remainder)
+        looked = np.r_[: len(phi), len(steps) : ends[0]]
+        gap = self._gaps(paths, angles[looked], place[:, looked])
+        return Judged(motion, None if gap is None else sampled_play(gap, angles[looked]))
+
+    @abstractmethod
+    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array | None:
+        """Gaps (n,), mm, at shaft angles phi (n,) by positions (2, n) of both rollers; None for a single roller."""
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
@@ -229,6 +251,8 @@ class _Rollers(Moved):
 class _Guided(OfLaw, _Rollers):
     """Rollers on guides, of which the first is to follow a law over the shaft angle."""
 
+    judged = 1
+
     @cached_property
     def envelope(self) -> RollerEnvelope:
         """The exact contour; its parameter is the shaft angle."""
@@ -238,6 +262,9 @@ class _Guided(OfLaw, _Rollers):
         return (steps,)
 
     def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play | None:  # noqa: ARG002
+        return None
+
+    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array | None:  # noqa: ARG002
         return None
 
 
@@ -282,6 +309,10 @@ class RollerYoke(_Guided):
         near, far = self._positions(obstacle, angle)
         return sampled_play(far - near, angle)
 
+    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array:  # noqa: ARG002
+        gaps: Array = place[1] - place[0]
+        return gaps
+
 
 @dataclass(frozen=True, eq=False)
 class DoubleRoller(OfTransmission, _Rollers):
@@ -290,6 +321,8 @@ class DoubleRoller(OfTransmission, _Rollers):
     The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4). Psi is pi - alpha
     less the lean of A, and the lean of B less pi - alpha.
     """
+
+    judged = 2
 
     @property
     def closure(self) -> Closure:
@@ -320,47 +353,34 @@ class DoubleRoller(OfTransmission, _Rollers):
         second = self.guides[1].centre(angle, b.own(swing))
         return sampled_play(signed_distance(contour.as_arcs()[0], second) - self.radius, angle)
 
+    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array:
+        return paths[1].gap(self.guides[1].centre(phi, self.contacts[1].own(place[0])), phi)
 
-def hold_roller(
-    obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], signs: tuple[int, ...]
-) -> Held:
-    """Hold a roller at shaft angles `looked` (n,) first, and where pieces end if they are few. ContactError if loose.
 
-    `signs` are those of the errors that are looked for: those outwards do without the ends.
-    """
+def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], few: bool) -> Held:
+    """Hold a roller at shaft angles `looked` (n,) first, and where few pieces end. ContactError where it is loose."""
     pieces, phi = obstacle, looked
-    if len(obstacle) <= MOST_PIECES:
+    if few:
         pieces, _ = shortened(obstacle, guide)
-    if len(obstacle) <= MOST_PIECES and -1 in signs:
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact.zero, contact.sense, signs)
+    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact.zero, contact.sense)
 
 
-def settled(
-    rollers: Sequence[Held], bounds: Sequence[Held], law: Law, sampled: Array, few: bool
-) -> tuple[tuple[float, float], float | None]:
+def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
-    No error is greater than that of `bounds`, which are the rollers themselves or stand farther out and in. `sampled`
-    are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few; where they
-    are and no proof is found, all angles are looked at: None then.
+    `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
+    where they are and no proof is found, all angles are looked at: None then.
     """
     found = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
     passing: list[Array] = []
     if few:
         try:
-            proved = greatest_error(bounds, law, found)
+            proved = greatest_error(rollers, law, found)
         except UnsettledError:
             passing = [passing_angles(one.pieces, one.guide) for one in rollers]
         else:
-            if bounds is rollers:
-                return (proved.error, proved.at), proved.remainder
-            here = np.array([proved.at])
-            reached = greatest(
-                errors_at(rollers, [Search.of(one.pieces, one.guide) for one in rollers], law, here), here
-            )
-            worst = max(reached, (found.error, found.at))
-            return worst, max(proved.error + proved.remainder - worst[0], 0.0)
+            return (proved.error, proved.at), proved.remainder
     return _closely(rollers, law, np.concatenate([*(one.phi for one in rollers), *passing])), None
 
 
@@ -378,7 +398,12 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     worst = 0.0, 0.0
     searches = [Search.of(one.pieces, one.guide) for one in rollers]
     for _ in range(ROUNDS):
-        error = errors_at(rollers, searches, law, looked)
+        meant = law.rows(looked)
+        errors = [
+            np.abs(one.guide.position(touched(search, looked)[0]) - one.meant(meant.copy())[0])
+            for one, search in zip(rollers, searches, strict=True)
+        ]
+        error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
         order = np.argsort(np.mod(looked, TURN))
         at, height = np.mod(looked, TURN)[order], error[order]
@@ -388,16 +413,6 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
         width = np.maximum(gap, np.roll(gap, 1))[tops, None]
         looked = (at[tops, None] + width * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)).ravel()
     return worst
-
-
-def errors_at(rollers: Sequence[Held], searches: Sequence[Search], law: Law, phi: Array) -> Array:
-    """Greatest absolute error of rollers, each with its search, at shaft angles phi (n,)."""
-    meant = law.rows(phi)
-    errors = [
-        np.abs(one.guide.position(touched(search, phi)[0]) - one.meant(meant.copy())[0])
-        for one, search in zip(rollers, searches, strict=True)
-    ]
-    return np.asarray(np.max(errors, axis=0))
 
 
 def touched(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:

@@ -65,6 +65,59 @@ class Greatest(NamedTuple):
     remainder: float
 
 
+class Stretches(Protocol):
+    """Stretches of what a roller runs on, about their middles; (n,) each."""
+
+    @property
+    def piece(self) -> Indices:
+        """Pieces they are on."""
+
+    @property
+    def half(self) -> Array:
+        """Arc lengths, mm, from the middles within which both ends lie."""
+
+    def quarters(self, which: NDArray[np.bool_]) -> Stretches:
+        """Quarters of some."""
+
+    def one(self, i: int) -> Stretches:
+        """One of them."""
+
+    def summit(self, law: Law, where: float) -> Array:
+        """Shaft angles (2,) near the greatest error of a single one, about `where` off its middle."""
+
+    def state(self) -> State:
+        """The roller's centre at the middles."""
+
+    def limits(self, state: State) -> Limits:
+        """Bounds over the stretches, whose state that is."""
+
+    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+        """Upper bounds of the error, an error reached in each, and where, off the middle: (n,) each.
+
+        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
+        """
+
+
+class Tracked(Protocol):
+    """A roller held in contact, whose error is bounded."""
+
+    @property
+    def resolution(self) -> float:
+        """What rounding may make of no error, mm or radians."""
+
+    def meant(self, rows: Array) -> Array:
+        """Intended position and its derivatives (m, n) from the law's."""
+
+    def reached(self, phi: Array) -> Array:
+        """Position, mm or radians, at shaft angles phi (n,)."""
+
+    def spans(self) -> Stretches:
+        """Stretches of all that it may touch."""
+
+    def looked_at_about(self, phi: Array) -> Tracked:
+        """The same with contacts known at shaft angles (n,) too, and near them."""
+
+
 class _Changes(NamedTuple):
     """Contacts before and after each change of the piece touched: numbers, shaft angles a <= b, and pieces, (n,)."""
 
@@ -81,7 +134,7 @@ class Held:
     """A guided roller held on `pieces`, short ones (`kin.follower.contact.shortened`), that bound its centre.
 
     At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
-    of all pieces. It is meant to be at offset + sense * law. `signs` are those of the errors looked for, 1 outwards.
+    of all pieces. It is meant to be at offset + sense * law.
     """
 
     pieces: Arcs
@@ -91,7 +144,6 @@ class Held:
     piece: Indices
     offset: float = 0.0
     sense: int = 1
-    signs: tuple[int, ...] = (1, -1)
 
     @cached_property
     def position(self) -> Array:
@@ -103,6 +155,10 @@ class Held:
         meant = self.sense * rows
         meant[0] += self.offset
         return meant
+
+    def reached(self, phi: Array) -> Array:
+        """Position, mm or radians, at shaft angles phi (n,)."""
+        return self.guide.position(first_contact(self.pieces, self.guide, phi)[0])
 
     @cached_property
     def slack(self) -> float:
@@ -121,10 +177,8 @@ class Held:
 
     def spans(self) -> Spans:
         """Spans of all pieces for errors outwards, and of those that are touched for errors inwards."""
-        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack) & (1 in self.signs))
+        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
         half = 0.5 * self.pieces.length[near]
-        if -1 not in self.signs:
-            return Spans(self, np.ones(len(near)), near, half, half)
         touched = self.touched()
         return Spans(
             self,
@@ -271,27 +325,18 @@ class Spans:
         near = replace(self, middle=self.middle + np.clip(where + step, -self.half, self.half))
         return np.concatenate([state.phi, near.state().phi])
 
-    def state(self) -> _State:
+    def state(self) -> State:
         """The roller's centre at the middles."""
-        return _State.of(self.held.pieces.take(self.piece), self.middle, self.held.guide)
+        pieces = self.held.pieces.take(self.piece)
+        return State.of(pieces.points(self.middle), pieces.tangents(self.middle), pieces.curvature, self.held.guide)
 
-    def bounds(self, state: _State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
-        """Upper bounds of sign * error, an error reached in each span, and where, off the middle: (n,) each.
+    def limits(self, state: State) -> Limits:
+        """Bounds over the spans."""
+        return state.limits(self.half, np.abs(state.k))
 
-        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
-        """
-        f, slope, bend = self.sign * state.error(self.held.meant(rows))
-        h = self.half
-        first, second, third = most
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
-            top = f + where * (slope + 0.5 * where * bend)
-            bound = top + third * h**3 / 6.0
-            bound = np.fmin(bound, f + np.abs(slope) * h + 0.5 * second * h**2)
-            bound = np.fmin(bound, f + first * h)
-            reached = top - third * np.abs(where) ** 3 / 6.0
-        better = reached > f
-        return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
+    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+        """See `Stretches`; bounds of sign * error."""
+        return bounds_of_error(self.sign * state.error(self.held.meant(rows)), most, self.half, self.half)
 
 
 def greatest(error: Array, phi: Array) -> tuple[float, float]:
@@ -300,7 +345,7 @@ def greatest(error: Array, phi: Array) -> tuple[float, float]:
     return float(abs(error[i])), float(phi[i])
 
 
-def greatest_error(rollers: Sequence[Held], law: Law, floor: Greatest, tries: int = MORE) -> Greatest:
+def greatest_error(rollers: Sequence[Tracked], law: Law, floor: Greatest, tries: int = MORE) -> Greatest:
     """Greatest absolute error of rollers, which is at least that `floor`. UnsettledError where it is not proved.
 
     Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
@@ -311,20 +356,20 @@ def greatest_error(rollers: Sequence[Held], law: Law, floor: Greatest, tries: in
     error, best, ceiling = floor.error, None, floor.error
     for cut in range(MOST_CUTS + 1):
         states = [group.state() for group in groups]
-        limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
+        limits = [group.limits(state) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
         reach = np.concatenate([one.angle[0] * group.half for one, group in zip(limits, groups, strict=True)])
         cuts = np.cumsum([len(group.piece) for group in groups])[:-1]
         rows, steepest = law.rows(phi), law.steepest(phi - reach, phi + reach)
         given = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
         upper = []
-        for group, state, limit, meant, steep in given:
+        for number, (group, state, limit, meant, steep) in enumerate(given):
             bound, reached, where = group.bounds(state, limit.of_error(steep), meant)
             upper.append(bound)
             i = int(np.argmax(reached)) if len(reached) else -1
             if i >= 0 and reached[i] > error:
                 error = float(reached[i])
-                best = group.one(i), where[i]
+                best = number, group.one(i), float(where[i])
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
@@ -337,10 +382,9 @@ def greatest_error(rollers: Sequence[Held], law: Law, floor: Greatest, tries: in
         groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
         # a piece may stand back behind another one there: what counts is where the roller is
-        span, where = best
-        on, phi = span.held, span.summit(law, where)
-        r, _ = first_contact(on.pieces, on.guide, phi)
-        errors = np.abs(on.guide.position(r) - on.meant(law.rows(phi))[0])
+        number, span, off = best
+        on, phi = rollers[number], span.summit(law, off)
+        errors = np.abs(on.reached(phi) - on.meant(law.rows(phi))[0])
         claimed, (error, at) = error, greatest(errors, phi)
         if tries and not claimed <= error + SHARE * claimed + resolution:
             seen = [one.looked_at_about(np.array([at])) if one is on else one for one in rollers]
@@ -360,7 +404,32 @@ def outward(roller: Held, law: Law) -> tuple[Array, Array]:
     return np.where(within_reach(roller.pieces, roller.guide, roller.slack), error, -np.inf), state.phi
 
 
-class _Limits(NamedTuple):
+def bounds_of_error(
+    error: Array, most: tuple[Array, Array, Array], half: Array, inner: Array
+) -> tuple[Array, Array, Array]:
+    """Upper bounds of errors in spans, an error reached in each, and where, off the middle: (n,) each.
+
+    `error` (3, n) has errors and two derivatives at the middles, `most` bounds three derivatives within `half` (n,) of
+    there; each span reaches at least `inner` (n,) to either side.
+    """
+    f, slope, bend = error
+    first, second, third = most
+
+    def top(h: Array) -> tuple[Array, Array]:
+        where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
+        return where, f + where * (slope + 0.5 * where * bend)
+
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        bound = top(half)[1] + third * half**3 / 6.0
+        bound = np.fmin(bound, f + np.abs(slope) * half + 0.5 * second * half**2)
+        bound = np.fmin(bound, f + first * half)
+        where, height = top(inner)
+        reached = height - third * np.abs(where) ** 3 / 6.0
+    better = reached > f
+    return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
+
+
+class Limits(NamedTuple):
     """Bounds of the magnitudes of three derivatives by s of the position and of the shaft angle, over spans: (n,)."""
 
     position: tuple[Array, Array, Array]
@@ -379,7 +448,7 @@ class _Limits(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class State:
     """The centre at n places on pieces: what position and shaft angle and their derivatives by s are made of.
 
     With P, T and k point, tangent and curvature of the piece: r = |P|, a = P.T, c = P x T, b = 1 - k c, so that
@@ -397,9 +466,8 @@ class _State:
     angle: tuple[Array, Array]
 
     @staticmethod
-    def of(pieces: Arcs, s: Array, guide: Guide) -> _State:
-        """State at s (n,) on each of the pieces."""
-        point, tangent, k = pieces.points(s), pieces.tangents(s), pieces.curvature
+    def of(point: Array, tangent: Array, k: Array, guide: Guide) -> State:
+        """State at points (n, 2) where the path has tangents (n, 2) and curvatures k (n,)."""
         a, c, r = dot(point, tangent), cross(point, tangent), np.hypot(point[:, 0], point[:, 1])
         b, u = 1.0 - k * c, r * r
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -411,7 +479,7 @@ class _State:
             phi_2 = (k * a + m_slope * q + m * q_1 - 2.0 * a * phi_1) / u
         phi = np.nan_to_num(np.arctan2(point[:, 1], point[:, 0]) - guide.lead(r))
         away = guide.away
-        return _State(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
+        return State(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
 
     def error(self, intended: Array) -> Array:
         """Error and two derivatives by s, (3, n), from the intended position's rows (3, n) by the shaft angle."""
@@ -421,12 +489,15 @@ class _State:
                 [place - intended[0], q - intended[1] * phi_1, q_1 - intended[2] * phi_1**2 - intended[1] * phi_2]
             )
 
-    def limits(self, half: Array) -> _Limits:
-        """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each."""
-        guide, k, h = self.guide, np.abs(self.k), half * OUTWARD
+    def limits(self, half: Array, k: Array, change: float | Array = 0.0) -> Limits:
+        """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each.
+
+        The magnitudes of the curvature and of its derivative by s are at most k and `change`, (n,) each, there.
+        """
+        guide, h = self.guide, half * OUTWARD
         far, near = self.r + h, np.maximum(self.r - h, 0.0)
         c = np.abs(self.c) + k * h * far
-        b = np.abs(self.b) + k * k * h * far
+        b = np.abs(self.b) + (k * k * far + change * c) * h
         a = np.minimum(np.abs(self.a) + b * h, far)
         least, most = near**2, far**2
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -437,10 +508,12 @@ class _State:
             m_1, m_2 = 2.0 * a * abs(guide.moment_slope), 2.0 * b * abs(guide.moment_slope)
             q = 2.0 * a / size
             q_1 = (2.0 * b + 0.5 * slope * q * q) / size
-            q_2 = (2.0 * k * k * a + abs(guide.square_bend) * a * q * q + 1.5 * slope * q * q_1) / size
+            q_2 = (2.0 * (k * k * a + change * c) + abs(guide.square_bend) * a * q * q + 1.5 * slope * q * q_1) / size
             phi_1 = (c + m * q) / least
             phi_2 = (k * a + m_1 * q + m * q_1 + 2.0 * a * phi_1) / least
             phi_1 = np.fmin(phi_1, np.abs(self.angle[0]) + phi_2 * h)
             q = np.fmin(q, np.abs(self.position[1]) + q_1 * h)
-            phi_3 = (k * b + m_2 * q + 2.0 * m_1 * q_1 + m * q_2 + 2.0 * b * phi_1 + 4.0 * a * phi_2) / least
-        return _Limits((q, q_1, q_2), (phi_1, phi_2, phi_3))
+            phi_3 = (
+                k * b + change * a + m_2 * q + 2.0 * m_1 * q_1 + m * q_2 + 2.0 * b * phi_1 + 4.0 * a * phi_2
+            ) / least
+        return Limits((q, q_1, q_2), (phi_1, phi_2, phi_3))

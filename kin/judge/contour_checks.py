@@ -52,33 +52,9 @@ def judge_contour(
 
     With a linkage phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's.
     `uneven` is how far a solid's other sections may be off this one, mm; what that can do is counted into everything.
-    `standing` is how far metal may stand outside it, mm, where a cutter does not reach. Splines are judged by
-    arcs within a share of the tolerance, which is counted into all that they give; what does not hold so, by fine ones.
+    `standing` is how far metal may stand outside it, mm, where a cutter does not reach.
     """
-    judge = partial(_judged, chain, surface, phi, limits, uneven=uneven, standing=standing, linkage=linkage)
-    closest = fine(chain.contour, limits.tolerance)
-    coarse = chain.contour.within(SPLINE_SHARE * limits.tolerance)
-    if linkage is None and coarse.spread > closest.spline:
-        found, checks = judge(Fine(coarse, coarse.spread, closest.slack - closest.spline), off=coarse.spread)
-        if all(check.ok for check in checks):
-            return found, checks
-    return judge(closest, off=0.0)
-
-
-def _judged(
-    chain: Chain,
-    surface: SurfaceIntent,
-    phi: Array,
-    limits: Limits,
-    arcs: Fine,
-    *,
-    off: float,
-    uneven: float,
-    standing: float,
-    linkage: LinkageIntent | None,
-) -> tuple[SurfaceVerdict, list[Check]]:
-    """Judge a chain by arcs for its splines; `off` is what these add to a distance measured from them, mm."""
-    contour, spline, slack = arcs
+    contour, spline, slack = fine(chain.contour, limits.tolerance)
     judged, play, checks, gauge = None, None, [], surface.gauge
     try:
         judged = _less_sure(gauge.judge(contour, phi), gauge, uneven)
@@ -91,18 +67,16 @@ def _judged(
     found = SurfaceVerdict(surface.name, chain.contour, judged and judged.motion, play, pieces=chain.pieces)
     envelope = gauge.envelope
     if judged and judged.reach and contour.is_convex and envelope.regular:
-        strayed, off = convex_deviation(judged.reach), 0.0
+        strayed = convex_deviation(judged.reach)
     else:
         try:
-            strayed = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
+            strayed = deviation(contour, envelope, spline or SPLINE_ERROR)
         except UnsettledError as error:
             unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
             return found, [_placed(unsettled, contour, envelope, limits.tolerance), *checks]
     if uneven:
         strayed = strayed.less_sure(uneven)
     found = replace(found, measured_error=strayed.worst[0])
-    if off:
-        strayed = strayed.less_sure(off)
     if linkage is not None:
         from kin.judge.linkage_checks import judge_linkage  # a plain follower does without
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from kin.follower.base import Closure, Follower
     from kin.judge.check import Check
 
-# Splines are judged as arcs within this share of the tolerance, which counts; what does not hold so is judged by arcs
-# within SPLINE_ERROR, mm, as far as rounding lets them be.
+# Arcs in place of a spline are within this share of the tolerance, and within SPLINE_ERROR, mm, as far as rounding
+# lets them be.
 SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
 # A limit that the tolerance implies is none where it is above this share of the stroke (of a play: of the rollers'
 # radius), and so many times what the tolerance gives at a pressure angle of 0.

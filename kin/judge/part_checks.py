@@ -104,7 +104,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
                 continue
             else:
                 kind = "thickness"
-            strayed = deviation(chain.contour.as_arcs()[0], envelope)
+            strayed = deviation(chain.contour, envelope)
             if strayed.rounds != 1:
                 tallies[kind].faults.append(f"the section{where} goes {strayed.rounds} times round the exact one")
             off = strayed.worst[0]

@@ -13,7 +13,17 @@ from kin.numeric.newton import zeros
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-__all__ = ["bernstein_product", "halves", "restrict", "rising_root", "roots", "split", "values"]
+__all__ = [
+    "bernstein_product",
+    "cross_product",
+    "derivative",
+    "halves",
+    "restrict",
+    "rising_root",
+    "roots",
+    "split",
+    "values",
+]
 
 # Roots closer to an end than this are taken for the end itself.
 END_MARGIN = 1e-12
@@ -74,6 +84,17 @@ def bernstein_product(f: Array, g: Array) -> Array:
     for i, weights in enumerate(shares(j, k)):
         out[i : i + k + 1] += first[i] * (second * weights[:, None])
     return out.T
+
+
+def cross_product(f: Array, g: Array) -> Array:
+    """Bernstein coefficients (n, j+k+1) of cross products of plane vectors, f (n, j+1, 2) and g (n, k+1, 2)."""
+    return bernstein_product(f[:, :, 0], g[:, :, 1]) - bernstein_product(f[:, :, 1], g[:, :, 0])
+
+
+def derivative(coefficients: Array) -> Array:
+    """Bernstein coefficients (n, k, ...) of derivatives, from (n, k+1, ...)."""
+    found: Array = (coefficients.shape[1] - 1) * np.diff(coefficients, axis=1)
+    return found
 
 
 def halves(coefficients: Array) -> tuple[Array, Array]:

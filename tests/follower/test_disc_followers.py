@@ -192,7 +192,7 @@ def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
     limit = follower.motion_limit(1e-3)
     assert error <= limit * (1.0 + 2e-5)
     assert error >= limit * (1.0 - 2e-3)
-    found = deviation(made.as_arcs()[0], follower.envelope)
+    found = deviation(made, follower.envelope)
     assert found.worst[0] == pytest.approx(1e-3, rel=1e-4)
 
 
@@ -214,7 +214,7 @@ def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
     tau = TURN / 2000 * np.arange(2000)
     made = Contour.from_bulges(*arcs_through(shoe.envelope.points(tau)))
     assert shoe.judge(made, PHI).motion.max < 1e-6
-    assert deviation(made.as_arcs()[0], shoe.envelope).worst[0] < 1e-6
+    assert deviation(made, shoe.envelope).worst[0] < 1e-6
 
 
 # --- refused ----------------------------------------------------------------------------------------------------------
@@ -292,7 +292,7 @@ def proved(follower, made, tolerance):
     motion = follower.judge(made, PHI).motion
     assert motion.extremes == "true"
     assert motion.bound <= follower.motion_limit(tolerance) * (1.0 + 1e-3)
-    assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance
+    assert deviation(made, follower.envelope).worst[0] <= tolerance
 
 
 @pytest.mark.thin(4)
@@ -306,7 +306,7 @@ def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     slope = 20.0 / np.radians(width) * (1.0 - np.cos(u)) / (30.0 + 20.0 / TURN * (u - np.sin(u)))
     assert follower.motion_limit(1e-9) == pytest.approx(1e-9 * np.hypot(1.0, slope).max(), rel=2e-3)
     assert follower.judge(made, PHI).motion.max < 1.01 * follower.motion_limit(1e-5)
-    found = deviation(made.as_arcs()[0], follower.envelope)
+    found = deviation(made, follower.envelope)
     dense = np.radians(width * np.linspace(0.0, 1.0, 20_001))
     apart = np.abs(made.distance(shape.sample(dense).point)).max()
     assert apart <= found.worst[0] * (1.0 + 1e-6)

@@ -172,7 +172,7 @@ def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(nam
     points = p[:, None] * unit(t) + slope[:, None] * unit(t + np.pi / 2) * 1.0
     points = points[np.append(np.hypot(*np.diff(points, axis=0).T) > 1e-9, True)] * 1.0005
     contour = Contour.from_vertices(points)
-    found = deviation(contour.as_arcs()[0], FlatEnvelope(LiftPitch(lift)))
+    found = deviation(contour, FlatEnvelope(LiftPitch(lift)))
     theta = np.unique(np.concatenate([DENSE, contour.normals]))
     gap = contour.support(theta).q - lift.derivatives(theta, 0)[0]
     assert found.outside == pytest.approx(max(gap.max(), found.outside), abs=1e-6)
@@ -192,7 +192,7 @@ def test_deviation_from_a_roller_envelope_by_dense_distances(name):
     envelope = RollerEnvelope(TransmissionPitch(transmission), radius)
     points = probes(samples(envelope, 60), 0.2)
     contour = Contour.from_vertices(points)
-    found = deviation(contour.as_arcs()[0], envelope)
+    found = deviation(contour, envelope)
     exact = samples(envelope, 400_000)
     sample = contour.sample(400)
     distance, _ = spatial.cKDTree(exact).query(sample)
@@ -210,8 +210,8 @@ def test_deviation_from_a_roller_envelope_by_dense_distances(name):
 def test_few_long_arcs_are_judged_between_their_ends():
     """A circle of 20.1 mm as two half circles, against 20 mm about a point 0.3 mm off: 0.1 +- 0.3."""
     lift = lift_from_fourier(20.0, {1: 0.3 * np.cos(1.0)}, {1: 0.3 * np.sin(1.0)})
-    chain, _ = Contour.from_bulges(np.array([[20.1, 0.0], [-20.1, 0.0]]), np.ones(2)).as_arcs()
-    found = deviation(chain, FlatEnvelope(LiftPitch(lift)))
+    contour = Contour.from_bulges(np.array([[20.1, 0.0], [-20.1, 0.0]]), np.ones(2))
+    found = deviation(contour, FlatEnvelope(LiftPitch(lift)))
     assert (found.outside, found.inside) == pytest.approx((0.4, 0.2), abs=1e-11)
     assert np.mod(found.outside_at, 2 * np.pi) == pytest.approx(1.0 + np.pi, abs=1e-5)
     assert found.inside_at == pytest.approx(1.0, abs=1e-5)
@@ -220,11 +220,11 @@ def test_few_long_arcs_are_judged_between_their_ends():
 def test_contours_that_go_round_twice_or_turn_back_are_told():
     lift = lift_from_fourier(20.0, {}, {})
     twice = np.tile(circle_points(200) * 20.0, (2, 1))
-    assert deviation(Contour.from_vertices(twice).as_arcs()[0], FlatEnvelope(LiftPitch(lift))).rounds == 2
+    assert deviation(Contour.from_vertices(twice), FlatEnvelope(LiftPitch(lift))).rounds == 2
     points = circle_points(200) * 20.0
     swapped = points.copy()
     swapped[[50, 51]] = swapped[[51, 50]]
-    found = deviation(Contour.from_vertices(swapped).as_arcs()[0], FlatEnvelope(LiftPitch(lift)))
+    found = deviation(Contour.from_vertices(swapped), FlatEnvelope(LiftPitch(lift)))
     assert found.rounds == 1
     assert found.backwards == pytest.approx(2 * 20.0 * np.sin(np.pi / 200), rel=1e-3)
     assert found.worst[0] < 0.03
@@ -240,7 +240,7 @@ def test_one_dent_or_bump_anywhere_is_measured(seed):
     k, depth = int(rng.integers(400)), float(rng.uniform(-0.5, 0.5))
     t = k * 2 * np.pi / 400
     points[k] += depth * unit(t)
-    found = deviation(Contour.from_vertices(points).as_arcs()[0], FlatEnvelope(LiftPitch(lift)))
+    found = deviation(Contour.from_vertices(points), FlatEnvelope(LiftPitch(lift)))
     plain = 41.0 * (np.pi / 400) ** 2 / 2 * 1.001  # sagitta of the edges where rho = 41
     assert max(depth, 0.0) <= found.outside + 1e-12 <= max(depth, 0.0) + 1e-9
     assert max(-depth, 0.0) <= found.inside + 1e-12

@@ -240,7 +240,7 @@ def test_a_corner_cut_off_a_sharp_reuleaux():
     vertices = vertices[np.argsort(np.mod(np.arctan2(vertices[:, 1], vertices[:, 0]), 2 * np.pi))]
     contour = Contour.from_vertices(vertices)
     face = followers.flat_face(lift_reuleaux(3, breadth, 0.0))
-    found = deviation(contour.as_arcs()[0], face.envelope)
+    found = deviation(contour, face.envelope)
     assert found.outside < e
     assert found.inside < e
     assert found.bare == pytest.approx(1.1 * e, rel=1e-6)

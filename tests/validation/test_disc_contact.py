@@ -73,7 +73,7 @@ def holds(follower, made, tolerance):
     found = follower.judge(made, PHI).motion
     assert found.extremes == "true"
     assert found.bound <= follower.motion_limit(tolerance) * (1.0 + 1e-6)
-    assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance * (1.0 + 1e-6)
+    assert deviation(made, follower.envelope).worst[0] <= tolerance * (1.0 + 1e-6)
 
 
 def test_d13_matched():
@@ -113,7 +113,7 @@ def test_d15_undercut():
         np.radians([45.8265, 84.1735])
     )
     assert lost == pytest.approx([-0.517693640] * 2, abs=2e-8)
-    assert deviation(made.as_arcs()[0], follower.envelope).worst[0] < 1e-7
+    assert deviation(made, follower.envelope).worst[0] < 1e-7
 
 
 @pytest.mark.slow

@@ -1,0 +1,321 @@
+"""A guided roller on a smooth contour of Bezier pieces: where it rests, and bounds of its error by their polynomials.
+
+The roller's centre runs at its radius r beside the contour, along a path of arc length s and curvature k/(1 + k r),
+whose derivative by s is k'/(1 + k r)^3; k and k' are those of the contour by its own arc length. Over a stretch of a
+piece they are bounded by the Bernstein coefficients of X' x X'', X' x X''', X'.X'' and X' there, within whose hulls
+these lie. `kin.follower.tracking` makes bounds of the error from that.
+
+Where the path is smooth and the shaft angle rises strictly all along it, by one turn, it is the graph of the roller's
+position over the shaft angle: there is one contact at each angle, nothing is hidden, and the error is that of the path.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import cross, dot, right
+from kin.follower.tracking import RESOLUTION, State, bounds_of_error
+from kin.numeric.angles import TURN
+from kin.numeric.bernstein import bernstein_product, cross_product, derivative, restrict
+from kin.numeric.errors import UnsettledError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.contour.bezier import Beziers
+    from kin.contour.contour import Contour
+    from kin.follower.guide import Guide
+    from kin.follower.tracking import Law, Limits
+    from kin.law.contacts import Contact
+    from kin.numeric.arrays import Array, Indices
+
+CELLS = 8  # of a piece, in the table of shaft angles
+PARTS = 2  # of a piece, from which its bounds are sought
+MOST_CUTS = 8  # in quarters, until the shaft angle is seen to rise
+STEPS = 12  # of Newton's method
+NEAR = 1e-8  # rad, or share of the roller: from here a step of first or second order is good to rounding
+MOST_PLAY = 0.1  # of the roller: beyond, its nearest point may be another one
+
+
+@dataclass(frozen=True, eq=False)
+class SplinePath:
+    """Path of the roller's centre, `offset` mm to the right of polynomial pieces of degree 3 or more.
+
+    The pieces follow one another counter-clockwise, smoothly.
+    """
+
+    beziers: Beziers
+    offset: float
+    guide: Guide
+
+    @staticmethod
+    def of(contour: Contour, offset: float, guide: Guide, turned: float) -> SplinePath:
+        """Path of the centre of a roller whose guide stands `turned` ahead, rad.
+
+        UnsettledError where it is not smooth and one turn round, or not all of polynomials.
+        """
+        if not contour.is_spline:
+            raise UnsettledError("not all of the contour are polynomials")
+        beziers = (contour.turned(-turned) if turned else contour).beziers
+        path = SplinePath(beziers.elevated(3), offset, guide)
+        path.demand_smooth()
+        return path
+
+    @property
+    def resolution(self) -> float:
+        """What rounding may make of no error, mm or radians."""
+        return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
+
+    def at(self, row: Indices, t: Array) -> tuple[State, Array]:
+        """State of the centre on pieces `row` at t (n,), and the derivative of its path's arc length by t (n,)."""
+        x, v, w = self.beziers.rows(row, t)
+        speed = np.hypot(v[:, 0], v[:, 1])
+        with np.errstate(divide="ignore", invalid="ignore"):  # at a cusp nothing is proved
+            tangent = v / speed[:, None]
+            curvature = cross(v, w) / speed**3
+            growth = 1.0 + self.offset * curvature
+            state = State.of(x + self.offset * right(tangent), tangent, curvature / growth, self.guide)
+        return state, speed * growth
+
+    def demand_smooth(self) -> None:
+        """Raise UnsettledError unless the path is smooth and the graph of a position over the shaft angle, proved."""
+        before, after = np.roll(self.beziers.velocity[:, -1], 1, axis=0), self.beziers.velocity[:, 0]
+        turn = np.arctan2(cross(before, after), dot(before, after))
+        gap = np.hypot(*(self.beziers.control[:, 0] - np.roll(self.beziers.control[:, -1], 1, axis=0)).T)
+        extent = float(np.abs(self.beziers.control).max())
+        if not (gap + (gap + abs(self.offset * turn)) * np.abs(turn) <= RESOLUTION * extent).all():
+            raise UnsettledError("the contour has corners")
+        row, low, high = self.parts()
+        for _ in range(MOST_CUTS):
+            state, rate = self.at(row, 0.5 * (low + high))
+            if not (state.angle[0] * rate > 0.0).all():
+                raise UnsettledError("the shaft angle falls along the contour")
+            shape = Shape.of(restrict(self.beziers.control[row], low, high), self.offset)
+            _, curved, _ = state.limits(shape.half, shape.curvature, shape.change).angle
+            open_ = ~(state.angle[0] > curved * shape.half)
+            if not open_.any():
+                break
+            row, low, high = quartered(row, low, high, open_)
+        else:
+            raise UnsettledError("the shaft angle is not seen to rise all along the contour")
+        if abs(self._table.edges[-1] - self._table.edges[0] - TURN) > NEAR:
+            raise UnsettledError("the contour does not go once round the shaft")
+
+    @cached_property
+    def _table(self) -> _Table:
+        count = self.beziers.count
+        t = np.tile(np.linspace(0.0, 1.0, CELLS + 1), count)
+        state, rate = self.at(np.repeat(np.arange(count), CELLS + 1), t)
+        phi, slope = (row.reshape(count, CELLS + 1) for row in (state.phi, state.angle[0] * rate))
+        width = np.mod(np.diff(phi, axis=1) + np.pi, TURN) - np.pi
+        edges = phi[0, 0] + np.append(0.0, np.cumsum(width))
+        return _Table(edges, width.ravel(), 1.0 / slope[:, :-1].ravel(), 1.0 / slope[:, 1:].ravel())
+
+    def places(self, phi: Array) -> tuple[Indices, Array, State, Array]:
+        """Contacts within NEAR of shaft angles phi (n,): pieces, parameters, states, and what the angles lack."""
+        table = self._table
+        x = np.mod(phi - table.edges[0], TURN) + table.edges[0]
+        cell = np.clip(np.searchsorted(table.edges, x, side="right") - 1, 0, len(table.width) - 1)
+        u, width = (x - table.edges[cell]) / table.width[cell], table.width[cell]
+        start = u * u * (3.0 - 2.0 * u) / CELLS
+        start += width * (u * (1.0 - u) ** 2 * table.after[cell] - u * u * (1.0 - u) * table.before[cell])
+        row, t = cell // CELLS, np.clip(cell % CELLS / CELLS + start, 0.0, 1.0)
+        for _ in range(STEPS):
+            state, rate = self.at(row, t)
+            missing = np.mod(phi - state.phi + np.pi, TURN) - np.pi
+            if not (np.abs(missing) > NEAR).any():
+                return row, t, state, missing
+            t = np.clip(t + missing / (state.angle[0] * rate), 0.0, 1.0)
+        raise UnsettledError("a contact is not found")
+
+    def reached(self, phi: Array) -> Array:
+        """Position of the roller, mm or radians, at shaft angles phi (n,)."""
+        _, _, state, missing = self.places(phi)
+        position: Array = state.position[0] + state.position[1] / state.angle[0] * missing
+        return position
+
+    @cached_property
+    def ends(self) -> Array:
+        """Shaft angles at which the roller touches the ends and the middles of pieces."""
+        return self._table.edges[:-1][:: CELLS // 2]
+
+    def gap(self, centres: Array, phi: Array) -> Array:
+        """Gap (n,), mm, between the contour and a roller with its centre at (n, 2), near where it rests at phi (n,)."""
+        row, t, _, _ = self.places(phi)
+        first, last = (np.hypot(*self.beziers.velocity[:, k].T) for k in (0, -1))
+        side, radius = np.sign(self.offset), abs(self.offset)
+        for _ in range(STEPS):
+            x, v, w = self.beziers.rows(row, t)
+            away = centres - x
+            step = dot(away, v) / (dot(v, v) - dot(away, w))
+            speed = np.hypot(v[:, 0], v[:, 1])
+            if not (np.abs(step) * speed > NEAR * radius).any():
+                gap: Array = side * cross(v, away) / -speed - radius
+                if np.abs(gap).max() > MOST_PLAY * radius:
+                    break
+                return gap
+            t = t + step
+            over, under = t > 1.0, t < 0.0
+            beyond = np.where(over, (t - 1.0) * speed, t * speed)
+            row = np.mod(row + over - under, self.beziers.count)
+            t = np.where(over, beyond / first[row], np.where(under, 1.0 + beyond / last[row], t))
+        raise UnsettledError("the play is too large to be told from one place")
+
+    def parts(self) -> tuple[Indices, Array, Array]:
+        """Equal parts of all pieces: their rows, and the parameters at both ends, (n,) each."""
+        part = np.tile(np.arange(PARTS), self.beziers.count)
+        return np.repeat(np.arange(self.beziers.count), PARTS), part / PARTS, (part + 1.0) / PARTS
+
+
+class _Table(NamedTuple):
+    """Shaft angles at the ends of n cells, rising, their widths, and the derivative of the parameter by it at both."""
+
+    edges: Array
+    width: Array
+    after: Array
+    before: Array
+
+
+class Shape(NamedTuple):
+    """Bounds over n stretches of a path: of its curvature, and of that's derivative by arc length; inf where unknown.
+
+    half, inner  bounds of the arc length from the middle to either end, from above and from below
+    """
+
+    curvature: Array
+    change: Array
+    half: Array
+    inner: Array
+
+    @staticmethod
+    def of(control: Array, offset: float) -> Shape:
+        """Bounds from control points (n, d + 1, 2) of stretches of the contour, of which the path lies `offset` off."""
+        v = derivative(control)
+        w = derivative(v)
+        u = derivative(w)
+        chord = control[:, -1] - control[:, 0]
+        way = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
+        least, most = np.einsum("nkc,nc->nk", v, way).min(axis=1), np.hypot(v[:, :, 0], v[:, :, 1]).max(axis=1)
+        turning = cross_product(v, w)
+        low, high = turning.min(axis=1), turning.max(axis=1)
+        along = bernstein_product(v[:, :, 0], w[:, :, 0]) + bernstein_product(v[:, :, 1], w[:, :, 1])
+        size, stretched = np.maximum(-low, high), np.abs(along).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bends = np.stack(
+                [low / np.where(low < 0.0, least, most) ** 3, high / np.where(high > 0.0, least, most) ** 3]
+            )
+            growth = 1.0 + np.sort(offset * bends, axis=0)
+            change = (np.abs(cross_product(v, u)).max(axis=1) + 3.0 * size * stretched / least**2) / least**4
+            curvature, change = np.abs(bends).max(axis=0) / growth[0], change / growth[0] ** 3
+        known = (least > 0.0) & (growth[0] > 0.0)
+        curvature, change, half = np.where(known, np.stack([curvature, change, 0.5 * most * growth[1]]), np.inf)
+        return Shape(curvature, change, half, np.where(known, 0.5 * least * growth[0], 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class OnSpline:
+    """A roller held on a path; it is meant to be at zero + sense * law, as the contact has it."""
+
+    path: SplinePath
+    contact: Contact[Any, Any]
+
+    @property
+    def guide(self) -> Guide:
+        """What leads the centre."""
+        return self.path.guide
+
+    @property
+    def resolution(self) -> float:
+        """See `SplinePath`."""
+        return self.path.resolution
+
+    def meant(self, rows: Array) -> Array:
+        """Intended position and its derivatives (m, n) from the law's."""
+        meant = self.contact.sense * rows
+        meant[0] += self.contact.zero
+        return meant
+
+    def reached(self, phi: Array) -> Array:
+        """See `SplinePath`."""
+        return self.path.reached(phi)
+
+    def looked_at_about(self, phi: Array) -> OnSpline:  # noqa: ARG002 - nothing is hidden
+        """Itself."""
+        return self
+
+    def spans(self) -> BezierSpans:
+        """Stretches of the whole path."""
+        return BezierSpans.over(self, *self.path.parts())
+
+
+@dataclass(frozen=True, eq=False)
+class BezierSpans:
+    """Stretches of pieces (n,) between parameters low and high, (n,) each; errors both ways are looked for at once."""
+
+    held: OnSpline
+    piece: Indices
+    low: Array
+    high: Array
+    shape: Shape
+
+    @staticmethod
+    def over(held: OnSpline, row: Indices, low: Array, high: Array) -> BezierSpans:
+        """Stretches of pieces `row` (n,)."""
+        shape = Shape.of(restrict(held.path.beziers.control[row], low, high), held.path.offset)
+        return BezierSpans(held, row, low, high, shape)
+
+    @property
+    def middle(self) -> Array:
+        """Parameters (n,) of the middles."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def half(self) -> Array:
+        """See `Shape`."""
+        return self.shape.half
+
+    def quarters(self, which: NDArray[np.bool_]) -> BezierSpans:
+        """Quarters of some, by the parameter."""
+        return BezierSpans.over(self.held, *quartered(self.piece, self.low, self.high, which))
+
+    def one(self, i: int) -> BezierSpans:
+        """One of them."""
+        return BezierSpans.over(self.held, self.piece[[i]], self.low[[i]], self.high[[i]])
+
+    def summit(self, law: Law, where: float) -> Array:
+        """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
+        path = self.held.path
+        _, rate = path.at(self.piece, self.middle)
+        t = np.clip(self.middle + where / rate, self.low, self.high)
+        state, rate = path.at(self.piece, t)
+        _, slope, bend = state.error(self.held.meant(law.rows(state.phi)))
+        step = np.where(bend * slope != 0.0, -slope / bend, 0.0)
+        near, _ = path.at(self.piece, np.clip(t + step / rate, self.low, self.high))
+        return np.concatenate([state.phi, near.phi])
+
+    def state(self) -> State:
+        """The roller's centre at the middles."""
+        return self.held.path.at(self.piece, self.middle)[0]
+
+    def limits(self, state: State) -> Limits:
+        """Bounds over the spans."""
+        return state.limits(self.half, self.shape.curvature, self.shape.change)
+
+    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+        """Upper bounds of the absolute error, one reached in each span, and where, off the middle: (n,) each."""
+        error = state.error(self.held.meant(rows))
+        (up, high, at), (down, low, other) = (
+            bounds_of_error(sign * error, most, self.half, self.shape.inner) for sign in (1.0, -1.0)
+        )
+        return np.maximum(up, down), np.maximum(high, low), np.where(high >= low, at, other)
+
+
+def quartered(row: Indices, low: Array, high: Array, which: NDArray[np.bool_]) -> tuple[Indices, Array, Array]:
+    """Quarters of some of the intervals from low to high on rows, (n,) each."""
+    begin, step = low[which], 0.25 * (high - low)[which]
+    cuts = [begin + k * step for k in range(4)] + [high[which]]
+    return np.tile(row[which], 4), np.concatenate(cuts[:-1]), np.concatenate(cuts[1:])
