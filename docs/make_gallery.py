@@ -27,8 +27,9 @@ COLUMNS = 3
 HEAD = """\
 # Gallery
 
-Every shipped recipe with the shaft turned by 60 degrees, the cam as its first file draws it. Drawn and written by
-`python docs/make_gallery.py`; a page that moves comes from `camgeo report RECIPE` ([page.md](page.md)).
+To choose a recipe to begin with. Every shipped recipe with the shaft turned by 60 degrees, the cam as its first file
+draws it. Drawn and written by `python docs/make_gallery.py`; a page that moves comes from
+`camgeo report RECIPE` ([page.md](page.md)).
 """
 
 
