@@ -11,7 +11,7 @@ from drawing import keep
 
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
-from camgeo.output.pipeline import shown
+from camgeo.output.pipeline import check_and_show
 from camgeo.recipe.loading import load
 from camgeo.report.page.scene import STEPS
 from camgeo.report.page.svg import still
@@ -51,7 +51,7 @@ def main() -> None:
     pictures = {}
     for path in sorted((ROOT / "recipes").glob("*.yaml")):
         recipe = load(path)
-        _, found = shown(recipe)
+        _, found = check_and_show(recipe)
         pictures[path.stem] = still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), recipe.name)
         cells[family(recipe)].append(
             f'<td align="center" valign="bottom"><img src="gallery/{path.stem}.svg" width="260" '

@@ -46,17 +46,17 @@ def _check(recipe: Recipe, progress: Callable[[str], None]) -> Outcome:
 def _judge(
     recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
 ) -> dict[str, Any]:
-    return pipeline.judged(recipe, paths, tolerance=tolerance, units=units, gap=gap)
+    return pipeline.judge_files(recipe, paths, tolerance=tolerance, units=units, gap=gap)
 
 
 def _claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
-    return pipeline.judged_by(recipe, name, call)
+    return pipeline.judge_claimed(recipe, name, call)
 
 
 def _show(
     recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
 ) -> tuple[dict[str, Any], str]:
-    return pipeline.judged_and_shown(recipe, paths, tolerance=tolerance, units=units, gap=gap)
+    return pipeline.judge_and_show(recipe, paths, tolerance=tolerance, units=units, gap=gap)
 
 
 def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None) -> str:

@@ -1,4 +1,4 @@
-"""The recipes of one call, one after another or several at once; of each its report, a message, an exit status."""
+"""Runs of the recipes of one call, one after another or several at once: reports, messages, exit statuses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ IMPORTS = 1.0  # processor seconds of the first recipe that its imports may take
 
 @dataclass(frozen=True)
 class Task:
-    """What is done with each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
+    """Work on each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
 
     out: Path | None
     only: tuple[str, ...] = ()
@@ -34,7 +34,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of one recipe: its report, None where it came to none; a message for standard error; the status.
+    """Outcome of one recipe: its report, None where a fault prevented it; a message for standard error; the status.
 
     `errors` are the faults of the recipe, of which the message is made.
     """
@@ -46,27 +46,27 @@ class Result:
 
 
 def results(recipes: Sequence[Order], task: Task, jobs: int | None) -> Iterator[Result]:
-    """Give the result of each recipe in their order; it begins here.
+    """Result of each recipe, in order; the first run in this process.
 
-    It goes on with `jobs` processes, or with one for each core, where what is left pays for starting them.
+    The others run in `jobs` processes, by default one for each core, where their work is worth starting processes.
     """
     started = time.process_time()
     warm = 0.0  # processor time when the first recipe had imported what they need
-    for done, recipe in enumerate(recipes):
+    for number, recipe in enumerate(recipes):
         spent = time.process_time()
-        each = (spent - warm) / (done - 1) if done > 1 else max(spent - started - IMPORTS, 0.0)
-        left = recipes[done:]
-        count = workers.needed(workers.available() if jobs is None else jobs, len(left))
+        seconds_each = (spent - warm) / (number - 1) if number > 1 else max(spent - started - IMPORTS, 0.0)
+        remaining = recipes[number:]
+        count = workers.needed(workers.available() if jobs is None else jobs, len(remaining))
         fork = workers.alone()
-        if count > 1 and done and each * len(left) > (FORKED if fork else PAYS):
-            yield from _at_once(left, task, count, fork=fork)
+        if count > 1 and number and seconds_each * len(remaining) > (FORKED if fork else PAYS):
+            yield from _in_parallel(remaining, task, count, fork=fork)
             return
         yield result(recipe, task, Progress(recipe.name))
-        warm = warm if done else time.process_time()
+        warm = warm if number else time.process_time()
 
 
-def _at_once(recipes: Sequence[Order], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
-    """Give the result of each recipe in their order, `count` at once."""
+def _in_parallel(recipes: Sequence[Order], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
+    """Result of each recipe, in order, from `count` processes."""
     from concurrent.futures.process import BrokenProcessPool
 
     progress = Progress(f"{len(recipes)} recipes")
@@ -76,19 +76,19 @@ def _at_once(recipes: Sequence[Order], task: Task, count: int, *, fork: bool) ->
             for number, future in enumerate(futures):
                 progress(f"{number} of {len(futures)} done")
                 try:
-                    found = future.result()
+                    outcome = future.result()
                 except BrokenProcessPool:
-                    # one process was killed, and takes with it what the others had in hand
+                    # one process was killed, and the work of the others is lost with it
                     text = f"camgeo: {recipes[number].name}: {workers.KILLED.format('this recipe')}"
-                    found = Result(None, text, SURROUNDINGS)
+                    outcome = Result(None, text, SURROUNDINGS)
                 progress.clear()
-                yield found
+                yield outcome
         finally:
             progress.clear()
 
 
 def result(recipe: Order, task: Task, progress: Progress | None = None) -> Result:
-    """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
+    """Result of one recipe; a wrong recipe, the disk and a missing package are in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError
     from camgeo.schema.errors import RecipeErrors

@@ -26,12 +26,8 @@ if TYPE_CHECKING:
 _CURVES = ("displacement", "velocity", "acceleration", "jerk")
 _COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73")
 _POINTS = 65  # of a curve on each stretch of a law
-_WIDTH, _HEIGHT, _ROOM, _HEAD = (
-    220,
-    130,
-    14,
-    30,
-)  # a law's frame in an SVG, what is free about it, its two lines of text
+_WIDTH, _HEIGHT = 220, 130  # of a law's frame in an SVG
+_MARGIN, _HEAD = 14, 30  # about the frame, and of its two lines of text
 _COLUMNS = 4
 
 
@@ -107,12 +103,12 @@ def _draw(laws: list[Law], path: Path) -> int:
 
 def _curves(law: Law) -> list[tuple[Array, Array]]:
     """U (n,) and s, v, a, j (4, n) on each stretch of a law: limits at the knots, no step is drawn slanted."""
-    found = []
+    curves = []
     for begin, end in pairwise(law.motion.knots.tolist()):
         u = np.linspace(begin, end, _POINTS)
         side = np.where(np.arange(_POINTS) == _POINTS - 1, -1, 1)
-        found.append((u, law.motion.derivatives(u, 3, side)))
-    return found
+        curves.append((u, law.motion.derivatives(u, 3, side)))
+    return curves
 
 
 def _scales(curves: list[tuple[Array, Array]]) -> list[float]:
@@ -124,18 +120,18 @@ def _scales(curves: list[tuple[Array, Array]]) -> list[float]:
 def _svg(laws: list[Law]) -> str:
     rows = math.ceil(len(laws) / _COLUMNS)
     columns = min(_COLUMNS, len(laws))
-    cell_x, cell_y = _WIDTH + 2 * _ROOM, _HEIGHT + _HEAD + 2 * _ROOM
-    size = f"{columns * cell_x} {rows * cell_y + 2 * _ROOM}"
+    cell_x, cell_y = _WIDTH + 2 * _MARGIN, _HEIGHT + _HEAD + 2 * _MARGIN
+    size = f"{columns * cell_x} {rows * cell_y + 2 * _MARGIN}"
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}" font-family="sans-serif" font-size="11">',
         "<title>Motion laws: each curve against its own peak</title>",
     ]
     parts += [
-        f'<text x="{_ROOM + 90 * k}" y="{_ROOM + 4}" fill="{colour}">{word}</text>'
+        f'<text x="{_MARGIN + 90 * k}" y="{_MARGIN + 4}" fill="{colour}">{word}</text>'
         for k, (word, colour) in enumerate(zip(_CURVES, _COLOURS, strict=True))
     ]
     for i, law in enumerate(laws):
-        x, y = (i % _COLUMNS) * cell_x + _ROOM, (i // _COLUMNS) * cell_y + 2 * _ROOM
+        x, y = (i % _COLUMNS) * cell_x + _MARGIN, (i // _COLUMNS) * cell_y + 2 * _MARGIN
         parts.append(f'<g transform="translate({x} {y})">{_frame(law)}</g>')
     return "\n".join([*parts, "</svg>", ""])
 

@@ -54,9 +54,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _arguments(words: Sequence[str]) -> argparse.Namespace:
-    """Parse a call; SystemExit after help, the version, or what is wrong with it.
+    """Arguments of a call; raises SystemExit after help, the version or a fault of the call was written.
 
-    argparse keeps it to itself where it cannot write these, and writes a call's words as they are.
+    argparse would hide a failure to write these, and would write the words of a call unescaped.
     """
     answer, complaint = io.StringIO(), io.StringIO()
     try:
@@ -71,10 +71,10 @@ def _arguments(words: Sequence[str]) -> argparse.Namespace:
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Make the parser of a call in these words; commands that are not among them have no arguments yet."""
+    """Parser of a call in these words; only commands among the words get their arguments."""
     from camgeo.version import __version__
 
-    # asking how wide the terminal is imports what unpacks archives, 13 ms of 200: it is asked for help alone
+    # the width of the terminal costs an import of 13 ms of 200: only help needs it
     help_form = partial(argparse.HelpFormatter, width=None if {"-h", "--help"} & {*words} else 78)
     parser = argparse.ArgumentParser(
         prog="camgeo",
@@ -92,8 +92,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         added.set_defaults(run=run)
         return added
 
-    def of_module(name: str, text: str, module_name: str) -> None:
-        """Add a command that has a module of its own, which is imported where it is called."""
+    def add_module_command(name: str, text: str, module_name: str) -> None:
+        """Add a command of a module, which is imported only for a call of the command."""
         added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
         if name in words:
             module = import_module(module_name)
@@ -135,22 +135,22 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     new.set_defaults(sources=[])
     for folder, label in registry.labels().items():
         for name, text in label.sources.items():
-            source = partial(_source, folder)
+            source = partial(_source_argument, folder)
             new.add_argument(f"--{name}", dest="sources", type=source, action="append", metavar="FILE", help=text)
-    of_module("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
-    of_module("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
+    add_module_command("report", "An HTML page: the animated mechanism, its curves, its checks.", "camgeo.cli.report")
+    add_module_command("laws", "The motion laws with their peak velocity, acceleration and jerk.", "camgeo.cli.laws")
     schema = command("schema", _schema, "The recipe's JSON schema.")
     schema.add_argument(
         "order", nargs="?", choices=(root.CAM, *root.folders()), default=root.CAM, help="of which recipe"
     )
     for folder, label in registry.labels().items():
         for name, text in label.commands.items():
-            of_module(name, text, f"{registry.PACKAGE}.{folder}.command")
+            add_module_command(name, text, f"{registry.PACKAGE}.{folder}.command")
     return parser
 
 
 def _add_recipes(command: argparse.ArgumentParser) -> None:
-    """Give a command of several recipes what all such take."""
+    """Add the arguments of a command of several recipes."""
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
     _add_options(command, "in place of export.tolerance, in the recipe's unit or with its own: 0.0005in")
     command.add_argument(
@@ -159,19 +159,19 @@ def _add_recipes(command: argparse.ArgumentParser) -> None:
 
 
 def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
-    """Give a command that makes reports its options; `tolerance` is what it does with that."""
+    """Add the options of a command that makes reports; `tolerance` is the help of that option."""
     command.add_argument("--tolerance", type=_length, metavar="E", help=tolerance)
     command.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
     command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
 
 
-def _source(folder: str, text: str) -> tuple[str, str]:
-    """Give the capability that makes a recipe out of a file, and the file's name."""
+def _source_argument(folder: str, text: str) -> tuple[str, str]:
+    """Pair of the capability's folder that makes a recipe out of a file, and the file's name."""
     return folder, name_of(text)
 
 
 def _length(text: str) -> str:
-    """Give a length as written, which may carry its unit; that of one that does not is the recipe's."""
+    """Text of a length above 0, with a unit or in the recipe's; raises ArgumentTypeError for any other text."""
     from camgeo.schema.fields import MOST
     from camgeo.schema.scalars import Complaint
 
@@ -192,26 +192,26 @@ def _complain(text: str) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from camgeo.cli.recipes import in_one_folder
+    from camgeo.cli.recipes import folder_conflicts
 
     if arguments.watch:
         return _watch(arguments)
-    recipes, refused = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
-    faults = in_one_folder(recipes)
+    recipes, refused = _load_recipes(arguments.recipes, arguments.tolerance, arguments.only)
+    faults = folder_conflicts(recipes)
     for fault in faults:
         _complain(fault)
     if faults:
         return WRONG
-    return _told(recipes, refused, Task(Path(arguments.out), tuple(arguments.only)), arguments)
+    return _run_recipes(recipes, refused, Task(Path(arguments.out), tuple(arguments.only)), arguments)
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    recipes, refused = _loaded(arguments.recipes, arguments.tolerance, ())
-    return _told(recipes, refused, Task(None), arguments)
+    recipes, refused = _load_recipes(arguments.recipes, arguments.tolerance, ())
+    return _run_recipes(recipes, refused, Task(None), arguments)
 
 
 def _watch(arguments: argparse.Namespace) -> int:
-    """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
+    """Export one recipe at each saving until interrupted; a server on 127.0.0.1 shows its page."""
     from camgeo.cli.watch import watch
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.loading import load_order
@@ -227,37 +227,41 @@ def _watch(arguments: argparse.Namespace) -> int:
     only = (*arguments.only, "html") if arguments.only else ()
     files = [path]
 
-    def exported() -> tuple[str | None, str]:
+    def export_page() -> tuple[str | None, str]:
         try:
             recipe = load_order(path)
         except RecipeErrors as errors:
             complain(str(errors))
             return None, str(errors)
         files[:] = [path, *recipe.parts]
-        asked = [request for request in recipe.export.files if not request.format.summary]
+        requests = [request for request in recipe.export.files if not request.format.summary]
         page = FileRequest("html")
-        recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
-        found = result(_at(recipe, arguments.tolerance), Task(out, only))
-        if found.report is None:
-            complain(found.message)
-            return None, found.message
-        _show(dict(found.report), verbose=arguments.verbose)
+        recipe = replace(recipe, export=replace(recipe.export, files=(*requests, page)))
+        outcome = result(_with_tolerance(recipe, arguments.tolerance), Task(out, only))
+        if outcome.report is None:
+            complain(outcome.message)
+            return None, outcome.message
+        _show(dict(outcome.report), verbose=arguments.verbose)
         sys.stdout.flush()  # a pipe hears of each saving too
-        assert found.report.path is not None
-        return (found.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
+        assert outcome.report.path is not None
+        return (outcome.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
     watch(
-        files, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True)
+        files,
+        export_page,
+        lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True),
     )
     return OK
 
 
-def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) -> tuple[list[Order], dict[int, Entry]]:
-    """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong.
+def _load_recipes(
+    paths: Sequence[str], tolerance: str | None, only: Sequence[str]
+) -> tuple[list[Order], dict[int, Entry]]:
+    """Sound recipes that list a file of a kind in `only`, and entries of the others by their place in the call.
 
-    Those others come second, by their place in the call, as a list of reports has them.
+    The faults of the others are written to the terminal.
     """
-    from camgeo.cli.recipes import unmade
+    from camgeo.cli.recipes import failed_entry
     from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
@@ -270,41 +274,41 @@ def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) ->
                 raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
         except RecipeErrors as errors:
             complain(str(errors))
-            refused[i] = unmade(path, str(errors), errors.errors)
+            refused[i] = failed_entry(path, str(errors), errors.errors)
             continue
-        recipes.append(_at(recipe, tolerance))
+        recipes.append(_with_tolerance(recipe, tolerance))
     return recipes, refused
 
 
-def _at(recipe: O, tolerance: str | None) -> O:
-    """Give the recipe with the tolerance of the call, in its own unit or the recipe's, if there is one."""
+def _with_tolerance(recipe: O, tolerance: str | None) -> O:
+    """Recipe with the tolerance of the call, a text in its own unit or the recipe's; None leaves it as it is."""
     if tolerance is None:
         return recipe
     within = read_quantity(tolerance, recipe.units) * recipe.mm
     return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _told(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
-    """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
-    from camgeo.cli.recipes import unmade
+def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
+    """Run recipes and write their reports, in JSON with the entries `refused` in their places; the highest status."""
+    from camgeo.cli.recipes import failed_entry
 
     status = WRONG if refused else OK
     entries: list[Entry] = []
-    for found in results(recipes, task, arguments.jobs):
-        status = max(status, found.status)
-        if found.report is not None:
-            report: Entry = dict(found.report)
+    for outcome in results(recipes, task, arguments.jobs):
+        status = max(status, outcome.status)
+        if outcome.report is not None:
+            report: Entry = dict(outcome.report)
             if task.out is None:
-                _mention(report, mixtures(Path(arguments.out) / found.report.recipe.name))
+                _mention(report, mixtures(Path(arguments.out) / outcome.report.recipe.name))
             entries.append(report)
             if not arguments.json:
                 if arguments.verbose and len(entries) > 1:
                     say("")
                 _show(report, verbose=arguments.verbose)
-        if found.message:
-            complain(found.message)
-        if found.report is None:
-            entries.append(unmade(recipes[len(entries)].name, found.message, found.errors))
+        if outcome.message:
+            complain(outcome.message)
+        if outcome.report is None:
+            entries.append(failed_entry(recipes[len(entries)].name, outcome.message, outcome.errors))
     if arguments.json:
         from camgeo.report.document import as_json
 
@@ -315,7 +319,7 @@ def _told(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, argum
 
 
 def _mention(report: Entry, mixed: Sequence[str]) -> None:
-    """Say where files and reports do not belong together; the verdict is of what was judged, whatever that is."""
+    """Write messages on files that differ from their reports, and add them to the report; the verdict stays."""
     if mixed:
         report["mixed"] = [*report.get("mixed", ()), *mixed]
     for text in mixed:
@@ -344,24 +348,26 @@ def _verify(arguments: argparse.Namespace) -> int:
     from kin.judge.verify import UnitsError
 
     try:
-        recipe = _at(load_order(arguments.recipe), arguments.tolerance)
+        recipe = _with_tolerance(load_order(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
         options: dict[str, Any] = {name: getattr(arguments, name) for name in registry.options()}
-        own = [name for judge in registry.judges().values() for name in judge.options]
-        options |= {name: getattr(arguments, name) for name in own if getattr(arguments, name) is not None}
+        judge_options = [name for judge in registry.judges().values() for name in judge.options]
+        options |= {name: getattr(arguments, name) for name in judge_options if getattr(arguments, name) is not None}
         demand_new(arguments.page)
-        shown = arguments.page is not None
+        with_page = arguments.page is not None
         progress = Progress(recipe.name)
         progress("judge")
         try:
-            found = verify(recipe, *paths, tolerance=within, units=arguments.units, gap=gap, page=shown, **options)
+            verdict = verify(
+                recipe, *paths, tolerance=within, units=arguments.units, gap=gap, page=with_page, **options
+            )
         finally:
             progress.clear()
-        report = dict(found)
-        if found.page is not None:
-            write_new({arguments.page: found.page})
+        report = dict(verdict)
+        if verdict.page is not None:
+            write_new({arguments.page: verdict.page})
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:
@@ -394,7 +400,7 @@ def _new(arguments: argparse.Namespace) -> int:
 
     sources: list[tuple[str, str]] = arguments.sources
     for folder in dict.fromkeys(folder for folder, _ in sources):
-        files = [name for one, name in sources if one == folder]
+        files = [name for source_folder, name in sources if source_folder == folder]
         return _new_from(folder, files, arguments.kind, arguments.file)
     kind: str | None = arguments.kind
     if kind is None or (arguments.file is None and kind not in STARTERS and starters_for(kind)):
@@ -421,7 +427,7 @@ def _new(arguments: argparse.Namespace) -> int:
 
 
 def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str | None) -> int:
-    """Make a recipe out of files, by the capability of a folder, and another recipe; see `Label.sources`."""
+    """Make a recipe of files and another recipe by the capability of a folder, see `Label.sources`; the exit status."""
     from camgeo.cli.new_file import demand_new, write_new
     from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.schema.errors import RecipeErrors
@@ -431,9 +437,14 @@ def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str
         return WRONG
     try:
         demand_new(name)
-        started = import_module(f"{registry.PACKAGE}.{folder}.start").started
-        made = started([Path(source) for source in sources], Path(recipe), name)
-        write_new({name: made.text, **{str(Path(name).with_name(other)): text for other, text in made.beside.items()}})
+        start = import_module(f"{registry.PACKAGE}.{folder}.start").started
+        starter = start([Path(source) for source in sources], Path(recipe), name)
+        write_new(
+            {
+                name: starter.text,
+                **{str(Path(name).with_name(beside_name)): text for beside_name, text in starter.beside.items()},
+            }
+        )
     except (CallError, RecipeErrors) as error:
         for line in str(error).splitlines():
             _complain(line)
@@ -447,7 +458,7 @@ def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str
     except SurroundingsError as error:
         _complain(str(error))
         return SURROUNDINGS
-    say("\n".join([f"{escaped(name)}:", *(f"  {line}" for line in made.lines)]))
+    say("\n".join([f"{escaped(name)}:", *(f"  {line}" for line in starter.lines)]))
     return OK
 
 

@@ -1,4 +1,4 @@
-"""Files that a command writes where the user says, and never over another one."""
+"""New files of a command, which never replace a file."""
 
 from __future__ import annotations
 
@@ -13,30 +13,27 @@ if TYPE_CHECKING:
 
 
 def demand_new(*names: str | None) -> None:
-    """Raise CallError for names that are taken or stand twice, before work is done for them; None names nothing."""
-    wanted = [name for name in names if name is not None]
-    taken = [name for name in wanted if Path(name).exists()]
-    if taken:
-        raise CallError(*(f"{escaped(name)} exists already and is left as it is" for name in taken))
-    paths = [Path(name).resolve() for name in wanted]
-    for name, path in zip(wanted, paths, strict=True):
+    """Raise CallError for names of files that exist or stand twice; None is no name."""
+    file_names = [name for name in names if name is not None]
+    existing = [name for name in file_names if Path(name).exists()]
+    if existing:
+        raise CallError(*(f"{escaped(name)} exists already and is left as it is" for name in existing))
+    paths = [Path(name).resolve() for name in file_names]
+    for name, path in zip(file_names, paths, strict=True):
         if paths.count(path) > 1:
             raise CallError(f"{escaped(name)} would be written twice: give each file a name of its own")
 
 
 def write_new(texts: Mapping[str, str]) -> None:
-    """Write texts by the names of their files, all or none.
-
-    Raises CallError for a name that is taken, SurroundingsError where the disk refuses.
-    """
-    written: list[Path] = []
+    """Write texts by their file names, all or none; raises CallError for a file that exists, SurroundingsError."""
+    paths: list[Path] = []
     try:
         for name, text in texts.items():
             with open(name, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
-                written.append(Path(name))
+                paths.append(Path(name))
                 stream.write(text)
     except OSError as error:
-        for path in written:
+        for path in paths:
             path.unlink(missing_ok=True)
         if isinstance(error, FileExistsError):
             raise CallError(f"{escaped(name)} exists already and is left as it is") from None

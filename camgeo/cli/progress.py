@@ -1,4 +1,4 @@
-"""What is being done, on a terminal's last line."""
+"""Progress of a command on the terminal's last line."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ LONG = 10.0  # seconds after which a stage is said where there is no terminal
 
 
 class Progress:
-    """What is being done, on a terminal's last line, once it takes more than a second.
+    """Shows the stage of a command on the terminal's last line, once the command takes more than a second.
 
-    Elsewhere a stage that takes long is said in a line of its own; with `every`, seconds, all that is said when so long
-    has passed. A timer says what goes on by itself: a process that has one is not forked before `clear`.
+    Without a terminal a stage that takes long gets a line of its own; with `every`, seconds, a line is written when
+    so long has passed since the last. A timer thread writes: a process with one is not forked before `clear`.
     """
 
     def __init__(self, name: str, every: float | None = None) -> None:

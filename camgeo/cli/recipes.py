@@ -1,4 +1,4 @@
-"""Recipes of one command: which go into the same folder, and what is said of one that came to no report."""
+"""Recipes of one command: conflicts of their folders, and entries of recipes without a report."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from camgeo.schema.errors import RecipeError
 
 
-def in_one_folder(recipes: Sequence[Order]) -> list[str]:
-    """Say which recipes of one call would write into the same folder: a file named twice, or a name used twice."""
+def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
+    """Faults of recipes that would write into the same folder: a file named twice, or a name used twice."""
     paths = [recipe.path.resolve() for recipe in recipes]
     again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
     if again:
@@ -27,7 +27,6 @@ def in_one_folder(recipes: Sequence[Order]) -> list[str]:
     return [f"{escaped(str(recipe.path))}: {text.format(recipe.name)}" for recipe in twice]
 
 
-def unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
-    """Make the entry of a recipe that came to no report, for machines."""
-    listed = [asdict(error) for error in errors] or [{"problem": message}]
-    return {"recipe": recipe, "ok": False, "errors": listed}
+def failed_entry(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
+    """Entry in place of a report for a recipe that has none, with its errors."""
+    return {"recipe": recipe, "ok": False, "errors": [asdict(error) for error in errors] or [{"problem": message}]}

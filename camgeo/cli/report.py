@@ -24,7 +24,7 @@ FORMS = ("svg", "png")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Give the command its options."""
+    """Add the arguments of the command."""
     parser.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
     add_out(parser)
     parser.add_argument(
@@ -49,11 +49,11 @@ def _angle(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page of each recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings.
+    """Write the page of each recipe; the exit status: 0 every check holds, 1 one fails, 2 wrong, 3 surroundings.
 
-    With `--json` one recipe gives its page.json, several a list of theirs.
+    With `--json` one recipe prints its page.json, several a list of theirs.
     """
-    from camgeo.cli.recipes import in_one_folder
+    from camgeo.cli.recipes import folder_conflicts
     from camgeo.recipe.loading import load
     from camgeo.report.document import as_json
     from camgeo.schema.errors import RecipeErrors
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
             recipes.append(load(path))
         except RecipeErrors as errors:
             recipes.append(errors)
-    if faults := in_one_folder([recipe for recipe in recipes if not isinstance(recipe, RecipeErrors)]):
+    if faults := folder_conflicts([recipe for recipe in recipes if not isinstance(recipe, RecipeErrors)]):
         complain("\n".join(f"camgeo: {fault}" for fault in faults))
         return WRONG
     status, entries = OK, []
@@ -80,10 +80,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, Entry]:
-    """Write the page of one recipe and say so; gives the exit status and page.json, or the errors in its place."""
-    from camgeo.cli.recipes import unmade
+    """Write the page of one recipe; its exit status, and page.json or the errors in its place."""
+    from camgeo.cli.recipes import failed_entry
     from camgeo.common.errors import SurroundingsError
-    from camgeo.output.pipeline import shown
+    from camgeo.output.pipeline import check_and_show
     from camgeo.report.page.page import page
     from camgeo.schema.errors import RecipeErrors
 
@@ -91,52 +91,52 @@ def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespac
     try:
         if isinstance(recipe, RecipeErrors):
             raise recipe
-        outcome, found = shown(recipe, progress=progress)
-        files = {PAGE: page(recipe, found, outcome.report).encode("utf-8")}
-        files |= _pictures(recipe, found, arguments.picture, arguments.at)
-        report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
+        outcome, contents = check_and_show(recipe, progress=progress)
+        files = {PAGE: page(recipe, contents, outcome.report).encode("utf-8")}
+        files |= _pictures(recipe, contents, arguments.picture, arguments.at)
+        report = _write_page(recipe, files, Path(arguments.out), ok=outcome.ok)
     except RecipeErrors as errors:
         progress.clear()
         complain(str(errors))
-        return WRONG, unmade(path, str(errors), errors.errors)
+        return WRONG, failed_entry(path, str(errors), errors.errors)
     except ModuleNotFoundError as error:
         progress.clear()
         text = f"the package {error.name} is missing: {install('picture')}"
         complain(f"camgeo: {text}")
-        return SURROUNDINGS, unmade(path, text, ())
+        return SURROUNDINGS, failed_entry(path, text, ())
     except (SurroundingsError, OSError) as error:
         progress.clear()
         complain(f"camgeo: {error}")
-        return SURROUNDINGS, unmade(path, str(error), ())
+        return SURROUNDINGS, failed_entry(path, str(error), ())
     progress.clear()
     if not arguments.json:
         folder = Path(arguments.out) / recipe.name
         verdict = "ok" if outcome.ok else "FAILED"
-        told = ", ".join(f"{folder / name} {len(data) / 1000:.0f} kB" for name, data in files.items())
-        say(f"{recipe.name}: {verdict}  {told}")
+        sizes = ", ".join(f"{folder / name} {len(data) / 1000:.0f} kB" for name, data in files.items())
+        say(f"{recipe.name}: {verdict}  {sizes}")
     return OK if outcome.ok else FAILED, report
 
 
 def _pictures(recipe: Recipe, content: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
-    """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
+    """Pictures by file name, in these forms, at the step of the turn nearest to an angle."""
     from camgeo.report.page import svg
     from camgeo.report.page.scene import STEPS
 
     step = round(at_deg / 360.0 * STEPS) % STEPS
-    made = {}
+    pictures = {}
     if "svg" in forms:
-        made[f"{PICTURE}.svg"] = svg.still(content.scene, step, recipe.name).encode("utf-8")
+        pictures[f"{PICTURE}.svg"] = svg.still(content.scene, step, recipe.name).encode("utf-8")
     if "png" in forms:
         from camgeo.report.page.png import png
 
-        made[f"{PICTURE}.png"] = png(content.scene, step)
-    return made
+        pictures[f"{PICTURE}.png"] = png(content.scene, step)
+    return pictures
 
 
-def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> Entry:
-    """Write page and pictures beside the recipe's files, all or none; return the report that names them.
+def _write_page(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> Entry:
+    """Write page and pictures beside the recipe's files, all or none; the report that lists them.
 
-    Pictures of an earlier call stay as they are, as files do that `export --only` leaves out.
+    Pictures of an earlier call stay as they are.
     """
     from camgeo.output.output_folder import Family, RunFolder
     from camgeo.report.document import as_json, file_entry
@@ -145,8 +145,8 @@ def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) ->
     with RunFolder(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
-        kept = run_.kept()
-        report["files"] += [{"path": name, "stale": True} for name in kept]
+        kept_names = run_.kept_names()
+        report["files"] += [{"path": name, "stale": True} for name in kept_names]
         (run_.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
-        run_.commit(list(files), keep=kept)
+        run_.commit(list(files), keep=kept_names)
     return report

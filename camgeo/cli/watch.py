@@ -1,8 +1,7 @@
-"""Watching a recipe: it is exported anew whenever it is saved, and a page on 127.0.0.1 reloads itself.
+"""Watching a recipe: it is exported whenever it is saved, and a page on 127.0.0.1 reloads itself.
 
-What is made of several recipes is exported anew when one of those is saved, too.
-The server knows three addresses: the page, a stream of events, and nothing else. A recipe that is saved half-done shows
-its errors on the terminal and over the page, and the watch goes on.
+A recipe made of several others is exported when one of those is saved, too. The server has two addresses: the page and
+a stream of events. A recipe with faults shows its errors on the terminal and over the page, and the watch goes on.
 """
 
 from __future__ import annotations
@@ -28,8 +27,8 @@ EMPTY = "<!DOCTYPE html><meta charset=utf-8><title>camgeo</title><link rel=icon 
 
 
 @dataclass()
-class Shown:
-    """What the page shows: its text, the errors of the recipe as it is saved now, and how often either changed."""
+class PageState:
+    """State of the page: its HTML, the errors of the recipe as last saved, and a count of the changes of either."""
 
     page: str = EMPTY
     fault: str = ""
@@ -38,7 +37,7 @@ class Shown:
     ended: bool = False
 
     def show(self, page: str | None, fault: str) -> None:
-        """Show another page, or over the last one what is wrong."""
+        """Show another page, or with None the fault over the last one."""
         with self.changed:
             self.page = self.page if page is None else page
             self.fault = fault
@@ -55,12 +54,12 @@ class Shown:
 class _Handler(BaseHTTPRequestHandler):
     """One request: the page, or the events."""
 
-    def __init__(self, shown: Shown, *arguments: object) -> None:
-        self._shown = shown
+    def __init__(self, state: PageState, *arguments: object) -> None:
+        self._shown = state
         super().__init__(*arguments)  # type: ignore[arg-type]  # socket, address and server, as the library has them
 
     def do_GET(self) -> None:
-        """Answer the page, the stream of events, or that there is nothing."""
+        """Answer with the page, the stream of events, or status 403 or 404."""
         if self.headers.get("Host", "").rpartition(":")[0] not in (HOST, "localhost"):
             # a site whose name is made to lead here would read the page as its own
             self._answer(403, "text/plain", b"ask for 127.0.0.1\n")
@@ -82,23 +81,23 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def _events(self) -> None:
-        """Tell the page each version with its fault, until it goes away or the watch ends."""
+        """Send the page each version with its fault, until it is closed or the watch ends."""
         self.send_response(200)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
-        shown, told = self._shown, -1
+        state, sent_version = self._shown, -1
         try:
-            while not shown.ended:
-                with shown.changed:
-                    news = shown.version != told
-                    told = shown.version
-                    event = {"version": shown.version, "fault": shown.fault}
+            while not state.ended:
+                with state.changed:
+                    news = state.version != sent_version
+                    sent_version = state.version
+                    event = {"version": state.version, "fault": state.fault}
                 self.wfile.write(f"data: {json.dumps(event)}\n\n".encode() if news else b": still here\n\n")
                 self.wfile.flush()
-                with shown.changed:
-                    if not shown.ended and shown.version == told:
-                        shown.changed.wait(BEAT)
+                with state.changed:
+                    if not state.ended and state.version == sent_version:
+                        state.changed.wait(BEAT)
         except ConnectionError:
             return  # the page was closed
 
@@ -108,20 +107,19 @@ class _Handler(BaseHTTPRequestHandler):
 
 def watch(
     files: Sequence[Path],
-    exported: Callable[[], tuple[str | None, str]],
+    export_page: Callable[[], tuple[str | None, str]],
     report: Callable[[str], None],
     *,
     port: int = 0,
 ) -> None:
     """Export once and then whenever one of the files is saved, and serve the page, until interrupted.
 
-    Port 0 is any free one. Which files are looked at may change with each export.
-
-    `exported` gives the page, None where there is none, and what is wrong, empty where nothing is; `report` hears of
-    the address. Raises KeyboardInterrupt in the end, OSError where the port is taken.
+    Port 0 is any free one. The list of files may change with each export. `export_page` gives the page, None where
+    there is none, and the fault, empty for none; `report` is called with the address. Raises KeyboardInterrupt in the
+    end, OSError where the port is taken.
     """
-    shown = Shown()
-    server = ThreadingHTTPServer((HOST, port), partial(_Handler, shown))
+    state = PageState()
+    server = ThreadingHTTPServer((HOST, port), partial(_Handler, state))
     server.daemon_threads = True
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
     thread.start()
@@ -131,19 +129,19 @@ def watch(
         while True:
             now = [_stamp(path) for path in files]
             if now != last:
-                shown.show(*exported())
+                state.show(*export_page())
                 last = now if len(now) == len(files) else [_stamp(path) for path in files]
             threading.Event().wait(LOOK)
     finally:
-        shown.end()
+        state.end()
         server.shutdown()
         server.server_close()
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """Return what changes when a file is saved, also where an editor puts another in its place; None without one."""
+    """Time, size and node of a file, of which one changes at each saving; None for a file that does not exist."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
+    return status.st_mtime_ns, status.st_size, status.st_ino

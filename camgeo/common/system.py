@@ -27,7 +27,7 @@ WINDOWS = sys.platform == "win32"
 _PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Windows refuses, for a virus scanner say
 
 
-def patient(step: Callable[[], object]) -> None:
+def retry(step: Callable[[], object]) -> None:
     """Take a step that renames or removes; on Windows again for a while, as it leaves alone what a program has open."""
     for pause in _PAUSES if WINDOWS else ():
         try:
@@ -39,7 +39,7 @@ def patient(step: Callable[[], object]) -> None:
     step()
 
 
-def locked(path: Path) -> int | None:
+def lock_file(path: Path) -> int | None:
     """Open and lock a file, and return it; None where another process holds it.
 
     The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
@@ -48,7 +48,7 @@ def locked(path: Path) -> int | None:
     while True:
         lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
         try:
-            if not _taken(lock):
+            if not _take_lock(lock):
                 os.close(lock)
                 return None
             if os.path.samestat(os.fstat(lock), path.stat()):
@@ -75,7 +75,7 @@ def unlock(lock: int, path: Path) -> None:
         os.close(lock)
 
 
-def linked(source: Path, target: Path) -> None:
+def link_file(source: Path, target: Path) -> None:
     """Give a file a second name; on systems and file systems without hard links, a copy."""
     if sys.platform != "emscripten":
         with suppress(OSError, NotImplementedError):  # the second where a system knows no link to a link
@@ -113,7 +113,7 @@ def uninterrupted() -> Iterator[None]:
         before(*came[0])
 
 
-def _taken(lock: int) -> bool:
+def _take_lock(lock: int) -> bool:
     """Lock an open file until it is closed or the process ends; False where another one has it."""
     if sys.platform == "win32":
         try:

@@ -171,14 +171,14 @@ def steady_turn(rotation: str) -> Array:
 
 def make_view(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit and write the cam to look at, turning once; raises as `camgeo.output.dispatch.make` does."""
-    from camgeo.output.job import looked_at
+    from camgeo.output.job import unjudged
     from camgeo.output.solid import cam_meshes
 
     discs, pose = cam_meshes(job, request), steady_turn(job.recipe.rotation)
     with job.clock.stage("write glb"):
         actors = [Actor(one.name, one.standing, pose, COLOURS[k % 2]) for k, one in enumerate(discs)]
         write_glb(path, actors, title=job.recipe.name)
-    return looked_at(path, request, UNIT_MM["m"])
+    return unjudged(path, request, UNIT_MM["m"])
 
 
 def _single() -> Precision:

@@ -207,7 +207,7 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
         discs = job.design.discs
         names = [disc.name if len(discs) > 1 else "" for disc in discs]
         drawn = [
-            one.outlines_written(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
+            one.written_outlines(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
         ]
         with job.clock.stage("write step"):
             if recipe.part.thickness is None:
@@ -224,7 +224,7 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
                 name=recipe.name,
                 about=recipe.about,
             )
-    judged = job.judged if len(discs) == 1 else job.judged_together
+    judged = job.judge if len(discs) == 1 else job.judge_together
     return judged(request, path, bound, sum(outline.count for contours in drawn for outline in contours))
 
 

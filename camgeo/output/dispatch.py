@@ -1,4 +1,4 @@
-"""What becomes of the request for a file: whether its form holds the cam, and the files that are made."""
+"""Files of a request: whether its form holds the cam, and the files that are made."""
 
 from __future__ import annotations
 
@@ -19,11 +19,10 @@ if TYPE_CHECKING:
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
-    """Make the files of one request, the first at `path` or of several discs each beside it, any others there too.
+    """Make and judge the files of one request: one at `path`, or one for each disc beside it.
 
-    Nothing is made of a mechanism that does not turn right round, where the format needs that. Raises RecipeErrors
-    where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk or a missing extra
-    stands in the way.
+    None are made where the format needs a mechanism that turns right round and this one does not. Raises RecipeErrors
+    where a tolerance cannot be held or no such file can be made, SurroundingsError for the disk or a missing extra.
     """
     job, failed = job.of_file(request)
     if failed:
@@ -34,12 +33,18 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     if request.format.turning and driven is not None and not driven.turns:
         return Made(())
     if len(job.design.discs) == 1 or not request.format.by_disc:
-        return _made(job, request, path)
+        return _make_file(job, request, path)
     paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(len(job.design.discs))]
-    return job.closed(request, [_made(one, request, there) for one, there in zip(job.single, paths, strict=True)])
+    return job.combine_discs(
+        request,
+        [
+            _make_file(single_job, request, single_path)
+            for single_job, single_path in zip(job.single, paths, strict=True)
+        ],
+    )
 
 
-def _made(job: Job, request: FileRequest, path: Path) -> Made:
+def _make_file(job: Job, request: FileRequest, path: Path) -> Made:
     if request.format.make is None:
         raise ValueError(f"nothing makes {request.kind} alone")
     return request.format.make(job, request, path)
@@ -49,25 +54,25 @@ def demand_capacity(recipe: Recipe, design: Design, request: FileRequest) -> Non
     """Raise RecipeErrors where a form of file does not hold as many surfaces or discs as the cam has."""
     surfaces, discs, form = len(design.exact.surfaces), len(design.discs), request.form
     if discs > form.discs:
-        what = f"{discs} discs"
+        contents = f"{discs} discs"
     elif discs == 1 and surfaces > form.surfaces:
-        what = f"{surfaces} surfaces"
+        contents = f"{surfaces} surfaces"
     else:
         return
-    others = [
+    holders = [
         kind if not name else f"{kind} as {name}"
         for kind, record in FORMATS.items()
-        for name, other in record.forms.items()
-        if not record.summary and (other.discs >= discs if discs > 1 else other.surfaces >= surfaces)
+        for name, form_record in record.forms.items()
+        if not record.summary and (form_record.discs >= discs if discs > 1 else form_record.surfaces >= surfaces)
     ]
-    remedy = f"give {', '.join(others)}" if others else "leave it out"
-    raise recipe.error(recipe.field_of(request), f"{request.word} does not hold a cam of {what}", None, remedy)
+    remedy = f"give {', '.join(holders)}" if holders else "leave it out"
+    raise recipe.error(recipe.field_of(request), f"{request.word} does not hold a cam of {contents}", None, remedy)
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse what is certain to be refused, before anything is fitted.
+    """Raise the RecipeErrors that `make` is certain to raise, before anything is fitted.
 
-    Raises RecipeErrors as `make` does; MissingExtraError where a package is missing that makes such a file.
+    Raises MissingExtraError where a package is missing that makes such a file.
     """
     demand_capacity(job.recipe, job.design, request)
     if request.variant:

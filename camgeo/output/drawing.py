@@ -1,4 +1,4 @@
-"""Drawings: the contour as arcs, a spline or a polyline, with what is cut inside it."""
+"""Drawings: the contour as arcs, a spline or a polyline, with the openings inside it."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ if TYPE_CHECKING:
 
 
 def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> Made:
-    """Fit, write, read back and judge one drawing.
+    """Fit, write, read back and judge one drawing; the file and its checks.
 
-    `draw` writes outlines on their layers and remarks, (job, request, path, outlines, remarks), and gives the checks on
-    what it draws besides.
+    `draw` writes outlines on their layers and remarks, (job, request, path, outlines, remarks), and returns the checks
+    of its further contents.
     """
-    own = request.units not in {None, job.recipe.units}
+    has_own_unit = request.units not in {None, job.recipe.units}
 
-    def moved(outline: Outline) -> float:
-        return converted(outline) if own else 0.0
+    def shift(outline: Outline) -> float:
+        return converted(outline) if has_own_unit else 0.0
 
     with job.refusals(request):
-        contours = job.outlines_written(request.as_ or "polyline", job.tolerance(request), moved)
+        contours = job.written_outlines(request.as_ or "polyline", job.tolerance(request), shift)
         outlines = [*contours_of(job.design, contours), *rim_of(job.body), *openings_of(job.body)]
         remarks = part_geometry.remarks(job.body, job.recipe.told_for(request).mm)
         checks = draw(job, request, path, outlines, remarks)
-    bound = reduce(Bound.wider, (outline.bound.widened(moved(outline)) for outline in contours))
-    made = job.judged(request, path, bound, sum(outline.count for outline in contours))
-    return Made(made.files, (*(about(check, path.name) for check in checks), *made.checks))
+    bound = reduce(Bound.wider, (outline.bound.widened(shift(outline)) for outline in contours))
+    judged = job.judge(request, path, bound, sum(outline.count for outline in contours))
+    return Made(judged.files, (*(about(check, path.name) for check in checks), *judged.checks))

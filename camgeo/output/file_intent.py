@@ -1,4 +1,4 @@
-"""What kin is given of each kind of file."""
+"""Intents by which kin judges each kind of file."""
 
 from __future__ import annotations
 
@@ -17,22 +17,23 @@ if TYPE_CHECKING:
 
 
 def shaft_of_file(
-    recipe: Recipe, design: Design, kind: str, by: Compensation | None = None, field: str = "export.files"
+    recipe: Recipe, design: Design, kind: str, compensation: Compensation | None = None, field: str = "export.files"
 ) -> ShaftIntent:
-    """What kin is given of files of some kind, whose discs may be made different `by` something.
+    """Intent of the files of a kind, whose discs may differ from the nominal ones by a compensation.
 
-    Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensate` does.
+    `field` is the path of the request in errors. Raises RecipeErrors for a program without `manufacture` in the recipe,
+    and as `compensate` does.
     """
     from kin.judge.intent import ShaftIntent
 
-    if by is not None:
+    if compensation is not None:
         from camgeo.machining.compensation import compensate
 
         try:
-            made = compensate(recipe, design, by, field)
+            compensated = compensate(recipe, design, compensation, field)
         except CurveError as error:
             raise recipe.error(field, str(error)) from error
-        recipe, design = made.recipe, made.design
+        recipe, design = compensated.recipe, compensated.design
     if len(design.discs) == 1:
         return ShaftIntent((intent_of_file(recipe, design, kind),))
     parts = tuple(
@@ -43,5 +44,5 @@ def shaft_of_file(
 
 
 def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
-    """What kin is given of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several."""
+    """Intent of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several discs."""
     return FORMATS[kind].intent(recipe, design)

@@ -1,4 +1,4 @@
-"""What every maker of files is given, and how its refusals become errors at a field of the recipe."""
+"""Job of the functions that make files; their refusals become errors at a field of the recipe."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is wi
 
 
 class Made(NamedTuple):
-    """The files of one request, and the verdicts on them."""
+    """Files of one request, and the checks on them."""
 
     files: tuple[FileResult, ...]
     checks: tuple[Check, ...] = ()
@@ -46,8 +46,8 @@ class Made(NamedTuple):
 class Job:
     """A cam that can be made: its recipe, its exact design, and the fits that its files share.
 
-    `fits` are those of each surface's contour. `kept` holds what capabilities keep from one file to the next, by their
-    names, `variants` the job for each part that is made different from the nominal one.
+    `fits` has one for each surface's contour. `kept` has values that capabilities reuse from file to file, by their
+    names; `variants` has the job of each part that differs from the nominal one.
     """
 
     recipe: Recipe
@@ -58,38 +58,44 @@ class Job:
 
     @staticmethod
     def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
-        """Begin the files of a design that has its contours; raises ValueError for one that has none."""
+        """Job for the files of a design; raises ValueError for a design without contours."""
         if not design.contours:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
-        clock, unsure = clock or Clock(), design.exact.rounding
-        return Job(recipe, design, tuple(Fits(one, clock, formula_rounding(unsure, one)) for _, one in design.contours))
+        clock, rounding = clock or Clock(), design.exact.rounding
+        return Job(
+            recipe,
+            design,
+            tuple(Fits(contour, clock, formula_rounding(rounding, contour)) for _, contour in design.contours),
+        )
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
-        """The job for the part as one file shows it, and the checks that forbid to make it."""
-        by = request.compensation
-        if by is None:
+        """Job for the part as one file shows it, and the failed checks that prevent the file."""
+        compensation = request.compensation
+        if compensation is None:
             return self, ()
         from camgeo.machining.compensation import compensate
 
-        if by not in self.variants:
+        if compensation not in self.variants:
             try:
                 with self.clock.stage("compensation"):
-                    made = compensate(self.recipe, self.design, by, self.field(request))
+                    compensated = compensate(self.recipe, self.design, compensation, self.field(request))
             except CurveError as error:
                 raise self.recipe.error(self.field(request), str(error)) from error
-            if not made.design.contours:
-                return self, made.checks
-            pairs = zip(self.fits, made.design.contours, strict=True)
-            fits = tuple(Fits(contour, self.clock, by.scale * fit.unsure) for fit, (_, contour) in pairs)
-            self.variants[by] = Job(made.recipe, made.design, fits)
-        job, told = self.variants[by], self.recipe.told_for(request)
+            if not compensated.design.contours:
+                return self, compensated.checks
+            pairs = zip(self.fits, compensated.design.contours, strict=True)
+            fits = tuple(Fits(contour, self.clock, compensation.scale * fit.unsure) for fit, (_, contour) in pairs)
+            self.variants[compensation] = Job(compensated.recipe, compensated.design, fits)
+        job, file_recipe = self.variants[compensation], self.recipe.told_for(request)
         if request.units is not None:  # a file's title tells lengths as its numbers do
-            job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.words(told.mm)}"))
+            job = replace(
+                job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {compensation.words(file_recipe.mm)}")
+            )
         return job, ()
 
     @property
     def single(self) -> tuple[Job, ...]:
-        """The job for each disc, as a file with that disc alone shows it."""
+        """Job for each disc alone."""
         fits = iter(self.fits)
         return tuple(
             replace(self, design=design, fits=tuple(islice(fits, len(design.surfaces))))
@@ -98,19 +104,19 @@ class Job:
 
     @property
     def clock(self) -> Clock:
-        """What times the stages."""
+        """Clock of the stages."""
         return self.fits[0].clock
 
     @property
     def body(self) -> Body:
-        """What the disc has besides its surfaces, mirrored as the recipe has it: a round bore is its own image."""
+        """Body of the one disc, mirrored for a counter-clockwise shaft unless the part is plain; raises ValueError."""
         (disc,) = self.design.discs
         if disc.body is None:
             raise ValueError(f"{self.recipe.name}: there is no part to be made")
         return disc.body.mirrored() if self.recipe.rotation == "ccw" and not self.recipe.part.plain else disc.body
 
     def field(self, request: FileRequest) -> str:
-        """Path of a request in the recipe; that of the list for one that does not stand there."""
+        """Path of a request in the recipe; the path of the list for a request that the recipe does not have."""
         return self.recipe.field_of(request)
 
     def tolerance(self, request: FileRequest) -> float:
@@ -118,26 +124,28 @@ class Job:
         return request.tolerance or self.recipe.export.tolerance
 
     def tolerance_field(self, request: FileRequest) -> str:
-        """Path of the field that a file's tolerance is asked for by."""
+        """Path of the field that sets a file's tolerance."""
         return self.field(request) if request.tolerance is not None else "export.tolerance"
 
     def outlines(self, form: str, tolerance: float) -> tuple[Outline, ...]:
-        """The contour of each surface in a form, within a tolerance, mirrored as the recipe has it."""
+        """Contour of each surface in a form, within a tolerance, mm, mirrored for a counter-clockwise shaft."""
         return tuple(self._outline(fit, form, tolerance) for fit in self.fits)
 
-    def outlines_written(self, form: str, tolerance: float, off: Callable[[Outline], float]) -> tuple[Outline, ...]:
-        """The same of forms that are within a tolerance as they are written, which moves each by up to `off`, mm.
+    def written_outlines(
+        self, form: str, tolerance: float, shift_of: Callable[[Outline], float]
+    ) -> tuple[Outline, ...]:
+        """Contours as of `outlines`, within the tolerance as written too: writing moves each by up to `shift_of`, mm.
 
         Raises ToleranceError as the fit does.
         """
-        written = []
+        outlines = []
         for fit in self.fits:
             outline = self._outline(fit, form, tolerance)
-            moved = off(outline)
-            if outline.bound.worst + moved > tolerance and 4.0 * moved < tolerance:
-                outline = self._outline(fit, form, tolerance - 2.0 * moved)
-            written.append(outline)
-        return tuple(written)
+            shift = shift_of(outline)
+            if outline.bound.worst + shift > tolerance and 4.0 * shift < tolerance:
+                outline = self._outline(fit, form, tolerance - 2.0 * shift)
+            outlines.append(outline)
+        return tuple(outlines)
 
     def _outline(self, fit: Fits, form: str, tolerance: float) -> Outline:
         outline = fit.within(form, tolerance)
@@ -145,70 +153,72 @@ class Job:
 
     @contextmanager
     def refusals(self, request: FileRequest) -> Iterator[None]:
-        """Turn what a fit or a writer raises into RecipeErrors at the field to blame, or SurroundingsError."""
+        """Turn errors of a fit or a writer into RecipeErrors at the field to blame, or SurroundingsError."""
         recipe = self.recipe
         try:
             yield
         except ToleranceError as error:
-            raise self.refused(request, error) from error
+            raise self.refusal(request, error) from error
         except RegionError as error:
-            where = "part" if not recipe.part.plain else "cam" if recipe.part.bore is None else "part.bore"
-            raise recipe.error(where, f"within the tolerance, {error}") from error
+            field_path = "part" if not recipe.part.plain else "cam" if recipe.part.bore is None else "part.bore"
+            raise recipe.error(field_path, f"within the tolerance, {error}") from error
         except CurveError as error:
             raise recipe.error("cam", str(error)) from error
         except MissingExtraError as error:
             raise SurroundingsError(str(error), recipe.path) from error
 
-    def refused(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
-        """Turn a tolerance that cannot be held into an error at the field that asks for it."""
-        where, recipe = self.tolerance_field(request), self.recipe
+    def refusal(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
+        """Errors for a tolerance that cannot be held, at the field that sets it."""
+        field_path, recipe = self.tolerance_field(request), self.recipe
         reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
-        return recipe.error(where, str(error), None, reached)
+        return recipe.error(field_path, str(error), None, reached)
 
-    def judged(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
-        """Read a file back and hold it against the recipe's motion."""
+    def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read a file back and judge it by the recipe's motion; the file and its checks."""
         from kin.judge.verify import verify
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        told = recipe.told_for(request)
-        meant = intent_of_file(told, self.design, request.kind)
-        units = None if request.format.units else told.mm
+        file_recipe = recipe.told_for(request)
+        intent = intent_of_file(file_recipe, self.design, request.kind)
+        units = None if request.format.units else file_recipe.mm
         with self.clock.stage(f"judge {request.kind}"):
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
+            verdict = verify(path, intent, recipe.verify.angles, permitted(recipe, tolerance), units)
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
-    def judged_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
-        """Read back a file of several discs, each in its place, and hold it against the recipe's motion."""
+    def judge_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read back a file of several discs, each in its place, and judge it by the recipe's motion."""
         from kin.judge.together import DiscFile, verify_set
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        meant = shaft_of_file(recipe.told_for(request), self.design, request.kind)
+        intent = shaft_of_file(recipe.told_for(request), self.design, request.kind)
         with self.clock.stage(f"judge {request.kind}"):
-            (verdict,) = verify_set([DiscFile(path, None)], meant, recipe.verify.angles, permitted(recipe, tolerance))
+            (verdict,) = verify_set([DiscFile(path, None)], intent, recipe.verify.angles, permitted(recipe, tolerance))
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
-    def closed(self, request: FileRequest, products: Sequence[Made]) -> Made:
-        """Put together what was made of each disc, and judge what is left between them."""
+    def combine_discs(self, request: FileRequest, products: Sequence[Made]) -> Made:
+        """Join the files of each disc, and judge the play that they leave between them."""
         from kin.judge.together import DiscsRead, left_between
 
-        files = [replace(file, disc=rank) for rank, each in enumerate(products) for file in each.files]
-        checks = [check for each in products for check in each.checks]
+        files = [replace(file, disc=rank) for rank, product in enumerate(products) for file in product.files]
+        checks = [check for product in products for check in product.checks]
         if not files:
             return Made((), tuple(checks))
         limits = permitted(self.recipe, self.tolerance(request))
         with self.clock.stage(f"judge {request.kind}"):
-            read = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
-            closures, more = left_between(read, shaft_of_file(self.recipe, self.design, request.kind), limits)
+            discs = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
+            closures, more = left_between(discs, shaft_of_file(self.recipe, self.design, request.kind), limits)
         files[-1] = replace(files[-1], closures=closures)
         return Made(tuple(files), (*checks, *more))
 
     def _why_lost(self, check: Check) -> Check:
-        """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
+        """Check with the reason why a roller may miss a file's contour, where the cam can hardly be turned through."""
         if check.name != MOTION.name or check.value is not None:
             return check
-        slope = next((own.value for own in self.design.checks if own.name == RATIO.name), None)
+        slope = next(
+            (design_check.value for design_check in self.design.checks if design_check.name == RATIO.name), None
+        )
         if slope is None or slope < STEEP:
             return check
         less = self.recipe.cam.advice.less_swing(self.recipe.mm)
@@ -216,6 +226,6 @@ class Job:
         return replace(check, detail=f"{marked(check.detail)}: {why}")
 
 
-def looked_at(path: Path, request: FileRequest, units: float) -> Made:
-    """Give a file that is to look at, or a table, which nothing judges; `units` is that of its numbers, mm."""
+def unjudged(path: Path, request: FileRequest, units: float) -> Made:
+    """Product of a file that nothing judges, such as a table; `units` is the unit of its numbers, mm."""
     return Made((FileResult(path, request, units=units),))

@@ -23,27 +23,27 @@ REPORTS = ("report.json", "page.json")
 
 
 def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
-    """Say of each report in a folder which of its files are missing or others than it lists.
+    """Messages on the reports in a folder whose files are missing or differ from the listed ones.
 
-    With `names`, only of reports that tell of one of these. What is no report of camgeo, or cannot be read, says
-    nothing.
+    With `names`, only on reports that list one of these. A file that is no report of camgeo, or cannot be read, gives
+    no message.
     """
-    found = []
+    messages = []
     for name in (*REPORTS, *(name for label in registry.labels().values() for name in label.reports)):
         sums = _sums(folder / name)
-        if names and not any(given in sums for given in names):
+        if names and not any(file_name in sums for file_name in names):
             continue
-        others = [given for given, checksum in sums.items() if _sum(folder / given) != checksum]
-        if others:
-            files = ", ".join(escaped(given) for given in others)
-            told = "are not the files" if len(others) > 1 else "is not the file"
+        changed = [file_name for file_name, checksum in sums.items() if _sum(folder / file_name) != checksum]
+        if changed:
+            files = ", ".join(escaped(file_name) for file_name in changed)
+            phrase = "are not the files" if len(changed) > 1 else "is not the file"
             place = escaped(str(folder / name))
-            found.append(f"{place}: {files} {told} that it lists: {_why(folder)}; export again")
-    return found
+            messages.append(f"{place}: {files} {phrase} that it lists: {_why(folder)}; export again")
+    return messages
 
 
 def _why(folder: Path) -> str:
-    """What is behind it: a run that was cut off leaves its private folder beside the output folder."""
+    """Cause of a mixture: a run that was cut off leaves its private folder beside the output folder."""
     name = folder.name.removesuffix(REJECTED)
     try:
         beside = [path.name for path in folder.absolute().parent.iterdir() if path.name.startswith(f".{name}.")]
@@ -54,7 +54,7 @@ def _why(folder: Path) -> str:
 
 
 def _sums(report: Path) -> dict[str, str]:
-    """Checksums by file name as a report has them."""
+    """Checksums by file name of a report; empty for a file that is none."""
     try:
         if not report.is_file():
             return {}

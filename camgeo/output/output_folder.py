@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING, Self
 
 from camgeo.common import system
 from camgeo.common.errors import BusyError, SurroundingsError
-from camgeo.common.system import linked, locked, patient, unlock
+from camgeo.common.system import link_file, lock_file, retry, unlock
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class RunFolder:
     """
 
     def __init__(self, out: Path, name: str, family: Family = EXPORTED) -> None:
-        if not _plain(name) or name.lower().endswith(REJECTED):
+        if not _is_plain_name(name) or name.lower().endswith(REJECTED):
             raise ValueError(f"{name!r} is not the name of an output folder")
         self._out = out
         self._name = name
@@ -107,7 +107,7 @@ class RunFolder:
         """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
         try:
             self._new = [path for path in (self._out, *self._out.parents) if not os.path.lexists(path)]
-            lock = self._locked()
+            lock = self._lock_name()
             if lock is None:
                 text = f"another run is at work here (it holds {self._beside('lock').name})"
                 raise BusyError(text, self._out / self._name)
@@ -120,16 +120,16 @@ class RunFolder:
                 self._unlock()
                 raise
         except OSError as error:
-            raise _surroundings(error, self._out) from error
+            raise _surroundings_error(error, self._out) from error
         return self
 
-    def _locked(self) -> int | None:
+    def _lock_name(self) -> int | None:
         """Make the output folder and lock the name in it; another run may clear away an empty one in between."""
         for _ in range(TRIES):
             self._out.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):
-                return locked(self._beside("lock"))
-        return locked(self._beside("lock"))
+                return lock_file(self._beside("lock"))
+        return lock_file(self._beside("lock"))
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
         """Clear away and unlock; a swap that an interrupt cut off is finished here. Folders made for nothing go."""
@@ -144,14 +144,14 @@ class RunFolder:
                 for folder in self._new:
                     folder.rmdir()
         if isinstance(error, OSError):
-            raise _surroundings(error, self.folder) from error
+            raise _surroundings_error(error, self.folder) from error
 
-    def kept(self) -> tuple[str, ...]:
-        """Files of the last set that this run has not written again: those that `commit` may be told to keep."""
+    def kept_names(self) -> tuple[str, ...]:
+        """Names of files of the last set that this run has not written again, which `commit` may keep."""
         try:
-            names = self._last(self._out / self._name)
+            names = self._last_set(self._out / self._name)
         except OSError as error:
-            raise _surroundings(error, self._out / self._name) from error
+            raise _surroundings_error(error, self._out / self._name) from error
         return tuple(name for name in names if name != self._report and not (self.folder / name).exists())
 
     def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
@@ -175,9 +175,9 @@ class RunFolder:
         folder, swap = self._out / target, self._beside("swap")
         try:
             self._prepare(folder, tuple(names), tuple(keep))
-            patient(lambda: self.folder.rename(swap))
+            retry(lambda: self.folder.rename(swap))
         except OSError as error:
-            raise _surroundings(error, folder) from error
+            raise _surroundings_error(error, folder) from error
         try:
             self._forward(swap)
         except OSError as error:
@@ -190,13 +190,13 @@ class RunFolder:
     def _prepare(self, folder: Path, names: tuple[str, ...], keep: tuple[str, ...]) -> None:
         """Write the journal and link the old files; nothing outside the private folder changes but an empty folder."""
         for name in (*names, *keep):
-            if not self._ours(name):
+            if not self._is_own_name(name):
                 raise ValueError(f"{name!r} is not the name of a file of {self._name}")
         come = (*dict.fromkeys(names), self._report)
         missing = [name for name in come if not (self.folder / name).is_file()]
         if missing:
             raise ValueError(f"{', '.join(missing)} was not written into {self.folder}")
-        last = self._last(folder)
+        last = self._last_set(folder)
         for name in come:
             if name not in last and os.path.lexists(folder / name):
                 raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
@@ -204,7 +204,7 @@ class RunFolder:
         before = tuple(name for name in last if name not in keep or name in come)
         (self.folder / _OLD).mkdir()
         for name in before:
-            linked(folder / name, self.folder / _OLD / name)
+            link_file(folder / name, self.folder / _OLD / name)
         journal = {"target": folder.name, "come": come, "go": sorted(set(before) - set(come)), "before": before}
         (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
 
@@ -223,7 +223,7 @@ class RunFolder:
         for name in journal.come[:-1]:
             _move(swap / name, folder / name)
         for name in journal.go:
-            _removed(folder / name)
+            _remove(folder / name)
         _move(swap / journal.come[-1], folder / journal.come[-1])
 
     def _back(self, undo: Path) -> None:
@@ -235,11 +235,11 @@ class RunFolder:
             _move(undo / _OLD / name, folder / name)
         for name in journal.come:
             if name not in journal.before:
-                _removed(folder / name)
+                _remove(folder / name)
 
     def _done(self, swap: Path) -> None:
         """Let go of a swap whose files are all in place: one rename, then what is left of it."""
-        patient(lambda: swap.rename(self.folder))
+        retry(lambda: swap.rename(self.folder))
         self._clear()
 
     def _clear(self) -> None:
@@ -250,7 +250,7 @@ class RunFolder:
     def _give_up(self, folder: Path, error: OSError) -> None:
         """Undo a swap that failed; raises SurroundingsError in any case."""
         try:
-            patient(lambda: self._beside("swap").rename(self._beside("undo")))
+            retry(lambda: self._beside("swap").rename(self._beside("undo")))
             self._back(self._beside("undo"))
             self._done(self._beside("undo"))
         except OSError as second:
@@ -259,9 +259,9 @@ class RunFolder:
                 "the next run will try again",
                 folder,
             ) from error
-        raise _surroundings(error, folder) from error
+        raise _surroundings_error(error, folder) from error
 
-    def _last(self, folder: Path) -> tuple[str, ...]:
+    def _last_set(self, folder: Path) -> tuple[str, ...]:
         """Files of the set in a folder as its report names them, those that are there, the report last."""
         if not os.path.lexists(folder):
             return ()
@@ -276,15 +276,19 @@ class RunFolder:
             entries = [entry["path"] for entry in json.loads(text)["files"]]
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise SurroundingsError("is not a report of camgeo; move it out of the way", report) from error
-        names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._ours(name)]
+        names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._is_own_name(name)]
         return (*(name for name in names if _is_file(folder / name)), self._report)
 
-    def _ours(self, name: str) -> bool:
+    def _is_own_name(self, name: str) -> bool:
         """Whether a file can be one of this recipe's: a plain name that begins with the recipe's own or is a report.
 
         Anything else that a report may name, changed by hand, is not touched.
         """
-        return _plain(name) and name.startswith(self._family.begins or (self._name, "report.")) and name != self._name
+        return (
+            _is_plain_name(name)
+            and name.startswith(self._family.begins or (self._name, "report."))
+            and name != self._name
+        )
 
     def _beside(self, role: str) -> Path:
         return self._out / f".{self._name}.{self._family.role}{role}"
@@ -298,7 +302,7 @@ class RunFolder:
         unlock(self._lock, self._beside("lock"))
 
 
-def _plain(name: str) -> bool:
+def _is_plain_name(name: str) -> bool:
     """Whether a name is one component of a path, not hidden, that means the same on every system."""
     return bool(name) and not name.startswith(".") and name.isprintable() and not set(name) & set('/\\:*?"<>|')
 
@@ -317,12 +321,12 @@ def _move(source: Path, target: Path) -> None:
         return
     if os.path.lexists(target) and os.path.samestat(source.lstat(), target.lstat()):
         return
-    patient(lambda: source.replace(target))
+    retry(lambda: source.replace(target))
 
 
-def _removed(path: Path) -> None:
+def _remove(path: Path) -> None:
     """Remove a file if it is there."""
-    patient(lambda: path.unlink(missing_ok=True))
+    retry(lambda: path.unlink(missing_ok=True))
 
 
 def _is_file(path: Path) -> bool:
@@ -344,10 +348,10 @@ def _discard(folder: Path) -> None:
     folder.rmdir()
 
 
-def _surroundings(error: OSError, path: Path) -> SurroundingsError:
+def _surroundings_error(error: OSError, path: Path) -> SurroundingsError:
     """Name the path that the system named, or else `path`."""
-    where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
+    place = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
     text = error.strerror or str(error)
     if system.WINDOWS and isinstance(error, PermissionError):
         text += "; if another program has it open, close it there and run the command again"
-    return SurroundingsError(text, where)
+    return SurroundingsError(text, place)

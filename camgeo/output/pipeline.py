@@ -1,8 +1,8 @@
 """From a recipe to files on disk and a verdict on them: the plan, its stages, the report.
 
-Each stage runs only where something asks for it, and imports what it needs when it runs; what nothing asks for is
-listed as skipped, with the reason. Files are written into a private folder, read back there by kin, and put in their
-place only when every check holds. A file that a missing package would make is left out before anything is fitted.
+Each stage runs only where the recipe needs it, and imports its modules when it runs; other stages are listed as
+skipped, with the reason. Files are written into a private folder, read back there by kin, and moved to their place only
+when every check holds. A file that needs a missing package is left out before anything is fitted.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ REPORT = "report.json"
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one recipe: its report, whether every check held, and the folder with its files (None if none)."""
+    """Outcome of one recipe: its report, whether every check held, and the folder with its files or None."""
 
     report: dict[str, Any]
     ok: bool
@@ -63,16 +63,16 @@ def export(
     from camgeo.output.output_folder import RunFolder
 
     clock = Clock(progress)
-    requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
+    requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
     with RunFolder(out, recipe.name) as run:
-        _, found = _produced(recipe, requests, run.folder, clock)
-        demand_any(recipe.path, found)
-        kept = run.kept() if only else ()
-        report = document(recipe, replace(found, kept=kept))
+        _, findings = _produce(recipe, requests, run.folder, clock)
+        demand_any(recipe.path, findings)
+        kept_names = run.kept_names() if only else ()
+        report = document(recipe, replace(findings, kept=kept_names))
         (run.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
-        names = [file.path.name for file in found.files]
-        folder = run.commit(names, keep=kept) if found.ok else run.reject()
-    return Outcome(report, found.ok, folder)
+        names = [file.path.name for file in findings.files]
+        folder = run.commit(names, keep=kept_names) if findings.ok else run.reject()
+    return Outcome(report, findings.ok, folder)
 
 
 def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
@@ -81,9 +81,9 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> O
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
-        demand_any(recipe.path, found)
-        return Outcome(document(recipe, found), found.ok, None)
+        _, findings = _produce(recipe, recipe.export.files, Path(folder), Clock(progress))
+        demand_any(recipe.path, findings)
+        return Outcome(document(recipe, findings), findings.ok, None)
 
 
 def demand_any(path: Path, findings: Findings) -> None:
@@ -92,19 +92,19 @@ def demand_any(path: Path, findings: Findings) -> None:
         raise SurroundingsError(findings.missing[0][1], path)
 
 
-def shown(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
-    """Make and judge everything as `check` does; also what a page shows of it. Raises as `export` does."""
+def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
+    """Outcome as of `check`, and the content of its page; raises as `export` does."""
     import tempfile
     from pathlib import Path
 
     clock = Clock(progress)
     requests = tuple(request for request in recipe.export.files if not request.format.summary)
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        design, found = _produced(recipe, requests, Path(folder), clock)
-        return Outcome(document(recipe, found), found.ok, None), content_of(recipe, design, found, clock)
+        design, findings = _produce(recipe, requests, Path(folder), clock)
+        return Outcome(document(recipe, findings), findings.ok, None), content_of(recipe, design, findings, clock)
 
 
-def judged(
+def judge_files(
     recipe: Recipe,
     paths: list[Path],
     *,
@@ -112,17 +112,17 @@ def judged(
     units: float | None = None,
     gap: float | None = None,
 ) -> dict[str, Any]:
-    """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
+    """Report on files of any origin, judged by a recipe's motion; raises RecipeErrors as `export` does.
 
-    They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
-    `units`, mm, is that of files that state none; raises UnitsError where one states another. Ends in drawings within
-    `gap`, mm, are joined; CallError for one above the tolerance of a drawing.
+    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units`, mm, is the
+    unit of files that state none; raises UnitsError where a file states another. Ends in drawings within `gap`, mm, are
+    joined; raises CallError for a gap above the tolerance of a drawing.
     """
-    _, findings = _judged(recipe, paths, (tolerance, units, gap), Clock())
+    _, findings = _judge(recipe, paths, (tolerance, units, gap), Clock())
     return document(recipe, findings)
 
 
-def judged_and_shown(
+def judge_and_show(
     recipe: Recipe,
     paths: list[Path],
     *,
@@ -130,57 +130,61 @@ def judged_and_shown(
     units: float | None = None,
     gap: float | None = None,
 ) -> tuple[dict[str, Any], str]:
-    """Report on files as `judged` does, and give the page that shows them, with their errors round the contour."""
+    """Report as of `judge_files`, and the HTML of the page that shows the files with their errors."""
     from camgeo.report.page.page import page
 
     clock = Clock()
-    design, findings = _judged(recipe, paths, (tolerance, units, gap), clock)
+    design, findings = _judge(recipe, paths, (tolerance, units, gap), clock)
     report = document(recipe, findings)
     return report, page(recipe, content_of(recipe, design, findings, clock), report)
 
 
-def _judged(
-    recipe: Recipe, paths: list[Path], held: tuple[float | None, float | None, float | None], clock: Clock
+def _judge(
+    recipe: Recipe, paths: list[Path], bounds: tuple[float | None, float | None, float | None], clock: Clock
 ) -> tuple[Design, Findings]:
-    """Everything that is found of files of any origin, by tolerance, unit and gap."""
+    """Design and findings on files of any origin; `bounds` are tolerance, unit and gap, mm, as of `judge_files`."""
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
     from kin.judge.together import DiscFile, verify_set
     from kin.read.formats import FORMATS
 
-    tolerance, units, gap = held
+    tolerance, units, gap = bounds
     _demand(recipe)
     design = designed(recipe, clock)
     checks, results = list(design.checks), dict[int, FileResult]()
     skipped: list[Skipped] = []
-    for given in sets_of(recipe, paths, tolerance):
-        kind, asked, within = given.held.kind, given.held.asked, given.held.tolerance
+    for file_set in sets_of(recipe, paths, tolerance):
+        kind, request_listed, within = (
+            file_set.requirement.kind,
+            file_set.requirement.request,
+            file_set.requirement.tolerance,
+        )
         if gap is not None and gap > within and FORMATS[kind].contents == "drawing":
             message = (
                 f"a gap of {gap / recipe.mm:.9g} {recipe.units} is more than the tolerance, {within / recipe.mm:.9g}"
             )
-            raise CallError(f"{message}, of {given.files[0][1].name}: give at most that")
+            raise CallError(f"{message}, of {file_set.files[0][1].name}: give at most that")
         with clock.stage("judge"):
-            request = FileRequest(kind) if asked is None else asked
-            told = recipe if asked is None else recipe.told_for(asked)
-            meant = shaft_of_file(told, design, kind, request.compensation, recipe.field_of(asked))
-            unstated = [recipe.unstated(path) if units is None else units for _, path, _ in given.files]
-            discs = [DiscFile(path, disc, mm) for (_, path, disc), mm in zip(given.files, unstated, strict=True)]
-            verdicts = verify_set(discs, meant, recipe.verify.angles, permitted(recipe, within, gap))
-        for (place, path, disc), verdict in zip(given.files, verdicts, strict=True):
-            made = FileRequest(verdict.kind, compensation=request.compensation)
-            rank = disc if len(meant.parts) > 1 else None
-            results[place] = replace(FileResult.of(path, made, within, verdict), disc=rank)
+            request = FileRequest(kind) if request_listed is None else request_listed
+            file_recipe = recipe if request_listed is None else recipe.told_for(request_listed)
+            intent = shaft_of_file(file_recipe, design, kind, request.compensation, recipe.field_of(request_listed))
+            unstated = [recipe.unstated(path) if units is None else units for _, path, _ in file_set.files]
+            discs = [DiscFile(path, disc, mm) for (_, path, disc), mm in zip(file_set.files, unstated, strict=True)]
+            verdicts = verify_set(discs, intent, recipe.verify.angles, permitted(recipe, within, gap))
+        for (place, path, disc), verdict in zip(file_set.files, verdicts, strict=True):
+            file_request = FileRequest(verdict.kind, compensation=request.compensation)
+            rank = disc if len(intent.parts) > 1 else None
+            results[place] = replace(FileResult.of(path, file_request, within, verdict), disc=rank)
             checks += verdict.checks
-        skipped += _alone(given, meant)
+        skipped += _lacking_discs(file_set, intent)
     files = [results[place] for place in sorted(results)]
-    for result in _looked(recipe, design, files, checks, clock):
+    for result in _opinions(recipe, design, files, checks, clock):
         checks, skipped = [*checks, *result.checks], [*skipped, *result.skipped]
     return design, _findings(recipe, design, checks, files, clock, skipped=tuple(skipped))
 
 
-def judged_by(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
+def judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
     """Report on files that a capability claims, see `FileJudge`; raises as it does, and RecipeErrors as `export`."""
     from camgeo.measures.units import displacement_unit
 
@@ -201,8 +205,8 @@ def judged_by(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
     return document(recipe, findings)
 
 
-def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
-    """What is not judged of a set that lacks a disc."""
+def _lacking_discs(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
+    """Skipped checks of a set that lacks a disc, with the reason."""
     lacking = [part.name for rank, part in enumerate(intent.parts) if not {rank, None} & files.discs]
     names = " and ".join(path.name for _, path, _ in files.files)
     why = f"{names} is judged alone: {' and '.join(lacking)} is not among the files that are given"
@@ -210,22 +214,22 @@ def _alone(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
 
 
 def _demand(recipe: Recipe) -> None:
-    """Demand what the capabilities need that the recipe uses; raises SurroundingsError."""
+    """Raise SurroundingsError where a capability that the recipe uses lacks a library."""
     for capability in registry.in_order(recipe.uses):
         capability.demand(recipe)
 
 
-def _looked(
+def _opinions(
     recipe: Recipe, design: Design, files: list[FileResult], checks: list[Check], clock: Clock
 ) -> list[Results]:
-    """What capabilities say of files beside the judge."""
+    """Results of the capabilities' own looks at files, beside the judge's."""
     capabilities = registry.in_order(recipe.uses)
     return [capability.look(recipe, design, files, checks, clock) for capability in capabilities]
 
 
-def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
-    """All stages: design, fits, files, verdicts, page."""
-    from camgeo.output.skipped import left_out
+def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
+    """Design and findings of a run of all stages: design, fits, files, verdicts, page."""
+    from camgeo.output.skipped import skipped_items
 
     _demand(recipe)
     design = designed(recipe, clock)
@@ -246,26 +250,28 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
         for request in requests:
             if request in missing or request.format.summary:
                 continue
-            made = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
-            files += made.files
-            checks += made.checks
-    skipped = left_out(recipe, requests, design)
-    for result in _looked(recipe, design, files, checks, clock):
+            product = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
+            files += product.files
+            checks += product.checks
+    skipped = skipped_items(recipe, requests, design)
+    for result in _opinions(recipe, design, files, checks, clock):
         checks, skipped = [*checks, *result.checks], (*skipped, *result.skipped)
-    found = _findings(recipe, design, checks, files, clock, skipped=skipped)
+    findings = _findings(recipe, design, checks, files, clock, skipped=skipped)
     names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
-    found = replace(found, missing=tuple((names[request], why) for request, why in missing.items()))
+    findings = replace(findings, missing=tuple((names[request], why) for request, why in missing.items()))
     for request in requests:
         if request.format.summarise is not None and request not in missing:
             path = folder / request.filename(recipe.name, recipe.export.files)
-            made = request.format.summarise(Run(recipe, design, found, job, clock), request, path)
-            found = replace(found, files=(*found.files, *made.files), checks=(*found.checks, *made.checks))
-            found = replace(found, stages=tuple(clock.stages))
-    return design, found
+            product = request.format.summarise(Run(recipe, design, findings, job, clock), request, path)
+            findings = replace(
+                findings, files=(*findings.files, *product.files), checks=(*findings.checks, *product.checks)
+            )
+            findings = replace(findings, stages=tuple(clock.stages))
+    return design, findings
 
 
 def content_of(recipe: Recipe, design: Design, findings: Findings, clock: Clock) -> Content:
-    """What a page shows of a run."""
+    """Content of the page of a run."""
     from camgeo.report.page.content import content
 
     with clock.stage("page"):
@@ -281,7 +287,7 @@ def _findings(
     *,
     skipped: tuple[tuple[str, str], ...] = (),
 ) -> Findings:
-    """Everything that a run found."""
+    """Findings of a run, with the sections, limits and remarks that follow from its checks and files."""
     linkage = None
     if design.driven is not None:
         from camgeo.report.linkage import linkage_section

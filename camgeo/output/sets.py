@@ -1,7 +1,7 @@
-"""Which of the files that are given to be judged go together, and which disc of the cam each of them holds.
+"""Sets of files that are judged together, and the disc of the cam that each file holds.
 
-A file tells its disc by the end of its name, `-1` or `-2`; others of a kind that holds one disc are taken in the order
-in which they are given. Files go together that are of one kind and are held to the same.
+The end of a file's name says its disc, `-1` or `-2`; other files of a kind that holds one disc take the free discs in
+their order. A set has files of one kind with the same requirement.
 """
 
 from __future__ import annotations
@@ -22,44 +22,48 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Held:
-    """What files are held to: the request that they may be of, and the tolerance, mm."""
+class Requirement:
+    """Kind of files, the recipe's request that lists them, None where none does, and their tolerance, mm."""
 
     kind: str
-    asked: FileRequest | None
+    request: FileRequest | None
     tolerance: float
 
 
 @dataclass(frozen=True)
 class FileSet:
-    """Files that go together, by their places among those given, each with its disc, counted from 0; None for all."""
+    """Files of a set: place in the call, path, and disc, counted from 0; None for all discs."""
 
-    held: Held
+    requirement: Requirement
     stem: str
     files: list[tuple[int, Path, int | None]] = field(default_factory=list)
 
     @property
     def discs(self) -> set[int | None]:
-        """The discs that are there."""
+        """Discs of the files."""
         return {disc for _, _, disc in self.files}
 
 
 def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> list[FileSet]:
-    """Sort files of any origin into sets; `tolerance`, mm, takes the place of that of the recipe."""
+    """Sets of files of any origin; `tolerance`, mm, replaces that of the recipe."""
     count, sets = recipe.cam.arrangement.discs, list[FileSet]()
     for place, path in enumerate(paths):
-        kind, asked = kind_of(path), recipe.request_of(path.name)
-        within = ((asked and asked.tolerance) or recipe.export.tolerance) if tolerance is None else tolerance
-        held = Held(kind, asked, within)
-        stem, disc = _disc_of(recipe, path, asked, count)
+        kind, request = kind_of(path), recipe.request_of(path.name)
+        within = ((request and request.tolerance) or recipe.export.tolerance) if tolerance is None else tolerance
+        requirement = Requirement(kind, request, within)
+        stem, disc = _disc_of(recipe, path, request, count)
         if count == 1 or (disc is None and not FORMATS[kind].by_disc):
-            sets.append(FileSet(held, stem, [(place, path, 0 if count == 1 else None)]))
+            sets.append(FileSet(requirement, stem, [(place, path, 0 if count == 1 else None)]))
             continue
-        open_sets = [one for one in sets if one.held == held and None not in one.discs and len(one.files) < count]
-        fitting = [one for one in open_sets if disc is None or disc not in one.discs]
-        chosen = next((one for one in fitting if one.stem == stem), next(iter(fitting), None))
+        open_sets = [
+            file_set
+            for file_set in sets
+            if file_set.requirement == requirement and None not in file_set.discs and len(file_set.files) < count
+        ]
+        fitting = [file_set for file_set in open_sets if disc is None or disc not in file_set.discs]
+        chosen = next((file_set for file_set in fitting if file_set.stem == stem), next(iter(fitting), None))
         if chosen is None:
-            chosen = FileSet(held, stem)
+            chosen = FileSet(requirement, stem)
             sets.append(chosen)
         rank = min(set(range(count)) - chosen.discs) if disc is None else disc
         chosen.files.append((place, path, rank))
@@ -67,9 +71,9 @@ def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> l
 
 
 def _disc_of(recipe: Recipe, path: Path, request: FileRequest | None, count: int) -> tuple[str, int | None]:
-    """The stem of a name without the end that tells the disc, and that disc; None where it tells none."""
-    told = re.fullmatch(r"(.+)-([1-9])", path.stem)
+    """Stem of a name without the end for the disc, and that disc, counted from 0; None where the name says none."""
+    match = re.fullmatch(r"(.+)-([1-9])", path.stem)
     whole = request is not None and recipe.filenames(request) == (path.name,)
-    if told is None or whole or int(told[2]) > count:
+    if match is None or whole or int(match[2]) > count:
         return path.stem, None
-    return told[1], int(told[2]) - 1
+    return match[1], int(match[2]) - 1

@@ -35,7 +35,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage(f"write {kind}"):
         write(path, items, job.recipe.name, job.recipe.told_for(request).mm, job.recipe.about)
     bound = reduce(Bound.wider, (one.facts.bound for one in meshed))
-    judged = job.judged if len(meshed) == 1 else job.judged_together
+    judged = job.judge if len(meshed) == 1 else job.judge_together
     return judged(request, path, bound, sum(one.facts.vertices for one in meshed))
 
 
@@ -66,7 +66,7 @@ def aim(job: Job, request: FileRequest) -> float:
     try:
         fine = numbers(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
     except ToleranceError as error:
-        raise job.refused(request, error) from error
+        raise job.refusal(request, error) from error
     return fine * job.body.fineness
 
 

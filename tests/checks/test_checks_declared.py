@@ -255,7 +255,7 @@ def test_a_file_that_cannot_be_read_fails_by_a_declared_name(tmp_path: Path) -> 
     (tmp_path / "cam.stl").write_bytes(b"nothing")
     (tmp_path / "cam.dxf").write_text("nothing")
     recipe = load_text(MORE["a part with everything"], "cam.yaml")
-    report = pipeline.judged(recipe, [tmp_path / "cam.stl", tmp_path / "cam.dxf"])
+    report = pipeline.judge_files(recipe, [tmp_path / "cam.stl", tmp_path / "cam.dxf"])
     assert READABLE.name in {check["name"] for check in report["checks"] if not check["ok"]}
     assert {check["name"] for check in report["checks"]} <= set(CHECKS)
 

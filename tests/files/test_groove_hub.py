@@ -43,7 +43,7 @@ def test_a_hub_below_and_a_mark(tmp_path):
     hub = math.pi * 9.0 * (14.0**2 - 7.0**2) - math.pi * 4.0 * (14.0 - 7.0)  # less the screw's hole, about
     mark = 0.8 * (1.2 * 3.8 + math.pi * 0.36)
     assert mesh.volume - without.volume == pytest.approx(hub - mark, abs=12.0)
-    failed = {check["name"] for check in pipeline.judged(recipe, [plain])["checks"] if not check["ok"]}
+    failed = {check["name"] for check in pipeline.judge_files(recipe, [plain])["checks"] if not check["ok"]}
     assert failed == {"watertight"} or failed >= {"hub", "mark"}
 
 
@@ -53,5 +53,5 @@ def test_a_hub_below_and_a_mark(tmp_path):
 def test_what_differs_is_told(part, other, kind, tmp_path):
     recipe, _ = exported(tmp_path / "meant", part, kind)
     _, path = exported(tmp_path / "other", other, kind)
-    failed = {check["name"] for check in pipeline.judged(recipe, [path])["checks"] if not check["ok"]}
+    failed = {check["name"] for check in pipeline.judge_files(recipe, [path])["checks"] if not check["ok"]}
     assert failed & {"hub", "mark", "thickness", "watertight", "bore", "holes"}

@@ -167,6 +167,6 @@ def test_a_solid_of_another_height_is_told_as_such(tmp_path):
     )
     assert pipeline.export(load_text(text, "low.yaml"), tmp_path).ok
     high = load_text(text.replace("thickness: 8", "thickness: 20"), "high.yaml")
-    checks = pipeline.judged(high, [tmp_path / "low" / "low.stl"])["checks"]
+    checks = pipeline.judge_files(high, [tmp_path / "low" / "low.stl"])["checks"]
     (failed,) = (check for check in checks if not check["ok"])
     assert "no section" in failed["detail"]

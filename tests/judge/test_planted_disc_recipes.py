@@ -45,7 +45,7 @@ def exported(recipe: Path) -> Path:
 
 
 def failures(recipe: Path, drawing: Path) -> set[str]:
-    report = pipeline.judged(load(recipe), [drawing])
+    report = pipeline.judge_files(load(recipe), [drawing])
     return {check["name"] for check in report["checks"] if not check["ok"]}
 
 

@@ -132,7 +132,7 @@ def test_no_file_passes_for_another(tmp_path, cam):
     for path, asked, ok in ((kerf, one, True), (nominal, one, False), (kerf, other, False)):
         named = tmp_path / "x" / "c.dxf"
         named.write_bytes(path.read_bytes())
-        report = pipeline.judged(asked, [named])
+        report = pipeline.judge_files(asked, [named])
         assert report["ok"] is ok
         failing = {check["name"] for check in report["checks"] if not check["ok"]}
         assert ok or {"contour", "motion", "bore"} <= failing

@@ -350,7 +350,7 @@ def test_a_file_turned_by_a_fifth_of_a_degree_is_found_by_its_output_too(tmp_pat
     contour.set_points(points)
     turned = tmp_path / "turned.dxf"
     document.saveas(turned)
-    report = pipeline.judged(made, [turned])
+    report = pipeline.judge_files(made, [turned])
     assert ("linkage-error", "turned.dxf") in failed(report)
     error = next(check for check in report["checks"] if check["name"] == "linkage-error")
     # the output is where it was meant to be a fifth of a degree of shaft earlier or later

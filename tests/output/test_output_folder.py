@@ -102,7 +102,7 @@ def test_files_of_other_formats_are_kept_on_request(tmp_path):
     export(tmp_path, 1)
     with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 2, ["cam.dxf"])
-        kept = run.kept()
+        kept = run.kept_names()
         assert kept == ("cam-1.stl", "cam.csv")
         report = {"files": [{"path": "cam.dxf"}, *({"path": name, "stale": True} for name in kept)]}
         (run.folder / "report.json").write_text(json.dumps(report))
@@ -113,14 +113,14 @@ def test_files_of_other_formats_are_kept_on_request(tmp_path):
     (folder / "cam.csv").unlink()  # by hand
     with RunFolder(tmp_path, NAME) as run:
         write(run.folder, 3, ["cam.dxf"])
-        assert run.kept() == ("cam-1.stl",)
+        assert run.kept_names() == ("cam-1.stl",)
         run.commit(["cam.dxf"])
     assert sorted(path.name for path in folder.iterdir()) == ["cam.dxf", "report.json"]
 
 
 def test_nothing_is_kept_of_no_set(tmp_path):
     with RunFolder(tmp_path, NAME) as run:
-        assert run.kept() == ()
+        assert run.kept_names() == ()
 
 
 class TestSurroundings:

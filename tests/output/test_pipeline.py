@@ -148,7 +148,7 @@ def test_counter_clockwise_mirrors_drawing_and_keeps_motion(tmp_path: Path) -> N
     table = [(tmp_path / name / f"{name}.csv").read_bytes() for name in (recipe.name, "other")]
     assert table[0] == table[1]
     # a file drawn for the one rotation is wrong for the other
-    report = pipeline.judged(other, [tmp_path / recipe.name / f"{recipe.name}.dxf"])
+    report = pipeline.judge_files(other, [tmp_path / recipe.name / f"{recipe.name}.dxf"])
     assert {"contour", "motion"} <= failed(report)
 
 
@@ -310,7 +310,7 @@ def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
     assert recipe.export.files[0].tolerance == pytest.approx(0.005)
     assert pipeline.export(recipe, tmp_path).ok
     folder = tmp_path / recipe.name
-    report = pipeline.judged(recipe, [folder / f"{recipe.name}.dxf", folder / f"{recipe.name}.stl"])
+    report = pipeline.judge_files(recipe, [folder / f"{recipe.name}.dxf", folder / f"{recipe.name}.stl"])
     assert report["ok"]
     assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
 
@@ -335,11 +335,11 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert folder is not None
     other = folder.rename(tmp_path / "sent") / "other.stl"
     other.write_bytes((other.parent / "own.stl").read_bytes())
-    report = pipeline.judged(recipe, [other.parent / "own.dxf", other.parent / "own.stl", other])
+    report = pipeline.judge_files(recipe, [other.parent / "own.dxf", other.parent / "own.stl", other])
     assert [file["tolerance"] for file in report["files"]] == [0.001, 0.02, 0.001]
     assert {"contour", "motion"} <= failed(report)
-    assert not pipeline.judged(recipe, [other.parent / "own.stl"], tolerance=0.001)["ok"]
-    assert pipeline.judged(recipe, [other], tolerance=0.02)["ok"]
+    assert not pipeline.judge_files(recipe, [other.parent / "own.stl"], tolerance=0.001)["ok"]
+    assert pipeline.judge_files(recipe, [other], tolerance=0.02)["ok"]
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
 
 

@@ -275,7 +275,7 @@ def test_a_unit_that_is_misstated(
 
 
 def failures(recipe: Recipe, path: Path) -> set[str]:
-    return {check["name"] for check in pipeline.judged(recipe, [path])["checks"] if not check["ok"]}
+    return {check["name"] for check in pipeline.judge_files(recipe, [path])["checks"] if not check["ok"]}
 
 
 def test_a_shifted_vertex_of_an_inch_drawing(made: Made, tmp_path: Path) -> None:
@@ -373,10 +373,10 @@ def test_a_fit_leaves_room_for_what_writing_moves() -> None:
     job = Job.of(recipe, designed(recipe))
     (plain,) = job.outlines("arcs", TOLERANCE)
     moved = TOLERANCE - 0.5 * plain.bound.worst
-    assert job.outlines_written("arcs", TOLERANCE, lambda _: 0.0)[0] is plain
-    (found,) = job.outlines_written("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
+    assert job.written_outlines("arcs", TOLERANCE, lambda _: 0.0)[0] is plain
+    (found,) = job.written_outlines("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
     assert found.bound.worst + 0.1 * TOLERANCE <= TOLERANCE
-    assert job.outlines_written("arcs", TOLERANCE, lambda _: moved)[0] is plain  # no finer fit would help
+    assert job.written_outlines("arcs", TOLERANCE, lambda _: moved)[0] is plain  # no finer fit would help
     assert 0.0 < converted(plain) < 1e-12
 
 

@@ -111,7 +111,7 @@ def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: P
     assert folder is not None
     (path,) = (path for path in folder.iterdir() if path.suffix == f".{kind}")
     meant = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [{written(kind, how)}]}}\n")
-    checks = pipeline.judged(meant, [path])["checks"]
+    checks = pipeline.judge_files(meant, [path])["checks"]
     failed = {(check["name"], check.get("surface")) for check in checks if not check["ok"]}
     assert failed == {("contour", "outer"), ("motion", "outer"), ("form-closure", None)}
     (off,) = (check["value"] for check in checks if (check["name"], check.get("surface")) == ("contour", "outer"))
@@ -138,7 +138,7 @@ def test_a_contact_knows_its_surface_and_one_roller_is_one() -> None:
 
 def test_a_page_draws_every_surface() -> None:
     recipe = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [dxf]}}\n")
-    outcome, found = pipeline.shown(recipe)
+    outcome, found = pipeline.check_and_show(recipe)
     assert outcome.ok
     (cam,) = (body for body in found.scene.bodies if body.name == "cam")
     assert len(cam.shapes[0].rings) == 3  # both flanks, and the bore

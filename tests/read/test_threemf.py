@@ -23,7 +23,7 @@ from camgeo.files.sides import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.formats.three_mf import write_3mf
-from camgeo.output.pipeline import judged
+from camgeo.output.pipeline import judge_files
 from camgeo.schema.errors import RecipeErrors
 from kin.read.errors import ReadError
 from kin.read.files import read_solid
@@ -525,7 +525,7 @@ def test_encodings_that_are_none_or_are_not_read(plain, encoding):
     spoilt = rewritten(sound, lambda text: text.replace('encoding="UTF-8"', f'encoding="{encoding}"', 1))
     with pytest.raises(ReadError, match=r"3dmodel\.model is not sound: "):
         read_3mf(spoilt)
-    report = judged(recipe, [spoilt])
+    report = judge_files(recipe, [spoilt])
     assert [check["name"] for check in report["checks"] if not check["ok"]] == ["readable"]
 
 

@@ -233,7 +233,7 @@ def test_a_ring_s_file_is_held_against_its_opening() -> None:
     text += MOTION % (12, 12)
     text += "name: ring\npart: {outer: 140, bolts: {count: 3, circle: 120, hole: 6}}\nexport: {files: [dxf]}\n"
     recipe = load_text(text, "ring.yaml")
-    _, found = pipeline.shown(recipe)
+    _, found = pipeline.check_and_show(recipe)
     (error,) = found.errors
     assert max(-error.low.min(), error.high.max()) < 0.001
     rings = body(found, "cam").shapes[0].rings

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camgeo.output.pipeline import shown
+from camgeo.output.pipeline import check_and_show
 from camgeo.recipe.loading import read
 
 MOTION = (
@@ -40,7 +40,7 @@ def ring_of(body, step):
 
 @pytest.mark.parametrize("name", ["stem", "crank", pytest.param("shoe", marks=pytest.mark.slow)])
 def test_each_roller_touches_its_own_disc(name):
-    content = shown(recipe_of(name))[1]
+    content = check_and_show(recipe_of(name))[1]
     found = bodies(content)
     word = "shoe" if name == "shoe" else "roller"
     for step in (0, 130, 500):
@@ -55,7 +55,7 @@ def test_each_roller_touches_its_own_disc(name):
 
 
 def test_two_faces_stand_against_their_discs():
-    found = bodies(shown(recipe_of("faces"))[1])
+    found = bodies(check_and_show(recipe_of("faces"))[1])
     for step in (0, 130, 500):
         x = found["yoke"].at(step)[0]
         assert ring_of(found["disc 1"], step)[:, 0].max() == pytest.approx(x, abs=0.02)
@@ -63,7 +63,7 @@ def test_two_faces_stand_against_their_discs():
 
 
 def test_the_error_of_each_disc_and_the_backlash_of_both():
-    outcome, content = shown(recipe_of("stem"))
+    outcome, content = check_and_show(recipe_of("stem"))
     plots = {plot.title: plot for plot in content.plots}
     errors = [(error.name, error.surface, error.tolerance) for error in content.errors]
     assert errors == [("pair-1.dxf", "disc 1", 0.002), ("pair-2.dxf", "disc 2", 0.002)]
@@ -85,7 +85,7 @@ def test_the_error_of_each_disc_and_the_backlash_of_both():
 
 @pytest.mark.slow
 def test_a_contour_is_chosen_for_both_discs():
-    content = shown(recipe_of("stem", "dxf, {svg: {as: polyline}}"))[1]
+    content = check_and_show(recipe_of("stem", "dxf, {svg: {as: polyline}}"))[1]
     for k in (1, 2):
         shapes = bodies(content)[f"disc {k}"].shapes
         assert [shape.name for shape in shapes[:2]] == ["pair-1.dxf, pair-2.dxf", "pair-1.svg, pair-2.svg"]

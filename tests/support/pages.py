@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.output.pipeline import shown
+from camgeo.output.pipeline import check_and_show
 from camgeo.recipe.loading import load, load_text
 from camgeo.report.page.content import content
 from camgeo.report.page.page import page
@@ -36,7 +36,7 @@ class Made:
 
     def __init__(self, path: Path) -> None:
         self.recipe: Recipe = load(path)
-        self.outcome, self.content = shown(self.recipe)
+        self.outcome, self.content = check_and_show(self.recipe)
         self.text = page(self.recipe, self.content, self.outcome.report)
         self.data: dict[str, Any] = json.loads(re.findall(r'id="data">(.*?)</script>', self.text, re.DOTALL)[0])
 

@@ -183,7 +183,7 @@ def test_of_a_file_from_elsewhere_they_are_its_own(tmp_path: Path) -> None:
     pipeline.export(recipe, tmp_path)
     path = next(tmp_path.rglob("*.dxf"))
     other = load_text("cam: {kind: support, p: 31 + cos(3*t)}\nexport: {files: [dxf]}\n", "cam.yaml")
-    report = pipeline.judged(other, [path])
+    report = pipeline.judge_files(other, [path])
     assert report["files"][0]["perimeter"] == pytest.approx(60 * math.pi, rel=1e-6)
     assert report["contour"]["perimeter"] == pytest.approx(62 * math.pi, rel=1e-12)
     import camgeo

@@ -13,7 +13,7 @@ import pytest
 from support import brute_disc
 from support.kernel import kernel
 
-from camgeo.output.pipeline import export, judged
+from camgeo.output.pipeline import export, judge_files
 from camgeo.recipe.loading import read
 from camgeo.report.failure import failure
 from camgeo.synthesis.design import designed
@@ -201,7 +201,7 @@ def test_the_file_of_another_clearance_is_refused(clearance, stem, tmp_path):
 
 
 def failed(recipe, path):
-    return {(check["name"], check.get("surface")) for check in judged(recipe, [path])["checks"] if not check["ok"]}
+    return {(check["name"], check.get("surface")) for check in judge_files(recipe, [path])["checks"] if not check["ok"]}
 
 
 def test_the_blank_stands_on_cut(tmp_path):

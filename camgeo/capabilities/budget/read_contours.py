@@ -42,7 +42,7 @@ def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict
     shown = ", ".join(escaped(str(path)) for path in paths)
     try:
         first, *others = sets_of(recipe, paths, recipe.export.tolerance)
-        intent = shaft_of_file(recipe, design, first.held.kind)
+        intent = shaft_of_file(recipe, design, first.requirement.kind)
         files = [DiscFile(path, disc, recipe.unstated(path)) for _, path, disc in first.files]
         verdicts = verify_set(files, intent, LOOKS, permitted(recipe, recipe.export.tolerance))
     except ReadError as error:
@@ -51,7 +51,7 @@ def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict
         raise CallError(f"{shown}: {getattr(error, 'strerror', None) or error}") from error
     if others:
         raise CallError(f"{shown}: give one file, or one of each disc that were made together")
-    request = first.held.asked
+    request = first.requirement.request
     if request is not None and request.compensation is not None:
         raise CallError(f"{shown}: its contour is not the cam's ({request.compensation.tags}); give a nominal file")
     surfaces = [surface for verdict in verdicts for surface in verdict.surfaces]

@@ -70,7 +70,7 @@ def export(
     with RunFolder(out, recipe.name) as run:
         findings = _produced(recipe, requests, run.folder, Clock(progress))
         demand_any(recipe.path, findings.found)
-        kept = run.kept() if only else ()
+        kept = run.kept_names() if only else ()
         report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)
         (run.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
         names = [file.path.name for file in findings.found.files]

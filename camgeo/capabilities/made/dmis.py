@@ -45,13 +45,13 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 
 
 def _make(job: Job, request: FileRequest, path: Path) -> Made:
-    from camgeo.output.job import looked_at
+    from camgeo.output.job import unjudged
 
     recipe = job.recipe.told_for(request)
     with job.clock.stage("dmis"):
         text = "\n".join(program(recipe, job.design, request.own.get("step"))) + "\n"
         path.write_bytes(text.encode("ascii", "replace"))
-    return looked_at(path, request, recipe.mm)
+    return unjudged(path, request, recipe.mm)
 
 
 class _Disc(NamedTuple):

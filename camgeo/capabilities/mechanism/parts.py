@@ -140,11 +140,11 @@ def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[M
 def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
     """Write a file of all bodies in motion, for viewers."""
     from camgeo.formats.glb import Actor, write_glb
-    from camgeo.output.job import looked_at
+    from camgeo.output.job import unjudged
 
     actors = [Actor(part.body.name, part.raised_mesh, part.body.pose, part.body.colour) for part in parts]
     write_glb(path, actors, title=job.recipe.name)
-    return looked_at(path, request, UNIT_MM["m"])
+    return unjudged(path, request, UNIT_MM["m"])
 
 
 def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float, str], None]:
@@ -154,7 +154,7 @@ def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float,
 
 
 def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> Made:
-    return job.judged(request, path, part.bound, part.pieces or 0)
+    return job.judge(request, path, part.bound, part.pieces or 0)
 
 
 def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> Made:

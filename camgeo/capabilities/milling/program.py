@@ -65,7 +65,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
         with job.clock.stage("write gcode"):
             _write(job, request, path, [*_holes(job, asked), (FEATURE, steps)], count)
     bound = reduce(Bound.wider, (outline.bound for outline in fine)).widened(rounding(count, mm))
-    made = job.judged(request, path, bound, sum(outline.count for outline in fine))
+    made = job.judge(request, path, bound, sum(outline.count for outline in fine))
     return Made(made.files, (*checks, *made.checks))
 
 

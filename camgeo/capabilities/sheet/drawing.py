@@ -47,7 +47,7 @@ def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
     pairs = enumerate(zip(jobs, paths, strict=True))
     sheet = build_sheet(request.own)
     drawings = [_make_sheet(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]
-    judged = drawings[0] if len(drawings) == 1 else run.job.closed(ARCS, drawings)
+    judged = drawings[0] if len(drawings) == 1 else run.job.combine_discs(ARCS, drawings)
     return Made((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
 
 
@@ -75,7 +75,7 @@ def _make_sheet(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: 
             annotate=annotation(pages.annotated, pages.origin, pages.scale),
         )
     bound = reduce(Bound.wider, (outline.bound for outline in contours))
-    return job.judged(ARCS, drawing, bound, sum(outline.count for outline in contours))
+    return job.judge(ARCS, drawing, bound, sum(outline.count for outline in contours))
 
 
 def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:

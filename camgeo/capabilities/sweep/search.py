@@ -122,7 +122,7 @@ def require_free_names(task: Task, out: Path) -> None:
         return
     try:
         with RunFolder(out, task.recipe.name, FILES) as run:
-            ours = {*run.kept(), REPORT}
+            ours = {*run.kept_names(), REPORT}
     except BusyError:
         return  # another run puts its files in place; the end will show
     best = (f"best-{place}.yaml" for place in range(1, min(task.sweep.keep, task.plan.count) + 1))

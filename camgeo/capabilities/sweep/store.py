@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.errors import SurroundingsError
-from camgeo.common.system import patient
+from camgeo.common.system import retry
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
@@ -137,7 +137,7 @@ class Chunks:
         part = self.folder / f".chunk-{number:07d}.{os.getpid()}.part"
         try:
             part.write_bytes(data)
-            patient(lambda: part.replace(self.path(number)))
+            retry(lambda: part.replace(self.path(number)))
         except BaseException:
             part.unlink(missing_ok=True)
             raise

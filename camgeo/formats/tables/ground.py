@@ -44,4 +44,4 @@ def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("grinding"), job.refusals(request):
         made = grinding_table(recipe, job.design, request, job.tolerance(request), job.field(request))
         write_table(path, made.columns, made.rows, head=made.head)
-    return job.judged(request, path, Bound(made.error, made.error), len(made.rows) - 1)
+    return job.judge(request, path, Bound(made.error, made.error), len(made.rows) - 1)

@@ -58,11 +58,11 @@ def tabled(
     """Make the function that writes a table of these columns in a stage of the run; `gaps` as of `write_table`."""
 
     def make(job: Job, request: FileRequest, path: Path) -> Made:
-        from camgeo.output.job import looked_at
+        from camgeo.output.job import unjudged
 
         with job.clock.stage(stage):
             names, rows = columns(job, request)
             write_table(path, names, rows, gaps=gaps)
-        return looked_at(path, request, job.recipe.told_for(request).mm)
+        return unjudged(path, request, job.recipe.told_for(request).mm)
 
     return make

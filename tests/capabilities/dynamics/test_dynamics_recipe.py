@@ -384,7 +384,7 @@ def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
     outline.set_points(points.tolist(), format="xyb")
     spoilt = tmp_path / "spoilt.dxf"
     drawing.saveas(spoilt)
-    whole, bent = (pipeline.judged(asked, [file])["dynamics"]["runs"][1] for file in (path, spoilt))
+    whole, bent = (pipeline.judge_files(asked, [file])["dynamics"]["runs"][1] for file in (path, spoilt))
     amplitudes = [run["steady"]["residual"][0]["amplitude"] for run in (whole, bent)]
     assert bent["from"] == "spoilt.dxf"
     assert amplitudes[1] > 3.0 * amplitudes[0]
