@@ -1,19 +1,25 @@
-"""A curve moved along its normals by a distance that varies, as to correct a machine's deviations.
+"""A curve moved outwards by a distance that varies, as to correct a machine's deviations.
 
-With f over the curve's parameter the point is ``c + f N``, N the outward normal, and its derivative
-``(sigma + f omega) T + f' N``: its speed is the length of that, and its tangent turns as T does less the angle by which
-it leaves T.
+With f over the curve's parameter, T and N the tangent and the outward normal, sigma and omega speed and turn, it is
+
+- along its normals ``c + f N``, with the derivative ``(sigma + f omega) T + f' N``: its speed is the length of that,
+  and its tangent turns as T does less the angle by which it leaves T. Where sigma jumps, that angle does: so this is
+  for pitch curves, of which omega alone may jump;
+- by its support function ``c + f N + (f'/omega) T``, with the derivative ``(sigma + f omega + (f'/omega)') T``: its
+  tangent is T, whatever sigma does. So this is for what a flat face touches, where omega is above 0 and may not jump.
+
+Both are f farther outside, to first order of f.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.curve import Bounds, Curve, Frame, Shape
-from camgeo.curve.parallel import Parallel
+from camgeo.curve.curve import Bounds, Frame, Shape
 from camgeo.curve.rates import bounds_of, cut
 from kin.numeric import elementary
 from kin.numeric.angles import TURN
@@ -56,8 +62,8 @@ class Spline:
 
 
 @dataclass(frozen=True, eq=False)
-class Moved:
-    """Curve at the distance `by` outside `base`, along its normals."""
+class Moved(ABC):
+    """Curve `by` outside `base`."""
 
     base: Shape
     by: Spline
@@ -91,15 +97,9 @@ class Moved:
         """All nan (m,): no stretch that is a circular arc."""
         return np.full(len(self.breaks), np.nan)
 
+    @abstractmethod
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        frame = self.base.sample(t, side)
-        off, slope = self.by.on(Jet.variable(t, 1), side).c
-        along = frame.speed + off * frame.turn
-        tangent = along[:, None] * frame.tangent + slope[:, None] * frame.normal
-        speed, turn = self.series(t, 1, side)
-        point = frame.point + off[:, None] * frame.normal
-        return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
@@ -119,6 +119,25 @@ class Moved:
         speed, turn = self.base.rates(tau, side)
         return speed, turn, self.by.on(tau, side)
 
+    @abstractmethod
+    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        """Speed and turn from those of the base and the distance."""
+
+
+@dataclass(frozen=True, eq=False)
+class AlongNormals(Moved):
+    """Curve `by` outside `base` along its normals."""
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(t, side)
+        off, slope = self.by.on(Jet.variable(t, 1), side).c
+        along = at.speed + off * at.turn
+        tangent = along[:, None] * at.tangent + slope[:, None] * at.normal
+        speed, turn = self.series(t, 1, side)
+        point = at.point + off[:, None] * at.normal
+        return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
+
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         speed, turn, off = figures
         out = off.derivative()
@@ -130,9 +149,23 @@ class Moved:
         return elementary.sqrt(square), cut(turn, order - 1) - away * cut(square, order - 1) ** -1
 
 
-def moved(curve: Curve, by: Spline) -> Curve:
-    """A whole curve moved outward along its normals; a roller's contour stays a parallel of a pitch curve."""
-    shape, out = curve.shape, Moved(curve.shape, by)
-    if isinstance(shape, Parallel):
-        return Curve.whole(Parallel(Parallel(out, -shape.distance), shape.distance))
-    return Curve.whole(out)
+@dataclass(frozen=True, eq=False)
+class BySupport(Moved):
+    """Curve whose support function is `by` greater than that of `base`: it has the same normals."""
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(t, side)
+        off, slope = self.by.on(Jet.variable(t, 1), side).c
+        speed, turn = self.series(t, 1, side)
+        point = at.point + off[:, None] * at.normal + (slope / at.turn)[:, None] * at.tangent
+        return Frame(point, at.tangent, speed[0], turn[0], speed[1], turn[1])
+
+    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        speed, turn, off = figures
+        out = off.derivative()
+        order = min(turn.order, out.order)
+        along = (cut(out, order) * cut(turn, order) ** -1).derivative()
+        order = min(speed.order, along.order)
+        turn = cut(turn, order)
+        return cut(speed, order) + cut(off, order) * turn + cut(along, order), turn

@@ -74,6 +74,16 @@ class Envelope(Protocol):
     def inset(self, distance: float) -> Envelope:
         """Give the parallel contour inside, at a distance, mm."""
 
+    def displaced(self, by: Outwards) -> Envelope:
+        """Give the contour that lies `by` farther outside, to first order; it has no corner where this one has none."""
+
+
+class Outwards(Protocol):
+    """A smooth distance over a parameter of period 2 pi, mm."""
+
+    def rows(self, t: Array, order: int = 0) -> Array:
+        """The distance and its derivatives at parameters t (n,), up to `order`: (order + 1, n)."""
+
 
 class FacePitch(Protocol):
     """Where a flat face stands over a parameter of period 2 pi; `Transmission` is one, of face A of its pair."""
@@ -138,6 +148,27 @@ class ArmPitch:
         t[0] += tau
         t[1] += 1.0
         return r[: order + 1], t[: order + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class DisplacedFace:
+    """A face in the same direction, farther from the shaft by the smooth distance `by`.
+
+    Its contour keeps its normals: a jump of the radius of curvature leaves no corner.
+    """
+
+    face: FacePitch
+    by: Outwards
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the face."""
+        return self.face.breaks
+
+    def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Give the distance and the direction of the face, with derivatives."""
+        r, t = self.face.pitch(tau, order, side)
+        return r + self.by.rows(tau, order), t
 
 
 def support_rows(pitch: FacePitch, tau: Array, side: int = 1) -> tuple[Array, Array]:
@@ -260,6 +291,10 @@ class FlatEnvelope:
         """Give the parallel contour inside."""
         return FlatEnvelope(self.pitch, self.out - distance)
 
+    def displaced(self, by: Outwards) -> FlatEnvelope:
+        """Give the contour of a face that stands so much farther out: its support function is greater by that."""
+        return FlatEnvelope(DisplacedFace(self.pitch, by), self.out)
+
 
 class Pitch(Protocol):
     """A closed pitch curve over a parameter of period 2 pi."""
@@ -291,6 +326,40 @@ class TransmissionPitch:
         first = r[1][:, None] * u + (r[0] * t[1])[:, None] * n
         second = (r[2] - r[0] * t[1] ** 2)[:, None] * u + (2.0 * r[1] * t[1] + r[0] * t[2])[:, None] * n
         return r[0][:, None] * u, first, second
+
+
+@dataclass(frozen=True, eq=False)
+class DisplacedPitch:
+    """A pitch curve displaced along its normals by a smooth distance over its parameter.
+
+    Its speed has no jump where its curvature does, so that hardly a corner is left there.
+    """
+
+    pitch: Pitch
+    by: Outwards
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the pitch curve."""
+        return self.pitch.breaks
+
+    def points(self, tau: Array) -> tuple[Array, Array, Array]:
+        """Centre and two derivatives, each (n, 2).
+
+        The second lacks the distance times the rate of the turn, along the tangent: feet do not depend on that, and the
+        curvature to second order of the distance alone.
+        """
+        point, first, second = self.pitch.points(tau)
+        off, slope, bend = self.by.rows(tau, 2)
+        speed = np.hypot(first[:, 0], first[:, 1])
+        tangent = first / speed[:, None]
+        normal = right(tangent)
+        turn = cross(first, second) / speed**2
+        return (
+            point + off[:, None] * normal,
+            first + slope[:, None] * normal + (off * turn)[:, None] * tangent,
+            second + (bend - off * turn**2)[:, None] * normal + (2.0 * slope * turn)[:, None] * tangent,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -405,6 +474,10 @@ class RollerEnvelope:
     def inset(self, distance: float) -> RollerEnvelope:
         """Give the parallel contour inside, that of a larger roller on the same pitch curve."""
         return RollerEnvelope(self.pitch, self.radius + distance)
+
+    def displaced(self, by: Outwards) -> RollerEnvelope:
+        """Give the contour by a pitch curve that lies so much farther outside along its normals."""
+        return RollerEnvelope(DisplacedPitch(self.pitch, by), self.radius)
 
 
 def _angle(v: Array) -> Array:

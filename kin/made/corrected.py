@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.contour.arcs import cross, dot, left
 from kin.follower.base import Closure, Follower
 from kin.follower.drive import CLOSE, extremes_between
-from kin.follower.envelope import Frames
 from kin.follower.motion_error import Judged, Play, motion_error, with_steps
-from kin.made.motion import metal_of, step_of
+from kin.made.metal import Metal, places_of
+from kin.made.motion import step_of
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.feet import Feet, equal_steps, gauss
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -29,89 +28,13 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.base import IntendedMotion, Rests
     from kin.follower.drive import Excitation
+    from kin.follower.envelope import Envelope
     from kin.law.contacts import Side
-    from kin.made.metal import Metal
     from kin.made.smooth import Smooth
     from kin.numeric.arrays import Array
 
-NEWTON_STEPS = 6  # from the exact contour's foot: the last changes nothing
-DIFFERENCE = 1e-3  # rad, of a place on the metal: above rounding, far below a span
 FIT = np.linalg.inv(np.vander(np.arange(5.0), increasing=True))  # coefficients of a quartic by its values at 0 to 4
 LIMIT_ANGLES = 720  # shaft angles at which the effect of a tolerance is found
-
-
-@dataclass(frozen=True, eq=False)
-class MetalEnvelope:
-    """The contour of corrected metal over the exact contour's parameter, or its parallel `inside` of it, mm."""
-
-    metal: Metal
-    curve: Smooth
-    inside: float = 0.0
-
-    @property
-    def regular(self) -> bool:
-        """Whether the exact contour is."""
-        return self.metal.follower.envelope.regular
-
-    @property
-    def extent(self) -> float:
-        """That of the exact contour."""
-        return self.metal.follower.envelope.extent
-
-    def frames(self, parameter: Array) -> Frames:
-        """Points, outward normals and their rates."""
-        t = np.asarray(parameter, dtype=float)
-        exact = self.metal.follower.envelope.frames(t)
-        off, slope, bend = self.metal.side * self.curve.rows(t, 2)
-        along = exact.speed + off * exact.turn
-        speed = np.hypot(along, slope)
-        normal = (along[:, None] * exact.normals - slope[:, None] * left(exact.normals)) / speed[:, None]
-        after, before = (self._along(t + step) for step in (DIFFERENCE, -DIFFERENCE))
-        turn = exact.turn - (bend * along - slope * (after - before) / (2.0 * DIFFERENCE)) / speed**2
-        points = exact.points + off[:, None] * exact.normals - self.inside * normal
-        return Frames(points, normal, speed - self.inside * turn, turn)
-
-    def _along(self, t: Array) -> Array:
-        exact = self.metal.follower.envelope.frames(t)
-        along: Array = exact.speed + self.metal.side * self.curve.rows(t)[0] * exact.turn
-        return along
-
-    @property
-    def breaks(self) -> Array:
-        """Those of the exact contour."""
-        return self.metal.follower.envelope.breaks
-
-    def points(self, parameter: Array) -> Array:
-        """Points (n, 2), mm."""
-        return self.frames(parameter).points
-
-    def feet(self, points: Array) -> Feet:
-        """Feet of points (n, 2), from those on the exact contour by Newton's method."""
-        t = self.metal.follower.envelope.feet(points).parameter
-        for _ in range(NEWTON_STEPS):
-            frame = self.frames(t)
-            away = points - frame.points
-            t = t + dot(away, left(frame.normals)) / (frame.speed + dot(away, frame.normals) * frame.turn)
-        frame = self.frames(t)
-        excess = dot(points - frame.points, frame.normals)
-        return Feet(t, excess, frame.normals, frame.turn / (frame.speed + excess * frame.turn))
-
-    def radii(self) -> tuple[Array, Array]:
-        """Parameters (m,) closely round the turn, and radii of curvature (m,), mm."""
-        t = self.metal.places
-        frame = self.frames(t)
-        return t, frame.speed / np.where(frame.turn == 0.0, np.finfo(float).tiny, frame.turn)
-
-    def area_and_perimeter(self) -> tuple[float, float]:
-        """Enclosed area, mm^2, and length, mm, by quadrature between the splines' knots."""
-        t, weight = gauss(np.concatenate([self.breaks, equal_steps(self.curve.spans)]))
-        frame = self.frames(t)
-        tangent = left(frame.normals)
-        return float(0.5 * weight @ (frame.speed * cross(frame.points, tangent))), float(weight @ frame.speed)
-
-    def inset(self, distance: float) -> MetalEnvelope:
-        """Give the parallel contour inside."""
-        return replace(self, inside=self.inside + distance)
 
 
 class _Beyond(NamedTuple):
@@ -162,23 +85,48 @@ class _Meant:
 
 @dataclass(frozen=True, eq=False)
 class Corrected(Follower):
-    """A follower on metal that is meant to lie at the smooth deviation `curve` from the exact contour of a gauge.
+    """A follower on metal that is meant to lie by a smooth `curve` beyond the exact contour of a gauge.
 
-    `exact` is the follower itself, whose contacts these are: the gauge, or one that has a clearance to it.
+    `exact` is the follower itself, whose contacts these are: the gauge, or one that has a clearance to it. `contour` is
+    that of the metal, over the parameter of the exact one.
     """
 
     exact: Follower
     metal: Metal
     curve: Smooth
+    contour: Envelope
 
     @staticmethod
     def of(gauge: Follower, side: Side, curve: Smooth) -> Corrected:
-        """Make it of a gauge, the side of its contour on which the metal lies, and the deviation of the metal."""
-        return Corrected(gauge.contacts, gauge, metal_of(gauge, side, curve), curve)
+        """Make it of a gauge, the side of its contour on which the metal lies, and how far that lies beyond it."""
+        contour = gauge.envelope.displaced(curve.times(side))
+
+        def skin(parameter: Array, height: float) -> tuple[Array, Array]:
+            return contour.inset(-side * height).frames(parameter)[:2]
+
+        return Corrected(gauge.contacts, gauge, Metal(gauge, skin, places_of(curve.spans), gauge), curve, contour)
+
+    def within_reach(self) -> tuple[float, float]:
+        """Greatest share of the curve, to first order, by which the contour turns back nowhere, and where it would.
+
+        Where it turns back, no contact reaches it. The place is a shaft angle, rad, seen at the `places` of the metal;
+        the share is infinite where any would do.
+        """
+        places = self.metal.places
+        exact, speed = (one.frames(places).speed for one in (self.metal.follower.envelope, self.contour))
+        lost = exact - speed
+        shares = np.where(lost > 0.0, exact / np.where(lost > 0.0, lost, 1.0), np.inf)
+        worst = int(np.argmin(shares))
+        return float(shares[worst]), float(self.shaft_angle(places[worst : worst + 1])[0])
 
     def run_by(self, follower: Follower) -> Corrected:
         """Another follower of that motion on the same metal."""
         return replace(self, contacts=follower.contacts, exact=follower)
+
+    @property
+    def envelope(self) -> Envelope:
+        """The contour of the metal."""
+        return self.contour
 
     @property
     def motion(self) -> IntendedMotion:
@@ -189,11 +137,6 @@ class Corrected(Follower):
     def rests(self) -> Rests:
         """Those of the recipe's motion."""
         return self.exact.rests
-
-    @cached_property
-    def envelope(self) -> MetalEnvelope:
-        """The contour of the metal."""
-        return MetalEnvelope(self.metal, self.curve)
 
     @property
     def closure(self) -> Closure | None:

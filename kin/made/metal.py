@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
     Deviation = Callable[[Array], Array]  # of parameters (n,): deviation, mm, and its derivative (2, n)
+    Skin = Callable[[Array, float], tuple[Array, Array]]
+    # of parameters (n,), with so much more metal all round, mm: points, mm, and outward normals of the contour (n, 2)
 
 COARSE = 4096  # places of the turn between which contact is looked for, at least
 PER_SPAN = 12  # of them in a span of the smoothed deviation
@@ -62,47 +64,52 @@ class _Pieces(NamedTuple):
     step: Array
 
 
+def places_of(finest: int) -> Array:
+    """Places (m,) of the turn, close enough for what has `finest` spans or waves in it."""
+    return grid(NO_BREAKS, max(COARSE, PER_SPAN * finest))
+
+
 @dataclass(frozen=True, eq=False)
 class Metal:
-    """Metal whose surface lies at `deviation` from a follower's exact contour, above 0 for metal too much.
+    """Metal over the parameter of a follower's exact contour, whose surface `skin` gives.
 
-    `side` is that of the contour on which the metal lies: 1 inside, -1 outside. `places` are parameters (m,), rising
-    over a turn, close enough that between two of them nothing of the deviation is lost. `gauge` is what runs on the
-    metal: the follower itself, or a probe on its guide.
+    `places` are parameters (m,), rising over a turn, close enough that between two of them nothing of the surface is
+    lost. `gauge` is what runs on the metal: the follower itself, or a probe on its guide. `height` is by how much
+    more metal there is all round, mm.
     """
 
     follower: Follower
-    side: Side
-    deviation: Deviation
+    skin: Skin
     places: Array
     gauge: Follower
+    height: float = 0.0
 
     @staticmethod
     def of(
         follower: Follower, side: Side, deviation: Deviation, finest: int = 0, gauge: Follower | None = None
     ) -> Metal:
-        """Metal whose deviation has `finest` spans or waves a turn."""
-        places = grid(NO_BREAKS, max(COARSE, PER_SPAN * finest))
-        return Metal(follower, side, deviation, places, gauge or follower)
+        """Metal whose surface lies at a deviation along the normals of the exact contour, above 0 for metal too much.
+
+        It lies inside that contour (`side` 1) or outside (-1); the deviation has `finest` spans or waves a turn.
+        """
+
+        def skin(parameter: Array, height: float) -> tuple[Array, Array]:
+            frame = follower.envelope.frames(parameter)
+            off, slope = side * (deviation(parameter) + np.array([[height], [0.0]]))
+            along = frame.speed + off * frame.turn
+            normal = along[:, None] * frame.normals - slope[:, None] * left(frame.normals)
+            size = np.hypot(normal[:, 0], normal[:, 1])
+            return frame.points + off[:, None] * frame.normals, normal / size[:, None]
+
+        return Metal(follower, skin, places_of(finest), gauge or follower)
 
     def raised(self, height: float) -> Metal:
         """The metal with as much more all round, mm."""
-
-        def deviation(t: Array) -> Array:
-            rows = self.deviation(t).copy()
-            rows[0] += height
-            return rows
-
-        return replace(self, deviation=deviation)
+        return replace(self, height=self.height + height)
 
     def surface(self, parameter: Array) -> tuple[Array, Array]:
         """Points (n, 2), mm, and normals (n, 2) outward of the contour."""
-        frame = self.follower.envelope.frames(parameter)
-        off, slope = self.side * self.deviation(parameter)
-        along = frame.speed + off * frame.turn
-        normal = along[:, None] * frame.normals - slope[:, None] * left(frame.normals)
-        size = np.hypot(normal[:, 0], normal[:, 1])
-        return frame.points + off[:, None] * frame.normals, normal / size[:, None]
+        return self.skin(parameter, self.height)
 
     def positions(self, shaft: Array) -> tuple[Array, Array]:
         """Position of the follower with each contact resting on the metal at shaft angles (n,), and where it rests.
@@ -111,19 +118,6 @@ class Metal:
         """
         rest = [self._resting(i, shaft) for i in range(len(self.gauge.contacts))]
         return np.stack([position for position, _ in rest]), np.stack([place for _, place in rest])
-
-    def fold(self) -> float | None:
-        """Shaft angle, rad, about which a contact does not reach the metal: it folds there; None where it reaches all.
-
-        Seen at the `places`.
-        """
-        for contact in range(len(self.gauge.contacts)):
-            angle, _ = self._touching(self.places, contact)
-            step = np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi
-            worst = int(np.argmin(step))
-            if not step[worst] >= -SETTLED:
-                return float(angle[worst])
-        return None
 
     @cached_property
     def corners(self) -> Corners:

@@ -1,13 +1,13 @@
-"""A curve moved along its normals by a spline: frames by difference quotients, bounds held on every cell."""
+"""A curve moved outwards by a spline: frames by difference quotients, bounds held on every cell, no corners."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.measured import RECIPES
+from support.measured import MOTION, RECIPES, disc
 
 from camgeo.curve.curve import Curve
-from camgeo.curve.moved import Spline, moved
+from camgeo.curve.moved import AlongNormals, BySupport, Spline
 from camgeo.recipe.recipe import read
 from camgeo.synthesis.design import designed
 
@@ -27,9 +27,15 @@ def spline(spans=30, height=0.03):
     return Spline(np.stack([a, da, 0.5 * dda, 10 * r - 4 * s + 0.5 * q, -15 * r + 7 * s - q, 6 * r - 3 * s + 0.5 * q]))
 
 
-def contours(kind):
-    recipe = read(RECIPES[kind].encode(), "part.yaml")
-    return [made.contour for made in designed(recipe).surfaces]
+def moved(kind, by):
+    """Curves of a recipe, pitch curves or what a flat face touches, and each moved."""
+    return moved_of(RECIPES[kind], by)
+
+
+def moved_of(text, by):
+    exact = designed(read(text.encode(), "part.yaml")).exact
+    form = AlongNormals if exact.follower.contacts[0].touch.centred else BySupport
+    return [(surface.base, Curve.whole(form(surface.base.shape, by))) for surface in exact.surfaces]
 
 
 def test_the_spline_is_the_wave():
@@ -47,14 +53,16 @@ def test_the_spline_is_the_wave():
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_frames_are_those_of_the_moved_points(kind):
-    for contour in contours(kind):
-        curve, t, h = moved(contour, spline()), np.linspace(0.0137, TURN, 300), 1e-5
+    for contour, curve in moved(kind, spline()):
+        t, h = np.linspace(0.0137, TURN, 300), 1e-5
         breaks = np.append(curve.shape.breaks, TURN)
         t = t[np.abs(t[:, None] - breaks).min(axis=1) > 3.0 * h]
         frame = curve.sample(t)
         base = contour.sample(t)
         off = 0.03 * np.sin(3.0 * t)
-        assert frame.point == pytest.approx(base.point + off[:, None] * base.normal, abs=2e-7)
+        away = frame.point - base.point
+        assert np.sum(away * base.normal, axis=1) == pytest.approx(off, abs=2e-7)
+        assert np.abs(np.sum(away * base.tangent, axis=1)).max() < 0.1  # the slope, 0.09 mm/rad, where there is any
         after, before = curve.sample(t + h), curve.sample(t - h)
         rate = (after.point - before.point) / (2.0 * h)
         assert rate == pytest.approx(frame.speed[:, None] * frame.tangent, abs=1e-6)
@@ -69,8 +77,7 @@ def test_frames_are_those_of_the_moved_points(kind):
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_bounds_hold_on_every_cell(kind):
     random = np.random.default_rng(3)
-    for contour in contours(kind):
-        curve = moved(contour, spline())
+    for _, curve in moved(kind, spline()):
         cells = curve.cells
         for _ in range(20):
             t = cells.low + (cells.high - cells.low) * random.random(len(cells.low))
@@ -86,9 +93,27 @@ def test_bounds_hold_on_every_cell(kind):
 
 def test_a_knot_that_is_a_break_is_one_break():
     """A rise that ends on a knot, and knots that meet none; where there is no break the knots are all."""
-    contour = contours("roller on a stem")[0]
-    breaks = moved(contour, spline(30)).shape.breaks
-    assert len(breaks) == 30 + len(contour.shape.breaks) - sum(
+    ((contour, curve),) = moved("roller on a stem", spline(30))
+    assert len(curve.shape.breaks) == 30 + len(contour.shape.breaks) - sum(
         abs((b / TURN * 30) - round(b / TURN * 30)) < 1e-9 for b in contour.shape.breaks
     )
-    assert Curve.whole(moved(contour, spline(30)).shape).closed
+    assert curve.closed
+
+
+def test_a_jump_of_the_radius_of_curvature_leaves_no_corner():
+    """Arcs of 5 and 45 mm: along the normals the tangent would jump by 0.09 (1/5 - 1/45), 0.016 rad."""
+    ((base, curve),) = moved("yoke", spline())
+    ends = base.sample(base.shape.breaks, -1), base.sample(base.shape.breaks, 1)
+    assert (np.abs(ends[0].speed - ends[1].speed) > 39.0).all()
+    before, after = (curve.sample(base.shape.breaks, side) for side in (-1, 1))
+    assert before.tangent == pytest.approx(after.tangent, abs=1e-14)
+    assert before.point == pytest.approx(after.point, abs=1e-12)
+
+
+def test_a_pitch_curve_has_hardly_a_corner_where_its_curvature_jumps():
+    """At the ends of a harmonic stroke: by the slope times the distance and the jump of the curvature, 1e-7."""
+    law = disc("kind: roller, radius: 10", MOTION.replace("cycloidal", "harmonic"))
+    ((base, curve),) = moved_of(law, spline())
+    before, after = (curve.sample(base.shape.breaks, side) for side in (-1, 1))
+    assert (np.abs(before.turn - after.turn) > 0.1).any()
+    assert np.abs(before.tangent - after.tangent).max() < 1e-6

@@ -20,7 +20,10 @@ from camgeo.capabilities.made.reading import Probing
 from camgeo.capabilities.made.refusal import refused_at
 from camgeo.capabilities.made.runs import POINTS_PATH, places_of_run
 from camgeo.common.errors import CallError
-from camgeo.curve.moved import Spline, moved
+from camgeo.common.rounding import downward
+from camgeo.curve.curve import Curve
+from camgeo.curve.moved import AlongNormals, BySupport, Spline
+from camgeo.curve.parallel import Parallel
 from kin.made.corrected import Corrected
 from kin.made.smooth import POINTS_A_SPAN, Smooth, fit
 from kin.numeric.angles import degrees
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
     from kin.made.points import Deviations
 
 
+BELOW = 0.9  # of the greatest share that is within reach to first order
 LOOKS = 1440  # places round a contour at which curves are looked at
 
 
@@ -193,7 +197,10 @@ class CorrectedCam(ExactCam):
 
     def _corrected(self, surface: Surface) -> Surface:
         by = Spline(surface.side * self.deviations[surface.name].pieces)
-        return replace(surface, curve=moved(surface.curve, by))
+        if not self.follower.contacts[0].touch.centred:
+            return replace(surface, curve=Curve.whole(BySupport(surface.curve.shape, by)))
+        pitch = AlongNormals(surface.base.shape, by)
+        return replace(surface, curve=Curve.whole(Parallel(pitch, surface.side * surface.radius)))
 
     @cached_property
     def on_metal(self) -> dict[str, Corrected]:
@@ -224,13 +231,15 @@ def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, sca
     Raises CallError where there are sharp corners, or the follower would not reach into a hollow.
     """
     if not all(surface.curve.closed for surface in exact.surfaces):
-        raise CallError("a contour with sharp corners is not corrected: leave `correct` out")
+        raise CallError(
+            "a contour with sharp corners is not corrected: give `reuleaux.rounding`, or leave `correct` out"
+        )
     curves = {name: total.times(-share * scale) for name, total in totals(recipe, design).items()}
     cam = CorrectedCam(exact, curves)
     for name, follower in cam.on_metal.items():
-        fold = follower.metal.fold()
-        if fold is not None:
-            where = f"{degrees(fold):.6g} degrees" + (f" of the {name}" if name else "")
-            remedy = "smooth what was measured over more points, or give less"
-            raise CallError(f"the corrected contour has a hollow at {where} that the follower does not reach: {remedy}")
+        reach, where = follower.within_reach()
+        if not reach > 1.0:
+            place = f"{degrees(where):.6g} degrees" + (f" of the {name}" if name else "")
+            remedy = f"give {downward(BELOW * reach * share, 3)} or less, or smooth what was measured over more points"
+            raise CallError(f"the corrected contour turns back at {place}, where the follower does not reach: {remedy}")
     return cam

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from kin.numeric.arrays import Array
 
-SHARES = (0.2, 0.5, 0.8)  # of the way between two points, at which the spline is looked at
+SHARES = tuple(k / 10.0 for k in range(1, 10))  # of the way between two points, where the spline is looked at
+FEET = 2  # steps to the foot of such a place on the contour
 MARGIN = 0.95  # of the tolerance that an estimate may take: the judge has the last word
 CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], dtype=float)  # Bernstein's, by powers
 
@@ -48,21 +49,26 @@ class _Points(NamedTuple):
     contour: Curve
     sense: float
 
-    def at(self, shares: Array) -> tuple[Array, Array]:
-        """Points and unit normals, (n, 2) each, at shares of the way round (n,)."""
+    def at(self, shares: Array) -> tuple[Array, Array, Array]:
+        """Points, unit normals, and derivatives of the points by the share, (n, 2) each, at shares of the way (n,)."""
         (run,) = self.contour.runs
-        frame = self.contour.sample(run.low + (run.high - run.low) * shares)
+        width = run.high - run.low
+        frame = self.contour.sample(run.low + width * shares)
         mirror = np.array([1.0, self.sense])
-        return frame.point * mirror, frame.normal * mirror
+        return frame.point * mirror, frame.normal * mirror, (width * frame.speed)[:, None] * frame.tangent * mirror
 
     def error(self, count: int) -> float:
         """Greatest distance of the spline through so many points from the contour, mm: an estimate."""
         control, worst = closed_spline(self.at(np.arange(count) / count)[0]), 0.0
         for share in SHARES:
             weights = CUBIC @ share ** np.arange(4)
-            point, normal = self.at((np.arange(count) + share) / count)
+            places = (np.arange(count) + share) / count
+            point, normal, rate = self.at(places)
             between = np.tensordot(control, weights, axes=(1, 0))
-            # the point of equal share may stand aside along the curve: what counts is across it
+            for _ in range(FEET):  # the point of equal share stands aside along the curve: what counts is across it
+                aside = np.sum((between - point) * rate, axis=1) / np.sum(rate * rate, axis=1)
+                places = places + np.clip(aside, -0.5 / count, 0.5 / count)
+                point, normal, rate = self.at(places)
             worst = max(worst, float(np.abs(np.sum((between - point) * normal, axis=1)).max()))
         return worst
 
@@ -81,7 +87,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     points = _Points(contour, -1.0 if recipe.rotation == "ccw" else 1.0)
     with job.clock.stage("points"):
         count = _count(job, request, points, tolerance)
-        placed, _ = points.at(np.append(np.arange(count) / count, 0.0))
+        placed, *_ = points.at(np.append(np.arange(count) / count, 0.0))
         mark = "," if path.suffix == ".csv" else " "
         row = mark.join([f"%.{DIGITS}g", f"%.{DIGITS}g", "0\n"])
         path.write_bytes("".join(row % tuple(point) for point in (placed / recipe.mm + 0.0).tolist()).encode("ascii"))

@@ -26,6 +26,32 @@ def written(folder, text, runs, files, tolerance=0.001):
     return recipe
 
 
+def corrected_runs(folder, text, play, tolerance=0.0003):
+    """Greatest and root mean square of what the machine leaves of a part, run by run, mm."""
+    ((_, _, surface),) = surfaces(text)
+    greatest, mean = [], []
+    for run in range(4):
+        file = "{gcode: {correct: 0.8}}" if run else "gcode"
+        recipe = written(folder, text, [f"run{k}.csv" for k in range(run)], file, tolerance)
+        (program,) = camgeo.export(recipe, folder / "out").path.glob("*.ngc")
+        places = milled(program, 2.98, play=play, skew=4e-4)
+        off = surface.gauge.envelope.feet(places).excess
+        greatest.append(np.abs(off).max())
+        mean.append(np.sqrt(np.mean(off**2)))
+        (folder / f"run{run}.csv").write_text(table(scattered(places, 0.0005, run)), "utf-8")
+    return greatest, mean
+
+
+# needs: milling
+@pytest.mark.parametrize("sides", [3, pytest.param(5, marks=pytest.mark.slow)])
+def test_the_machine_is_corrected_to_its_noise_on_a_reuleaux_polygon(sides, tmp_path):
+    greatest, mean = corrected_runs(tmp_path, polygon(sides, 5.0) + MILL, 0.0)
+    assert greatest[0] > 0.025
+    assert mean[1:3] == pytest.approx([0.2 * mean[0], 0.04 * mean[0]], rel=0.2)
+    assert mean[3] < 0.0005
+    assert greatest[3] < 0.0015
+
+
 # needs: milling
 @pytest.mark.parametrize("play", [0.0, pytest.param(0.004, marks=pytest.mark.slow)])
 def test_a_machine_is_corrected_to_its_noise_in_three_runs(play, tmp_path):
@@ -33,17 +59,7 @@ def test_a_machine_is_corrected_to_its_noise_in_three_runs(play, tmp_path):
 
     Points scatter by 0.5 um. Play leaves kinks where a slide turns back, which no smooth curve takes off.
     """
-    ((_, _, surface),) = surfaces(ROLLER)
-    greatest, mean = [], []
-    for run in range(4):
-        file = "{gcode: {correct: 0.8}}" if run else "gcode"
-        recipe = written(tmp_path, ROLLER + MILL, [f"run{k}.csv" for k in range(run)], file, 0.0003)
-        (program,) = camgeo.export(recipe, tmp_path / "out").path.glob("*.ngc")
-        places = milled(program, 2.98, play=play, skew=4e-4)
-        off = surface.gauge.envelope.feet(places).excess
-        greatest.append(np.abs(off).max())
-        mean.append(np.sqrt(np.mean(off**2)))
-        (tmp_path / f"run{run}.csv").write_text(table(scattered(places, 0.0005, run)), "utf-8")
+    greatest, mean = corrected_runs(tmp_path, ROLLER + MILL, play)
     assert greatest[0] > 0.029
     assert mean[1:3] == pytest.approx([0.2 * mean[0], 0.04 * mean[0]], rel=0.15)
     assert mean[3] < 0.0005
@@ -86,6 +102,36 @@ def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     assert abs(correction["greatest"]) * (25.4 if report["units"] == "inch" else 1.0) > 0.010
     assert correction["motion"]["change"] != 0.0
     assert camgeo.verify(recipe, *(report.path / name for name in files)).ok
+
+
+def polygon(sides, rounding):
+    cam = f"kind: support, reuleaux: {{sides: {sides}, breadth: 50, rounding: {rounding}}}"
+    return f"part: {{bore: 8, thickness: 4}}\nverify: {{angles: 360}}\ncam: {{{cam}}}"
+
+
+FORMATS = (
+    "dxf: {as: arcs, correct: 1}",
+    "dxf: {as: spline, correct: 1}",
+    "dxf: {as: polyline, correct: 1}",
+    *(f"{name}: {{correct: 1}}" for name in ("svg", "stl", "ply", "3mf", "step", "gcode")),
+    *(f"csv: {{as: {form}, correct: 1}}" for form in ("points", "grinding", "lift, roller: 25")),
+)
+
+
+# needs: milling
+@pytest.mark.slow
+@pytest.mark.parametrize("rounding", [5.0, 1.0, 0.3])
+@pytest.mark.parametrize("sides", [3, 5])
+def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_path):
+    """Its radius of curvature jumps from the rounding to the breadth less that, and the contour has no corner."""
+    text = polygon(sides, rounding) + MILL.replace("cutter: 6", "wheel: 200, cutter: 6")
+    files = ", ".join(f"{{{form}}}" for form in FORMATS)
+    report = camgeo.export(
+        written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), files), tmp_path / "out"
+    )
+    assert [check for check in report["checks"] if not check["ok"]] == []
+    assert len(report["files"]) == len(FORMATS)
+    assert camgeo.verify(tmp_path / "part.yaml", *(report.path / file["path"] for file in report["files"])).ok
 
 
 @pytest.mark.parametrize("kind", ["roller on a stem", "flat"])
@@ -251,8 +297,20 @@ BAD = {
         CORRECT,
         "files[0].dxf.correct: a contour whose undercut is cut off is not corrected; give undercut: refuse",
     ),
+    "sharp corners": (
+        polygon(3, 0.0).replace(", rounding: 0.0", ""),
+        ["corners.csv"],
+        CORRECT,
+        "files[0]: a contour with sharp corners is not corrected: give `reuleaux.rounding`, or leave `correct` out",
+    ),
+    "a corner hardly rounded": (
+        polygon(3, 0.02),
+        ["corners.csv"],
+        CORRECT,
+        "files[0]: the corrected contour turns back at ",
+    ),
     "told only": (ROLLER, ["other.csv"], "dxf", "made.points[0]: other.csv: the points lie "),
-    "hollow": (ROLLER, ["dents.csv"], CORRECT, "the corrected contour has a hollow at "),
+    "hollow": (ROLLER, ["dents.csv"], CORRECT, "the corrected contour turns back at "),
 }
 
 
@@ -269,12 +327,17 @@ def test_bad_input_is_told_in_one_line(name, tmp_path, capsys):
     (tmp_path / "turned.csv").write_text(table(turned(places, 20.0)), "utf-8")
     peaks = points(part, surface, lambda t: 0.1 * np.sin(60.0 * t))
     (tmp_path / "dents.csv").write_text(table(peaks), "utf-8")
+    if "corners.csv" in runs:
+        runs = runs_of(tmp_path, text, wavy)
     recipe = written(tmp_path, text, runs, files)
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
     assert told in error
     assert len(error.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+    for share in re.findall(r"give ([0-9.]+) or less, or smooth", error):
+        recipe = written(tmp_path, text, runs, files.replace("0.8", share))
+        assert camgeo.export(recipe, tmp_path / "out").ok
 
 
 # needs: milling
