@@ -18,7 +18,7 @@ from camgeo.curve.curvature import least_radius
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.part.feature import NothingLeftError, narrowed
-from camgeo.part.features import FEATURES
+from camgeo.part.features import with_records
 from camgeo.registry.formats import alteration
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
@@ -102,7 +102,10 @@ def _part(part: Part, growth: float, scale: float) -> Part:
         bore=None if part.bore is None else narrowed(part.bore, growth, scale),
         outer=None if part.outer is None else scale * (part.outer + 2.0 * growth),
         thickness=None if part.thickness is None else scale * part.thickness,
-        features=_features(part, growth, scale),
+        features=tuple(
+            value if feature.grown is None else feature.grown(value, growth, scale)
+            for feature, value in with_records(part.features)
+        ),
     )
 
 
@@ -115,13 +118,6 @@ def _body(body: Body, part: Part, growth: float, scale: float) -> Body:
         outer=part.outer,
         features=part.features,
     )
-
-
-def _features(part: Part, growth: float, scale: float) -> tuple[object, ...]:
-    """Features with their metal grown, and scaled; those that are openings alone as they are."""
-    given = ((feature.grown, part.of(feature.kind)) for feature in FEATURES)
-    values = ((value if grown is None or value is None else grown(value, growth, scale)) for grown, value in given)
-    return tuple(value for value in values if value is not None)
 
 
 def _opening(opening: Opening, growth: float, scale: float) -> Opening:

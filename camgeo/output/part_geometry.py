@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.pieces import Polygon
-from camgeo.part.features import FEATURES
+from camgeo.part.features import with_records
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -37,8 +37,8 @@ def openings_of(body: Body) -> list[LayerOutline]:
 
 def remarks(body: Body, mm: float) -> list[str]:
     """What a drawing does not show: told in its comments, in drawing units of `mm` mm."""
-    given = ((feature.remark, body.of(feature.kind)) for feature in FEATURES)
-    found = [f"camgeo {remark(value, mm)}" for remark, value in given if remark is not None and value is not None]
+    given = with_records(body.features)
+    found = [f"camgeo {feature.remark(value, mm)}" for feature, value in given if feature.remark is not None]
     found += [
         f"camgeo {opening.name}: {opening.depth / mm:.9g} deep"
         for opening in body.openings

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 from camgeo.curve.curvature import least_radius
 from camgeo.part.chamfer import Chamfer
 from camgeo.part.feature import Site
-from camgeo.part.features import FEATURES
+from camgeo.part.features import with_records
 from camgeo.part.hub import Hub
 from camgeo.part.set_screw import SetScrew
 from camgeo.part.shapes import Opening, disc, polygonal
@@ -100,9 +100,8 @@ class Body:
 
     def mirrored(self) -> Body:
         """Mirror about the x axis."""
-        screw = self.screw
         features = tuple(
-            value if screw is None or value is not screw else replace(screw, at=-screw.at) for value in self.features
+            replace(value, at=-value.at) if isinstance(value, SetScrew) else value for value in self.features
         )
         return replace(self, openings=tuple(opening.mirrored() for opening in self.openings), features=features)
 
@@ -117,8 +116,8 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
     hub, chamfer = part.of(Hub), part.of(Chamfer)
     standing = [] if hub is None else [disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)]
     edge = 0.0 if chamfer is None else chamfer.height
-    for feature in FEATURES:
-        if feature.place is not None and (value := part.of(feature.kind)) is not None:
+    for feature, value in with_records(part.features):
+        if feature.place is not None:
             placed = feature.place(value, Site(looks, [*openings, *standing], part.wall, edge))
             openings += placed.openings
             checks += [] if placed.check is None else [placed.check]
@@ -134,7 +133,7 @@ def _bore(part: Part) -> list[Opening]:
         return []
     if part.sides:
         return [Opening("bore", "BORE", polygonal(part.sides, part.bore, part.bore_at))]
-    for feature in FEATURES:
-        if feature.bore is not None and (value := part.of(feature.kind)) is not None:
+    for feature, value in with_records(part.features):
+        if feature.bore is not None:
             return [Opening("bore", "BORE", feature.bore(value, 0.5 * part.bore))]
     return [disc("bore", "BORE", (0.0, 0.0), 0.5 * part.bore)]

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.part.feature import Callout, Feature, angle, check_below, count, optional
-from camgeo.part.pitch_circle import pitch_circle, round_hole
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
@@ -34,16 +33,17 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _openings(bolts: Bolts) -> list[Opening]:
-    step = 2.0 * math.pi
-    angles = (bolts.start + step * k / bolts.count for k in range(bolts.count))
-    return [round_hole(f"bolt hole {k + 1}", bolts.circle, bolts.hole, at) for k, at in enumerate(angles)]
+    from camgeo.part.shapes import hole_at
+
+    angles = (bolts.start + 2.0 * math.pi * k / bolts.count for k in range(bolts.count))
+    return [hole_at(f"bolt hole {k + 1}", bolts.circle, bolts.hole, at) for k, at in enumerate(angles)]
 
 
 def _callouts(bolts: Bolts, view: View) -> tuple[Callout, ...]:
     centre, radius = min(view.named("bolt hole"))
     text, note = f"{bolts.count} × Ø{view.number(bolts.hole)}", f"first at {view.degrees(bolts.start)}"
     hole = Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole)
-    return hole, pitch_circle(view, "bolt circle", bolts.circle, 0.93)
+    return hole, view.circle("bolt circle", bolts.circle, 0.93)
 
 
 FEATURE = Feature(

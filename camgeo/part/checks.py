@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,45 +13,32 @@ from camgeo.common.rounding import downward, upward
 from camgeo.curve.measures import farthest
 from camgeo.part.chamfer import chamfer_check
 from camgeo.part.feature import WALL
-from camgeo.part.features import FEATURES
-from camgeo.part.shapes import Opening, disc, strip
-from camgeo.part.walls import Gap, Looks, contour_gap, inside_gap, least_wall, outside_gap
+from camgeo.part.features import FEATURES, with_records
+from camgeo.part.walls import (
+    NOWHERE,
+    Gap,
+    Looks,
+    Pair,
+    Possible,
+    inside_gap,
+    known,
+    least_wall,
+    outside_gap,
+    to_surface,
+)
 from kin.judge.check import Check
-from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from camgeo.part.body import Body
+    from camgeo.part.shapes import Opening
 
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", **dict(feature.round for feature in FEATURES if feature.round is not None)}
 """Beginnings of the names of round openings, and the fields that state their diameters."""
 OPENING, OUTLINE = "opening", "outline"  # as edges: a surface, and the round outline about it
 ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
-
-
-class Pair(NamedTuple):
-    """Two edges and the wall between them."""
-
-    one: str
-    other: str
-    gap: Gap
-
-    def __str__(self) -> str:
-        """Tell the pair, the wall and the place."""
-        place = "" if self.gap.place == NOWHERE else f" at {place_words(*self.gap.place, digits=4)}"
-        return f"{self.one} and {self.other}: {length_words(self.gap.wall, '.4g')} {UNIT}{place}"
-
-
-class Possible(NamedTuple):
-    """Two edges whose wall is no less than `at_least`, and what finds it."""
-
-    at_least: float
-    pair: Callable[[], Pair]
-
-
-NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
 
 
 def bore_check(
@@ -142,40 +129,24 @@ def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between all pairs of edges; those of openings far apart are left out."""
     yield from _outline_walls(body, surfaces)
     for opening in body.openings:
-        yield _to_surface(opening, body, surfaces)
+        yield to_surface(opening, body, surfaces)
     for i, one in enumerate(body.openings):
         for two in body.openings[:i]:
             apart = math.dist(one.middle, two.middle)
             if apart <= 2.0 * (one.reach + two.reach):
                 yield Possible(apart - one.radius - two.radius, partial(_outside, two, one))
-    yield from _hub_walls(body, surfaces)
+    for feature, value in with_records(body.features):
+        if feature.walls is not None:
+            yield from feature.walls(value, body, surfaces)
     if body.pocket is not None and body.thickness is not None:
-        yield _sure("groove", "the lower face", Gap(body.thickness - body.pocket, NOWHERE))
+        yield known("groove", "the lower face", Gap(body.thickness - body.pocket, NOWHERE))
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
-            yield _sure(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
-
-
-def _to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possible:
-    """The wall between an opening or a hub and the surface in whose metal it lies, or its chamfer: the widest."""
-    edge, other = (0.0, "contour") if body.chamfer is None else (body.chamfer, "chamfer")
-
-    def pair() -> Pair:
-        gaps = [(contour_gap(looks, opening.chain), looks.name) for looks in surfaces]
-        gap, name = max(gaps, key=lambda row: row[0].wall)
-        return Pair(opening.name, f"{name} {other}".strip(), gap._replace(wall=gap.wall - edge))
-
-    at_least = max(looks.wall_at_least(opening.middle, opening.radius) for looks in surfaces)
-    return Possible(at_least - edge, pair)
+            yield known(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
 
 
 def _outside(opening: Opening, other: Opening) -> Pair:
     return Pair(opening.name, other.name, outside_gap(other.chain, opening.chain))
-
-
-def _sure(name: str, other: str, gap: Gap) -> Possible:
-    """A wall that is known."""
-    return Possible(gap.wall, lambda: Pair(name, other, gap))
 
 
 def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
@@ -187,30 +158,6 @@ def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
         far = farthest(looks.contour)
         x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
         gap = Gap(radius - far.value - far.slack, (x, y), far.at)
-        yield _sure(f"{looks.name} {OPENING}".strip(), OUTLINE, gap)
+        yield known(f"{looks.name} {OPENING}".strip(), OUTLINE, gap)
     for opening in body.openings:
-        yield _sure(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))
-
-
-def _hub_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
-    """Walls between the hub and all else; a hole may pass beside the hub or through it."""
-    hub = body.hub
-    if hub is None:
-        return
-    round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
-    yield _to_surface(round_hub, body, surfaces)
-    for opening in body.openings:
-        within = opening.name == "bore" or (opening.depth is None and hub.holds(opening.middle))
-        gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)
-        yield _sure(opening.name, "hub", gap)
-    height = body.screw_height
-    if body.screw is None or height is None or body.thickness is None:
-        return
-    beyond = -height if hub.side == "bottom" else height - body.thickness
-    radius = 0.5 * body.screw.diameter
-    along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, body.screw.diameter, body.screw.at))
-    for opening in body.openings:
-        if opening.name != "bore" and opening.depth is None and hub.holds(opening.middle):
-            yield _sure("set screw", opening.name, outside_gap(opening.chain, along.chain))
-    yield _sure("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
-    yield _sure("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
+        yield known(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.part.feature import Callout, Feature, angle, optional
-from camgeo.part.pitch_circle import pitch_circle, round_hole
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.part.feature import View
+    from camgeo.part.shapes import Opening
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,17 @@ class Dowel:
     at: float = 0.0
 
 
+def _openings(dowel: Dowel) -> list[Opening]:
+    from camgeo.part.shapes import hole_at
+
+    return [hole_at("dowel hole", dowel.circle, dowel.hole, dowel.at)]
+
+
 def _callouts(dowel: Dowel, view: View) -> tuple[Callout, ...]:
     ((centre, radius),) = view.named("dowel hole")
     note = f"dowel at {view.degrees(dowel.at)}"
     hole = Callout(f"Ø{view.number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole)
-    return hole, pitch_circle(view, "dowel circle", dowel.circle, 1.07)
+    return hole, view.circle("dowel circle", dowel.circle, 1.07)
 
 
 FEATURE = Feature(
@@ -39,7 +45,7 @@ FEATURE = Feature(
         angle("at", "direction of the hole"),
     ),
     holes=True,
-    openings=lambda dowel: [round_hole("dowel hole", dowel.circle, dowel.hole, dowel.at)],
+    openings=_openings,
     round=("dowel", "part.dowel.hole"),
     callouts=_callouts,
 )

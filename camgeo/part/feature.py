@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from camgeo.schema.fields import Field, Kind, Table
@@ -12,9 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from camgeo.fit.pieces import ArcSpline
+    from camgeo.part.body import Body
     from camgeo.part.part import Part
     from camgeo.part.shapes import Opening
-    from camgeo.part.walls import Looks
+    from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
     from kin.judge.check import Check
 
@@ -70,6 +72,11 @@ class View(NamedTuple):
     degrees: Callable[[float], str]
     direction: Callable[[float], float]
 
+    def circle(self, name: str, diameter: float, half_turns: float) -> Callout:
+        """Callout of a circle about the shaft, its leader at so many half turns."""
+        text = f"Ø{self.number(diameter)}"
+        return Callout(text, name, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
+
     def named(self, word: str) -> list[tuple[tuple[float, float], float]]:
         """Centre and radius of each round opening whose name begins with a word, mm."""
         return [
@@ -97,6 +104,7 @@ class Feature(Generic[T]):
     bore      outline of the bore that it shapes, of a radius in mm
     openings  what it cuts where the recipe says
     place     what it cuts where it finds a place, in the order of the features
+    walls     walls round it besides those of its openings, of a body with these surfaces
     round     beginning of the names of its round openings, and the field that states their diameter
     grown     its value with metal grown by `out` mm, then scaled
     remark    what a drawing does not show of it, in units of so many mm
@@ -116,6 +124,7 @@ class Feature(Generic[T]):
     bore: Callable[[T, float], ArcSpline] | None = None
     openings: Callable[[T], Sequence[Opening]] | None = None
     place: Callable[[T, Site], Placed] | None = None
+    walls: Callable[[T, Body, Sequence[Looks]], Iterable[Possible]] | None = None
     round: tuple[str, str] | None = None
     grown: Callable[[T, float, float], T] | None = None
     remark: Callable[[T, float], str] | None = None

@@ -6,8 +6,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from camgeo.part.feature import Feature
 
 NAMES = ("keyway", "flat", "hub", "set_screw", "bolts", "dowel", "slot", "chamfer", "mark", "lightening")
 """In the order of the keys, and in that in which they take their place."""
 FEATURES: tuple[Feature[Any], ...] = tuple(import_module(f"camgeo.part.{name}").FEATURE for name in NAMES)
+RECORDS = {feature.kind: feature for feature in FEATURES}
+
+
+def with_records(values: Iterable[object]) -> list[tuple[Feature[Any], Any]]:
+    """Each value of a feature with the record of that feature."""
+    return [(RECORDS[type(value)], value) for value in values]

@@ -11,6 +11,10 @@ from camgeo.schema.fields import Field, Kind, length
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from camgeo.part.body import Body
+    from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
 
 
@@ -37,6 +41,19 @@ def _check(part: Values, reader: Reader) -> None:
     reader.fault_at("part.hub.diameter", problem, size_words(diameter, reader), remedy)
 
 
+def _walls(hub: Hub, body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
+    """Walls between the hub and all else; a hole may pass beside the hub or through it."""
+    from camgeo.part.shapes import disc
+    from camgeo.part.walls import inside_gap, known, outside_gap, to_surface
+
+    circle = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
+    yield to_surface(circle, body, surfaces)
+    for opening in body.openings:
+        within = opening.name == "bore" or (opening.depth is None and hub.holds(opening.middle))
+        gap = (inside_gap if within else outside_gap)(opening.chain, circle.chain)
+        yield known(opening.name, "hub", gap)
+
+
 def _grown(hub: Hub, out: float, scale: float) -> Hub:
     return replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)
 
@@ -61,6 +78,7 @@ FEATURE = Feature(
     of_pair=False,
     walled=True,
     check=_check,
+    walls=_walls,
     grown=_grown,
     remark=lambda hub, mm: f"hub: diameter {hub.diameter / mm:.9g}, height {hub.height / mm:.9g}, side {hub.side}",
     unmilled="the stock comes with it, its disc as thick as part.thickness",

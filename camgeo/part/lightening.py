@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.part.feature import Callout, Feature, Placed, angle, count, optional
-from camgeo.part.pitch_circle import pitch_circle
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
@@ -68,7 +67,7 @@ def _callouts(lightening: Lightening, view: View) -> list[Callout]:
         note = f"first at {view.degrees(lightening.start)}"
         text = f"{len(holes)} × Ø{view.number(2.0 * radius)}"
         hole = Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius)
-        return [hole, pitch_circle(view, "hole circle", 2.0 * math.hypot(*centre), 1.13)]
+        return [hole, view.circle("hole circle", 2.0 * math.hypot(*centre), 1.13)]
     callouts = []
     for centre, radius in holes:
         text, note = f"Ø{view.number(2.0 * radius)}", f"at X{view.number(centre[0])} Y{view.number(centre[1])}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.common.rounding import NOISE, upward
 from camgeo.part import bore
-from camgeo.part.features import FEATURES
+from camgeo.part.features import FEATURES, with_records
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.numeric.records import dataclass, replace
 
@@ -57,35 +57,36 @@ class Part:
     @property
     def round_bore(self) -> bool:
         """Whether its bore is a circle."""
-        shaped = any(feature.bore is not None and self.of(feature.kind) is not None for feature in FEATURES)
+        shaped = any(feature.bore is not None for feature, _ in with_records(self.features))
         return self.bore is not None and not self.sides and not shaped
 
     @property
     def holed(self) -> bool:
         """Whether it has holes besides its bore."""
-        return any(feature.holes and self.of(feature.kind) is not None for feature in FEATURES)
+        return any(feature.holes for feature, _ in with_records(self.features))
 
     @property
     def walled(self) -> bool:
         """Whether there are edges with a wall between them besides the contour."""
-        features = any(feature.walled and self.of(feature.kind) is not None for feature in FEATURES)
-        return self.bore is not None or self.outer is not None or self.holed or features
+        edges = any(feature.holes or feature.walled for feature, _ in with_records(self.features))
+        return self.bore is not None or self.outer is not None or edges
 
     @property
     def openings(self) -> list[Opening]:
         """What is cut where the recipe says, besides the bore; what looks for its place is not among it."""
-        given = ((feature.openings, self.of(feature.kind)) for feature in FEATURES)
-        return [each for cut, value in given if cut is not None and value is not None for each in cut(value)]
+        given = with_records(self.features)
+        return [each for feature, value in given if feature.openings is not None for each in feature.openings(value)]
 
 
-OF_BLANKS = "diameter of the outline of a ring, with `track: internal`, or of a groove's blank"
 PART = mapping(
     "part",
     "the part round the contour",
     length("thickness", "thickness of the disc along the shaft; solids need it"),
     bore.FIELD,
     *(feature.field for feature in FEATURES),
-    length("outer", OF_BLANKS, default="none"),
+    length(
+        "outer", "diameter of the outline of a ring, with `track: internal`, or of a groove's blank", default="none"
+    ),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
     Field(
         "density",

@@ -11,7 +11,11 @@ from camgeo.schema.fields import length
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from camgeo.part.body import Body
     from camgeo.part.feature import View
+    from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
 
 
@@ -32,6 +36,24 @@ def _check(part: Values, reader: Reader) -> None:
     if "height" in hub:
         check_below(reader, path, screw.get("diameter"), hub["height"], "the hub's height")
         check_below(reader, "part.set_screw.height", screw.get("height"), hub["height"], "the hub's height")
+
+
+def _walls(screw: SetScrew, body: Body, _surfaces: Sequence[Looks]) -> Iterator[Possible]:
+    """Walls between the screw's hole, both faces of the hub, and the holes through the hub."""
+    from camgeo.part.shapes import Opening, strip
+    from camgeo.part.walls import NOWHERE, Gap, known, outside_gap
+
+    hub, height = body.hub, body.screw_height
+    if hub is None or height is None or body.thickness is None:
+        return
+    beyond = -height if hub.side == "bottom" else height - body.thickness
+    radius = 0.5 * screw.diameter
+    along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, screw.diameter, screw.at))
+    for opening in body.openings:
+        if opening.name != "bore" and opening.depth is None and hub.holds(opening.middle):
+            yield known("set screw", opening.name, outside_gap(opening.chain, along.chain))
+    yield known("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
+    yield known("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
 
 
 def _grown(screw: SetScrew, out: float, scale: float) -> SetScrew:
@@ -61,6 +83,7 @@ FEATURE = Feature(
     of_ring=False,
     of_pair=False,
     check=_check,
+    walls=_walls,
     grown=_grown,
     remark=lambda screw, mm: f"set screw: radial hole through the hub, diameter {screw.diameter / mm:.9g}",
     unmilled="it runs across the shaft",

@@ -74,6 +74,11 @@ def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) ->
     return Opening(name, layer, ArcSpline(points, np.ones(2), EXACT), (centre, radius))
 
 
+def hole_at(name: str, circle: float, diameter: float, angle: float) -> Opening:
+    """Round hole whose centre lies on a circle of a diameter about the shaft, mm, at an angle, rad."""
+    return disc(name, "HOLES", polar(0.5 * circle, angle), 0.5 * diameter)
+
+
 def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
     """Circle about the origin with a keyway of this width, its floor `depth` beyond the circle (DIN 6885 t2)."""
     half = 0.5 * width

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.part.feature import Callout, Feature, angle, check_below, optional
-from camgeo.part.pitch_circle import pitch_circle
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
@@ -40,7 +39,7 @@ def _openings(slot: Slot) -> list[Opening]:
 def _callouts(slot: Slot, view: View) -> tuple[Callout, ...]:
     text = f"slot {view.number(slot.width)} × {view.number(slot.length)}"
     size = Callout(text, f"across {view.degrees(slot.at)}", view.openings["slot"].middle, 0.0, 0.0)
-    return size, pitch_circle(view, "slot circle", slot.circle, 0.87)
+    return size, view.circle("slot circle", slot.circle, 0.87)
 
 
 FEATURE = Feature(

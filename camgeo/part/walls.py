@@ -13,9 +13,14 @@ import numpy as np
 from camgeo.curve.curvature import roots
 from kin.contour.arcs import dot
 from kin.contour.nearest import feet, signed_distance
+from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from camgeo.curve.curve import Curve, Frame
+    from camgeo.part.body import Body
+    from camgeo.part.shapes import Opening
     from kin.contour.arcs import Arcs
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
@@ -25,6 +30,8 @@ PART_TURN = 0.1  # rad: an arc is looked at about so often
 PARTS = 12  # and each of its pieces at least so often
 SETTLED = 1e-9  # of the interval: a least distance is off by the square of this
 
+NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
+
 
 class Gap(NamedTuple):
     """A wall in mm, negative where edges cross; its place on one edge, and the parameter there of a contour."""
@@ -32,6 +39,26 @@ class Gap(NamedTuple):
     wall: float
     place: tuple[float, float]
     parameter: float | None = None
+
+
+class Pair(NamedTuple):
+    """Two edges and the wall between them."""
+
+    one: str
+    other: str
+    gap: Gap
+
+    def __str__(self) -> str:
+        """Tell the pair, the wall and the place."""
+        place = "" if self.gap.place == NOWHERE else f" at {place_words(*self.gap.place, digits=4)}"
+        return f"{self.one} and {self.other}: {length_words(self.gap.wall, '.4g')} {UNIT}{place}"
+
+
+class Possible(NamedTuple):
+    """Two edges whose wall is no less than `at_least`, and what finds it."""
+
+    at_least: float
+    pair: Callable[[], Pair]
 
 
 class Looks(NamedTuple):
@@ -124,6 +151,24 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
     if wall > 0.0 and winds(first.point - chain.start[0]) is (side < 0):
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
+
+
+def to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possible:
+    """The wall between an opening or a hub and the surface in whose metal it lies, or its chamfer: the widest."""
+    edge, other = (0.0, "contour") if body.chamfer is None else (body.chamfer, "chamfer")
+
+    def pair() -> Pair:
+        gaps = [(contour_gap(looks, opening.chain), looks.name) for looks in surfaces]
+        gap, name = max(gaps, key=lambda row: row[0].wall)
+        return Pair(opening.name, f"{name} {other}".strip(), gap._replace(wall=gap.wall - edge))
+
+    at_least = max(looks.wall_at_least(opening.middle, opening.radius) for looks in surfaces)
+    return Possible(at_least - edge, pair)
+
+
+def known(name: str, other: str, gap: Gap) -> Possible:
+    """A wall that is known."""
+    return Possible(gap.wall, lambda: Pair(name, other, gap))
 
 
 def outside_gap(chain: Arcs, other: Arcs) -> Gap:

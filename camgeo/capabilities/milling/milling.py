@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.machining.reach import milled_contours, reach_checks
 from camgeo.part.as_intent import holes_of
-from camgeo.part.features import FEATURES
+from camgeo.part.features import with_records
 from camgeo.part.hub import Hub
 from camgeo.synthesis.intent import intended
 
@@ -55,7 +55,7 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
         found.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
     elif pocket_of(design) is not None:
         found.append(("outline", "the stock comes with it"))
-    given = (feature for feature in FEATURES if part.of(feature.kind) is not None)
+    given = (feature for feature, _ in with_records(part.features))
     return [*found, *((feature.name.replace("_", " "), feature.unmilled) for feature in given if feature.unmilled)]
 
 

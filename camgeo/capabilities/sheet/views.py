@@ -30,7 +30,7 @@ from camgeo.capabilities.sheet.marks import (
 )
 from camgeo.capabilities.sheet.options import SCALES
 from camgeo.capabilities.sheet.part import hatching, number, sections
-from camgeo.part.features import FEATURES
+from camgeo.part.features import with_records
 from camgeo.part.flat import Flat
 from camgeo.part.hub import Hub
 from camgeo.part.keyway import Keyway
@@ -162,9 +162,8 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
         column.append(
             Callout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
         )
-    view = drawn.view
-    given = ((feature.callouts, part.of(feature.kind)) for feature in FEATURES)
-    sizes = (callouts(value, view) for callouts, value in given if callouts is not None and value is not None)
+    given = ((feature.callouts, value) for feature, value in with_records(part.features))
+    sizes = [callouts(value, drawn.view) for callouts, value in given if callouts is not None]
     column += [Callout(*size) for each in sizes for size in each]
     thick = body.thickness
     plain = part.bore is not None and not part.sides
