@@ -23,8 +23,6 @@ from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet, cos
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
-from kin.numeric.monotone import between, cells
-from kin.numeric.monotone import extremes as extremes_of
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -293,20 +291,12 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
 
     Looked for at relative angles (n,) and where the margin of a loop is least. No margin changes faster than its point.
     """
-    chain, about = mechanism.chain, mechanism.about
-
-    def lifts(theta: Array) -> tuple[Array, Array]:
+    chain, about, mobile = mechanism.chain, mechanism.about, mechanism.mobility()
+    if mobile.binds:
+        return True
+    for loop, nearest in enumerate(mobile.nearest):
+        theta = np.concatenate([nodes, nearest])
         s, s1 = mechanism.lift.derivatives(np.concatenate([theta, theta + 0.5 * np.pi]), 0).reshape(2, -1)
-        return s, s1
-
-    for loop in range(mechanism.outputs):
-
-        def margin(theta: Array, loop: int = loop) -> Array:
-            return chain.margins(loop, *lifts(theta), about)
-
-        of = cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)
-        theta = np.concatenate([nodes, [extremes_of(of, row)[0][1] for row in range(len(of.coefficients))]])
-        s, s1 = lifts(theta)
         moved = np.full_like(theta, 2.0)
         if loop > 0:
             moved = np.zeros_like(theta)
@@ -314,7 +304,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
                 s_jet, s1_jet = (Jet(np.stack([f, np.full_like(f, rate)])) for f, rate in ((s, off), (s1, off1)))
                 x, y = chain.hung(chain.solve(s_jet, s1_jet, about[: loop - 1]), loop - 1)
                 moved += np.hypot(x.c[1], y.c[1])
-        if (margin(theta) <= tolerance * moved).any():
+        if (chain.margins(loop, s, s1, about) <= tolerance * moved).any():
             return True
     return False
 

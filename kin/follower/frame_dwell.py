@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.longest_window import Dwell, dwells
+from kin.numeric.longest_window import Dwell, doubled, dwells
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -146,31 +146,12 @@ def _spans(output: Output, band: float) -> list[_Span]:
 
 def _runs(low: Array, high: Array, band: float) -> list[int]:
     """Of each block in a ring (m,) the number of blocks from it on, at most all, whose values stay within the band."""
-    count = len(low)
-    lows, highs = (np.concatenate([v, v]).tolist() for v in (low, high))
-    runs, end = [], 0
-    falls: list[
-        int
-    ] = []  # blocks ahead whose greatest value is greater than all that follow it, and likewise the least
-    rises: list[int] = []
-    for i in range(count):
-        if end <= i:
-            end, falls, rises = i, [], []
-        while falls and falls[0] < i:
-            falls.pop(0)
-        while rises and rises[0] < i:
-            rises.pop(0)
-        while end < i + count:
-            most = max(highs[end], highs[falls[0]] if falls else -np.inf)
-            least = min(lows[end], lows[rises[0]] if rises else np.inf)
-            if most - least > band:
-                break
-            while falls and highs[falls[-1]] <= highs[end]:
-                falls.pop()
-            while rises and lows[rises[-1]] >= lows[end]:
-                rises.pop()
-            falls.append(end)
-            rises.append(end)
-            end += 1
-        runs.append(end - i)
-    return runs
+    count, begin = len(low), np.arange(len(low))
+    lows, highs = doubled(np.tile(low, 2), np.minimum), doubled(np.tile(high, 2), np.maximum)
+    runs, least, most = np.zeros(count, dtype=np.intp), np.full(count, np.inf), np.full(count, -np.inf)
+    for level in range(count.bit_length() - 1, -1, -1):
+        further = np.minimum(least, lows[level][begin + runs]), np.maximum(most, highs[level][begin + runs])
+        longer = (runs + 2**level <= count) & (further[1] - further[0] <= band)
+        least, most = np.where(longer, further[0], least), np.where(longer, further[1], most)
+        runs += longer * 2**level
+    return runs.tolist()

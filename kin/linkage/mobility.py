@@ -44,6 +44,7 @@ class Mobility:
                 rate is lost in rounding
     rate_at     where in [0, 2 pi)
     reverses    spans in which the shaft would turn back, as far as the linkage can be closed
+    nearest     of each loop, as far as one that binds, where it is nearest to each of its limits
     """
 
     margin: float
@@ -53,6 +54,7 @@ class Mobility:
     least_rate: float
     rate_at: float
     reverses: tuple[Span, ...]
+    nearest: tuple[tuple[float, ...], ...]
 
     @property
     def turns(self) -> bool:
@@ -75,10 +77,12 @@ def mobility(
     """
     found: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()
+    nearest: tuple[tuple[float, ...], ...] = ()
     for loop, margin in enumerate(margins):
         of = _all_round(margin, breaks, _RESOLUTION * breadth)
-        for limit, noise in enumerate(of.noise):
-            (least, at), _ = extremes(of, limit)
+        places = [extremes(of, limit)[0] for limit in range(len(of.noise))]
+        nearest += (tuple(at for _, at in places),)
+        for limit, (noise, (least, at)) in enumerate(zip(of.noise, places, strict=True)):
             if least < found[0]:
                 found = (least, at % TURN, loop)
             rounding = float(noise.min())
@@ -90,13 +94,13 @@ def mobility(
     if binds and found[2] == 0:
         free = _others(binds)
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
-        return Mobility(*found, binds, math.nan, math.nan, reverses)
+        return Mobility(*found, binds, math.nan, math.nan, reverses, nearest)
     try:
         of = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
     except RoughError as error:
-        return Mobility(*found, binds, math.nan, error.at % TURN, ())
+        return Mobility(*found, binds, math.nan, error.at % TURN, (), nearest)
     (least, at), _ = extremes(of)
-    return Mobility(*found, binds, least, at % TURN, _below(pieces(of), 0.0) if least <= 0.0 else ())
+    return Mobility(*found, binds, least, at % TURN, _below(pieces(of), 0.0) if least <= 0.0 else (), nearest)
 
 
 def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> Cells:

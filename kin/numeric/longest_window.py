@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     Flags = NDArray[np.bool_]
 
-__all__ = ["Dwell", "dwells"]
+__all__ = ["Dwell", "doubled", "dwells"]
 
 # Output that differs by less than this part of the band is resolved no further; ends are then found from f itself.
 _RESOLUTION = 1e-9
@@ -111,6 +111,15 @@ def _demand_continuous(pieces: Pieces, band: float) -> None:
         raise ValueError(f"the output jumps by {jump[worst]:.6g} at {pieces.x[worst + 1]:.9g}")
 
 
+def doubled(value: Array, extreme: np.ufunc) -> list[Array]:
+    """Extremes over the runs of 1, 2, 4, ... values (n,), as many as fit: that from the k-th on is the k-th."""
+    runs = [value]
+    while 2 ** len(runs) <= len(value):
+        half = 2 ** (len(runs) - 1)
+        runs.append(extreme(runs[-1][:-half], runs[-1][half:]))
+    return runs
+
+
 class _Windows(NamedTuple):
     """n windows [a, b], each (n,); the arrays are (n,).
 
@@ -151,12 +160,7 @@ class _Search:
     def through(pieces: Pieces, band: float, period: float) -> _Search:
         x = np.concatenate([pieces.x[:-1] - period, pieces.x[:-1], pieces.x[:-1] + period, [pieces.x[-1] + period]])
         value = np.concatenate([np.tile(pieces.values[:-1], 3), pieces.values[:1]])
-        lowest, highest = [value], [value]
-        while 2 ** len(lowest) <= len(value):
-            half = 2 ** (len(lowest) - 1)
-            lowest.append(np.minimum(lowest[-1][:-half], lowest[-1][half:]))
-            highest.append(np.maximum(highest[-1][:-half], highest[-1][half:]))
-        return _Search(pieces, band, period, x, value, lowest, highest)
+        return _Search(pieces, band, period, x, value, doubled(value, np.minimum), doubled(value, np.maximum))
 
     def local(self, piece: Indices) -> tuple[Indices, Array]:
         """Each piece (k,) as one of the period's own, and how far it is from there."""
