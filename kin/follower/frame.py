@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.contour.contour import apart
-from kin.follower.frame_contact import CENTRED, RESOLUTION, WAYS, FrameError, Resting, driven, resolution
+from kin.follower.frame_contact import CENTRED, RESOLUTION, WAYS, FrameError, driven, laid, resolution
 from kin.follower.frame_dwell import Output, longest_dwell
 from kin.follower.motion_error import MotionError, Play, motion_error, with_steps
 from kin.follower.support import bearing_of
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
+    from kin.follower.frame_contact import Resting
     from kin.follower.support import Bearing
     from kin.law.contacts import Unit
     from kin.law.frame_swing import FrameSwing
@@ -205,9 +206,8 @@ def _judged(
 ) -> LinkageVerdict:
     mechanism = intended.mechanism
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
-    ways = [Resting.of(mechanism, bearing, rest) for rest in WAYS]
-    centred = Resting.of(mechanism, bearing, CENTRED)
-    every = [*ways, centred]
+    every = laid(mechanism, bearing, (*WAYS, CENTRED))
+    *ways, centred = every
     nodes = distinct(np.concatenate([way.nodes for way in every]))
     rows = intended.rows(nodes)
     worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]

@@ -9,6 +9,7 @@ The intended lift is not used here, but for the zero of the shaft angle, which a
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,8 @@ from kin.numeric.quintics import Quintics, coefficients, polynomial
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from numpy.typing import NDArray
 
     from kin.follower.support import Bearing
@@ -75,44 +78,6 @@ class Resting:
     low: Array
     high: Array
 
-    @staticmethod
-    def of(mechanism: Mechanism, bearing: Bearing, rest: Rest) -> Resting:
-        """Lay the frame on the contour all round. FrameError where the mechanism binds or the shaft would turn back.
-
-        UnsettledError where rounding hides the motion.
-        """
-        nodes = _nodes(bearing, rest, mechanism.breaks)
-        stretch = np.stack([bearing.find(0.5 * (nodes[:-1] + nodes[1:]) + k * QUARTER) for k in range(4)])
-        begin, end = nodes[:-1], nodes[1:]
-        low, high = (_rows(mechanism, bearing, rest, theta, stretch) for theta in (begin, end))
-        whole = Resting(rest, nodes, low, high)
-        least, at = whole.least_rate
-        if least <= 0.0:
-            raise FrameError(
-                f"{rest.name} the frame turns the shaft back at a relative angle of {degrees(at):.6g} degrees: "
-                f"1 - theta_3' is {least:.3g}"
-            )
-        allowed = np.array([[RESOLUTION_ANGLE], [resolution(mechanism, low[1, 0])]])
-        done: list[tuple[Array, Array, Array]] = []
-        for _ in range(HALVINGS):
-            middle = 0.5 * (begin + end)
-            rows = _rows(mechanism, bearing, rest, middle, stretch)
-            open_ = _missed(end - begin, low, rows, high, allowed)
-            if not (open_.any() or done):
-                return whole
-            done.append((begin[~open_], low[..., ~open_], high[..., ~open_]))
-            if not open_.any():
-                break
-            begin, middle, end, stretch = begin[open_], middle[open_], end[open_], np.tile(stretch[:, open_], 2)
-            low, rows, high = low[..., open_], rows[..., open_], high[..., open_]
-            begin, end = np.concatenate([begin, middle]), np.concatenate([middle, end])
-            low, high = np.concatenate([low, rows], axis=2), np.concatenate([rows, high], axis=2)
-        else:
-            raise UnsettledError("rounding makes the motion rougher than its error may be", float(begin[0]))
-        begin, low, high = (np.concatenate(parts, axis=-1) for parts in zip(*done, strict=True))
-        order = np.argsort(begin)
-        return Resting(rest, np.append(begin[order], TURN), low[..., order], high[..., order])
-
     @cached_property
     def shaft(self) -> Array:
         """Shaft angles at the nodes (m + 1,), rising."""
@@ -154,6 +119,64 @@ class Resting:
         return np.stack([function.within(interval, theta, 2) for function in (self.turned, self.over_relative)])
 
 
+def laid(mechanism: Mechanism, bearing: Bearing, rests: Sequence[Rest]) -> list[Resting]:
+    """Lay the frame on the contour all round, in each of the ways. FrameError where the mechanism binds or turns back.
+
+    UnsettledError where rounding hides the motion. All ways go through the linkage together.
+    """
+    shares = np.transpose([(rest.first, rest.second) for rest in rests])[:, None]
+
+    def rows(theta: Array, way: Indices, stretch: Indices) -> Array:
+        """Shaft angle and output (2, 3, n) at theta (n,) in ways (n,), with that which bears on each face (4, n)."""
+        faces = np.stack([bearing.derivatives(theta + k * QUARTER, stretch[k]) for k in range(4)])
+        faces[2:] *= -1.0
+        faces[2:, 0] += mechanism.breadth
+        s, s1 = shares[..., way] * faces[:2] + (1.0 - shares[..., way]) * faces[2:]
+        return driven(mechanism, theta, s, s1, lambda k: f"{rests[int(way[k])].name} ")
+
+    nodes = [_nodes(bearing, rest, mechanism.breaks) for rest in rests]
+    begin, end = (np.concatenate([places[part] for places in nodes]) for part in (slice(-1), slice(1, None)))
+    way = np.repeat(np.arange(len(rests)), [len(places) - 1 for places in nodes])
+    stretch = np.stack([bearing.find(0.5 * (begin + end) + k * QUARTER) for k in range(4)])
+    low, high = np.split(rows(np.concatenate([begin, end]), np.tile(way, 2), np.tile(stretch, 2)), 2, axis=2)
+    allowed = np.empty(len(rests))
+    for k, whole in enumerate(_parted(rests, way, begin, low, high)):
+        least, at = whole.least_rate
+        if least <= 0.0:
+            raise FrameError(
+                f"{whole.rest.name} the frame turns the shaft back at a relative angle of {degrees(at):.6g} degrees: "
+                f"1 - theta_3' is {least:.3g}"
+            )
+        allowed[k] = resolution(mechanism, whole.low[1, 0])
+    done: list[tuple[Indices, Array, Array, Array]] = []
+    for _ in range(HALVINGS):
+        middle = 0.5 * (begin + end)
+        between = rows(middle, way, stretch)
+        open_ = _missed(end - begin, low, between, high, allowed[way])
+        done.append((way[~open_], begin[~open_], low[..., ~open_], high[..., ~open_]))
+        if not open_.any():
+            break
+        begin, middle, end, stretch = begin[open_], middle[open_], end[open_], np.tile(stretch[:, open_], 2)
+        low, between, high, way = low[..., open_], between[..., open_], high[..., open_], np.tile(way[open_], 2)
+        begin, end = np.concatenate([begin, middle]), np.concatenate([middle, end])
+        low, high = np.concatenate([low, between], axis=2), np.concatenate([between, high], axis=2)
+    else:
+        raise UnsettledError("rounding makes the motion rougher than its error may be", float(begin[0]))
+    way, begin, low, high = (np.concatenate(parts, axis=-1) for parts in zip(*done, strict=True))
+    order = np.lexsort((begin, way))
+    return _parted(rests, way[order], begin[order], low[..., order], high[..., order])
+
+
+def _parted(rests: Sequence[Rest], way: Indices, begin: Array, low: Array, high: Array) -> list[Resting]:
+    """Give each way its intervals of all, (n,)."""
+    ends = np.searchsorted(way, np.arange(len(rests) + 1))
+    parts = [slice(*pair) for pair in pairwise(ends.tolist())]
+    return [
+        Resting(rest, np.append(begin[part], TURN), low[..., part], high[..., part])
+        for rest, part in zip(rests, parts, strict=True)
+    ]
+
+
 def _by_shaft(rows: Array) -> Array:
     """Output and two derivatives by the shaft angle (3, n), from both by the relative angle (2, 3, n)."""
     phi, output = rows
@@ -164,7 +187,7 @@ def _by_shaft(rows: Array) -> Array:
 def _missed(width: Array, low: Array, middle: Array, high: Array, allowed: Array) -> Flags:
     """Whether quintics between the ends of intervals (n,) miss what is in the middle, rows (2, 3, n), by too much.
 
-    `allowed` (2, 1) is what they may miss shaft angle and output by, beside the rounding of the angle itself.
+    `allowed` (n,) is what they may miss the output by, beside the rounding of the angle itself.
     """
     turned, step, off = high[0, 0] - low[0, 0], middle[0, 0] - low[0, 0], np.zeros((3, len(width)))
     spans = ((width, 0.5 * width, low[0], high[0]), (width, 0.5 * width, low[1], high[1]))
@@ -172,7 +195,8 @@ def _missed(width: Array, low: Array, middle: Array, high: Array, allowed: Array
     for row, (wide, share, first, last) in enumerate((*spans, (turned, step, *ends))):
         off[row] = polynomial(coefficients(first, last, wide), wide, share, 0)[0]
     off = np.abs(off - middle[[0, 1, 1], 0])
-    missed: Flags = np.any(off > allowed[[0, 1, 1]] + ROUNDING * TURN * np.abs(middle[[0, 1, 1], 1]), axis=0)
+    allowed = np.stack([np.full_like(allowed, RESOLUTION_ANGLE), allowed, allowed])
+    missed: Flags = np.any(off > allowed + ROUNDING * TURN * np.abs(middle[[0, 1, 1], 1]), axis=0)
     return missed
 
 
@@ -182,41 +206,26 @@ def resolution(mechanism: Mechanism, output: Array) -> float:
     return max(least, ROUNDING * float(np.abs(output).max()))
 
 
-def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, rest: Rest | None = None) -> Array:
+def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, lies: Callable[[int], str] = lambda _: "") -> Array:
     """Shaft angle and output of a mechanism, with derivatives by the relative angle theta (n,): (2, order + 1, n).
 
     `s` and `s1` (order + 1, n) are the distances of faces 1 and 2 from the shaft, with their derivatives by theta. The
-    shaft angle's zero is that of the intended mechanism. FrameError, which names `rest`, where it binds.
+    shaft angle's zero is that of the intended mechanism. FrameError where it binds, which begins with how the frame
+    `lies` at the place of that index.
     """
     scale = 1.0 / np.cumprod(np.maximum(np.arange(len(s)), 1.0))[:, None]
     try:
         frame, output = mechanism.driven(Jet(s * scale), Jet(s1 * scale))
     except BindingError as error:
-        at = degrees(float(theta[int(error.indices[0])]))
-        lies = f"{rest.name} " if rest else ""
-        message = f"{lies}the mechanism binds at a relative angle of {at:.6g} degrees: {error.message}"
+        first = int(error.indices[0])
+        at = degrees(float(theta[first]))
+        message = f"{lies(first)}the mechanism binds at a relative angle of {at:.6g} degrees: {error.message}"
         raise FrameError(message) from error
     shaft = -frame.derivatives()
     shaft[0] += theta + mechanism.start
     if len(shaft) > 1:
         shaft[1] += 1.0
     return np.stack([shaft, output.derivatives()])
-
-
-def _rows(mechanism: Mechanism, bearing: Bearing, rest: Rest, theta: Array, stretch: Indices) -> Array:
-    """Shaft angle and output (2, 3, n) at theta (n,), with that which bears on each face (4, n)."""
-
-    def reach(face: int) -> Array:
-        return bearing.derivatives(theta + face * QUARTER, stretch[face])
-
-    def placed(share: float, near: int, far: int) -> Array:
-        if share == 1.0:
-            return reach(near)
-        opposite = -reach(far)
-        opposite[0] += mechanism.breadth
-        return opposite if share == 0.0 else share * reach(near) + (1.0 - share) * opposite
-
-    return driven(mechanism, theta, placed(rest.first, 0, 2), placed(rest.second, 1, 3), rest)
 
 
 def _nodes(bearing: Bearing, rest: Rest, breaks: Array) -> Array:

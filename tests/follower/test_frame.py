@@ -9,7 +9,8 @@ from support.square_frame import CENTRED, RESTS, Bars, Bench
 
 from kin.contour.contour import Contour
 from kin.follower.frame import FrameError, _output, implied_limit, judge_frame
-from kin.follower.frame_contact import WAYS, Rest, Resting
+from kin.follower.frame_contact import WAYS, Rest
+from kin.follower.frame_contact import laid as all_laid
 from kin.follower.frame_dwell import Output, longest_dwell
 from kin.follower.support import bearing_of
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
@@ -70,7 +71,7 @@ def pair(request):
 
 
 def laid(mechanism, vertices, rest=WAYS[0]):
-    return Resting.of(mechanism, bearing_of(Contour.from_vertices(vertices)), rest)
+    return all_laid(mechanism, bearing_of(Contour.from_vertices(vertices)), [rest])[0]
 
 
 # --- against plain geometry -------------------------------------------------------------------------------------------
@@ -188,7 +189,7 @@ def test_exact_arcs_give_no_error():
     bench = Bench(Bars("four-bar", 90.0, 70.0, 105.0), BREADTH, lambda x: float(lift.derivatives(x, 0)[0, 0]))
     fine = shifted.sample(2000)
     expected = bench.measured(fine, SHAFT, RESTS["1 and 2"])
-    way = Resting.of(mechanism, bearing_of(shifted), WAYS[0])
+    (way,) = all_laid(mechanism, bearing_of(shifted), WAYS[:1])
     np.testing.assert_allclose(way.over_shaft(SHAFT, 0)[0], expected, atol=2e-8)
     meant = mechanism.at(mechanism.relative(SHAFT), 0).output[0]
     error = judge_frame(shifted, mechanism, SHAFT, 1e-3).error
