@@ -307,7 +307,7 @@ COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which not
 def _draw(
     job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
 ) -> Sequence[Check]:
-    recipe = job.recipe.told_for(request)
+    recipe = job.recipe.in_units_of(request)
     checks, tool = _tool_path(job, request)
     with job.clock.stage("write dxf"):
         write_dxf(

@@ -200,7 +200,7 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
     from camgeo.output.part_geometry import contours_of, rim_of, solid_of
 
-    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)
     with job.refusals(request):
         need_kernel()
         form = request.as_ or "arcs"

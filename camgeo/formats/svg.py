@@ -154,7 +154,7 @@ def _numbers(values: Array) -> str:
 def _draw(
     job: Job, request: FileRequest, path: Path, outlines: list[LayerOutline], remarks: list[str]
 ) -> Sequence[Check]:
-    recipe = job.recipe.told_for(request)
+    recipe = job.recipe.in_units_of(request)
     with job.clock.stage("write svg"):
         write_svg(path, outlines, remarks=remarks, mm=recipe.mm, name=recipe.name, about=recipe.about)
     return ()

@@ -17,7 +17,7 @@ from camgeo.measures.figures import ORDERS
 from camgeo.measures.limits import limit_checks
 from camgeo.motions.segments import LEAST, REST
 from camgeo.recipe.figures import FIGURES, ON_RETURN, ON_RISE
-from camgeo.recipe.recipe import Angle, Settled
+from camgeo.recipe.recipe import Angle, ChosenAngles
 from camgeo.registry import registry
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.checks import motion_checks
@@ -97,7 +97,7 @@ def with_least_angle(recipe: Recipe) -> Recipe:
         middle = (low + high) // 2
         low, high = (low, middle) if search.holds(middle) else (middle, high)
     motion, dwell = angles.with_least(high / STEPS)
-    choice = Settled(
+    choice = ChosenAngles(
         angles.motion.segments[least].kind,
         Angle(f"{path}[{least}].over", high / STEPS),
         Angle(f"{path}[{rest}].dwell", dwell),

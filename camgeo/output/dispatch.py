@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.output.job import Made
-from camgeo.recipe.export import name_of_disc
+from camgeo.recipe.export import disc_filename
 from camgeo.registry.formats import FORMATS, variant
 from kin.judge.check import about
 
@@ -34,7 +34,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
         return Made(())
     if len(job.design.discs) == 1 or not request.format.by_disc:
         return _make_file(job, request, path)
-    paths = [path.with_name(name_of_disc(path.name, rank)) for rank in range(len(job.design.discs))]
+    paths = [path.with_name(disc_filename(path.name, rank)) for rank in range(len(job.design.discs))]
     return job.combine_discs(
         request,
         [

@@ -39,7 +39,7 @@ def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> Made
     with job.refusals(request):
         contours = job.written_outlines(request.as_ or "polyline", job.tolerance(request), shift)
         outlines = [*contours_of(job.design, contours), *rim_of(job.body), *openings_of(job.body)]
-        remarks = part_geometry.remarks(job.body, job.recipe.told_for(request).mm)
+        remarks = part_geometry.remarks(job.body, job.recipe.in_units_of(request).mm)
         checks = draw(job, request, path, outlines, remarks)
     bound = reduce(Bound.wider, (outline.bound.widened(shift(outline)) for outline in contours))
     judged = job.judge(request, path, bound, sum(outline.count for outline in contours))

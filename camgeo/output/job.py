@@ -86,7 +86,7 @@ class Job:
             pairs = zip(self.fits, compensated.design.contours, strict=True)
             fits = tuple(Fits(contour, self.clock, compensation.scale * fit.unsure) for fit, (_, contour) in pairs)
             self.variants[compensation] = Job(compensated.recipe, compensated.design, fits)
-        job, file_recipe = self.variants[compensation], self.recipe.told_for(request)
+        job, file_recipe = self.variants[compensation], self.recipe.in_units_of(request)
         if request.units is not None:  # a file's title tells lengths as its numbers do
             job = replace(
                 job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {compensation.words(file_recipe.mm)}")
@@ -178,7 +178,7 @@ class Job:
         from kin.judge.verify import verify
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        file_recipe = recipe.told_for(request)
+        file_recipe = recipe.in_units_of(request)
         intent = intent_of_file(file_recipe, self.design, request.kind)
         units = None if request.format.units else file_recipe.mm
         with self.clock.stage(f"judge {request.kind}"):
@@ -191,7 +191,7 @@ class Job:
         from kin.judge.together import DiscFile, verify_set
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        intent = shaft_of_file(recipe.told_for(request), self.design, request.kind)
+        intent = shaft_of_file(recipe.in_units_of(request), self.design, request.kind)
         with self.clock.stage(f"judge {request.kind}"):
             (verdict,) = verify_set([DiscFile(path, None)], intent, recipe.verify.angles, permitted(recipe, tolerance))
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))

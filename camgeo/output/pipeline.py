@@ -167,9 +167,9 @@ def _judge(
             raise CallError(f"{message}, of {file_set.files[0][1].name}: give at most that")
         with clock.stage("judge"):
             request = FileRequest(kind) if request_listed is None else request_listed
-            file_recipe = recipe if request_listed is None else recipe.told_for(request_listed)
+            file_recipe = recipe if request_listed is None else recipe.in_units_of(request_listed)
             intent = shaft_of_file(file_recipe, design, kind, request.compensation, recipe.field_of(request_listed))
-            unstated = [recipe.unstated(path) if units is None else units for _, path, _ in file_set.files]
+            unstated = [recipe.unstated_unit(path) if units is None else units for _, path, _ in file_set.files]
             discs = [DiscFile(path, disc, mm) for (_, path, disc), mm in zip(file_set.files, unstated, strict=True)]
             verdicts = verify_set(discs, intent, recipe.verify.angles, permitted(recipe, within, gap))
         for (place, path, disc), verdict in zip(file_set.files, verdicts, strict=True):

@@ -33,7 +33,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
     meshed = cam_meshes(job, request)
     items = [Item(one.name, one.mesh, one.place) for one in meshed]
     with job.clock.stage(f"write {kind}"):
-        write(path, items, job.recipe.name, job.recipe.told_for(request).mm, job.recipe.about)
+        write(path, items, job.recipe.name, job.recipe.in_units_of(request).mm, job.recipe.about)
     bound = reduce(Bound.wider, (one.facts.bound for one in meshed))
     judged = job.judge if len(meshed) == 1 else job.judge_together
     return judged(request, path, bound, sum(one.facts.vertices for one in meshed))
@@ -52,7 +52,7 @@ def foresee(job: Job, request: FileRequest) -> None:
 
 def numbers(job: Job, request: FileRequest) -> Precision:
     """Give the numbers that a request's file holds."""
-    return numbers_of(request.format, job.recipe.told_for(request).mm)
+    return numbers_of(request.format, job.recipe.in_units_of(request).mm)
 
 
 def aim(job: Job, request: FileRequest) -> float:

@@ -1,4 +1,4 @@
-"""The cam of a recipe: of one of the families, by the keys of its kind."""
+"""The cam of a recipe, by the keys of its family."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MADE = (
     "opposite rollers (constant-diameter), for two rollers on one oscillating arm (double-roller) and for two faces on "
     "one (flat-pair); cylindrical cams are not made"
 )
-"""Which followers there are cams for, in the error of a kind that is none."""
+"""Followers that there are cams for, in the error of an unknown kind."""
 
 
 CAM = form_of_kinds("cam", CAMS, "cam of kind", MADE)
@@ -36,10 +36,10 @@ def check_cam(cam: Values, reader: Reader) -> None:
 
 
 def check_tappet(values: Values, reader: Reader) -> None:
-    """Note what does not go with a round tappet, and give its follower the width that is left at the lobe's far edge.
+    """Note keys that do not go with a round tappet, and give its follower the width at the lobe's far edge.
 
-    The line of contact runs across the lobe. Of a face `diameter` across, its axis `axial_offset` beside the lobe's
-    middle, the chord at the farther edge of the lobe is the width that all of the line has.
+    The line of contact runs across the lobe. All of it lies on a face `diameter` across, with its axis `axial_offset`
+    beside the lobe's middle, if it lies on the chord at the lobe's farther edge.
     """
     follower, path = values.get("cam", {}).get("follower", {}), "cam.follower"
     if "axial_offset" in follower and f"{path}.diameter" not in reader.marks:
@@ -50,12 +50,14 @@ def check_tappet(values: Values, reader: Reader) -> None:
         reader.fault_at(f"{path}.width", "cannot be combined with diameter", None, "give one of them")
     beyond = abs(follower.get("axial_offset", 0.0)) + 0.5 * values.get("part", {}).get("thickness", 0.0)
     if not beyond < 0.5 * follower["diameter"]:
-        given, least = (f"{length / reader.mm:.6g} {reader.units}" for length in (follower["diameter"], 2.0 * beyond))
-        reader.fault_at(f"{path}.diameter", "the lobe reaches beyond the tappet", given, f"give more than {least}")
+        diameter, least = (
+            f"{length / reader.mm:.6g} {reader.units}" for length in (follower["diameter"], 2.0 * beyond)
+        )
+        reader.fault_at(f"{path}.diameter", "the lobe reaches beyond the tappet", diameter, f"give more than {least}")
         return
     follower |= {"width": math.sqrt(follower["diameter"] ** 2 - 4.0 * beyond * beyond), "beyond": beyond}
 
 
 def build_cam(cam: Values, mm: float) -> Cam:
-    """Make the cam of values in which there is no fault; `mm` is the recipe's unit of length."""
+    """The cam of values without fault; `mm` is the recipe's unit of length, mm."""
     return FAMILIES[cam["kind"]].build(cam, mm)

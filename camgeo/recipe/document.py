@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Document:
-    """A recipe as written: `path` is where it was read, `text` what stands there.
+    """A recipe as written: the `path` it was read from, and its `text`.
 
     `marks` are the places of the fields given, `kinds` those of its mappings that have one. `unplaced` names in errors
-    a text that stands in no file, whose lines nobody has seen; empty where lines count.
+    a text that stands in no file and so has no lines to refer to; empty for a file.
     """
 
     path: Path
@@ -35,7 +35,7 @@ class Document:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """Fields that name a file which is read with the recipe, from the folder that it stands in."""
+        """Paths of the fields that name a table, which is read from the recipe's folder."""
         return tuple(path for path in self.marks if path.endswith(".table"))
 
     def save(self, path: str | PathLike[str]) -> None:
@@ -50,20 +50,20 @@ class Document:
             raise SurroundingsError(f"cannot be written: {error.strerror or error}", file) from error
 
     def locate(self, path: str) -> tuple[int, int]:
-        """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        """Line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
         is_a("path", path, str, "a str")
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
 
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
-        """Make the error that a later stage raises about a field, with the field's place in the file."""
+        """Error of a later stage about a field, with the field's place in the file."""
         line, column = self.locate(path)
         error = RecipeError(str(self.path), line, column, path, problem, value, remedy)
         return RecipeErrors([error.without_place(self.unplaced) if self.unplaced else error])
 
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
-        """Give the recipe's text with other numbers by their paths.
+        """The recipe's text with other numbers by their paths.
 
         Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
         """
@@ -76,11 +76,11 @@ class Document:
         return with_values(self.text, numbers)
 
     def source(self) -> Source:
-        """Read the text as a tree."""
+        """The text as a tree of nodes."""
         return Source.of(self.text, str(self.path))
 
     def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
-        """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
+        """The text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
         from camgeo.schema.change import set_value
 
         text = self.text

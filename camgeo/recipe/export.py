@@ -29,10 +29,10 @@ Length: TypeAlias = Literal["mm", "inch"]
 class FileRequest:
     """One file to write.
 
-    `kind` is its format, `as_` the form; `tolerance` (mm) stands in for the export's own; a part that is made different
-    from the nominal one has its `compensation`. `variant` names the capability whose option makes the file something
-    else than the cam, empty for the cam. `units` is the file's own unit, None for the format's (`told_in`).
-    `options` has by their names those that its format has besides, lengths in mm and angles in rad.
+    `kind` is its format, `as_` the form; `tolerance` (mm) replaces the export's own; `compensation` is that of a part
+    that differs from the nominal one. `variant` names the capability whose option makes the file something else than
+    the cam, empty for the cam. `units` is the file's own unit, None for the format's (`unit_for`).
+    `options` are the further options of its format by name, lengths in mm and angles in rad.
     """
 
     kind: str
@@ -45,21 +45,21 @@ class FileRequest:
 
     @property
     def own(self) -> dict[str, Any]:
-        """Options that its format alone has, by their names."""
+        """Further options of its format, by their names."""
         return dict(self.options)
 
     @property
     def format(self) -> Format:
-        """Record of its format."""
+        """Record of the format."""
         return FORMATS[self.kind]
 
     @property
     def form(self) -> FileForm:
-        """Record of its form."""
+        """Record of the form."""
         return self.format.form(self.as_)
 
     @property
-    def united(self) -> bool:
+    def holds_other_bodies(self) -> bool:
         """Whether one file holds other bodies beside the cam."""
         return bool(self.variant) and not self.format.by_disc
 
@@ -68,46 +68,48 @@ class FileRequest:
         """Format and form in words: `dxf as arcs`."""
         return self.kind if self.as_ is None else f"{self.kind} as {self.as_}"
 
-    def told_in(self, units: Length) -> Length:
-        """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
+    def unit_for(self, units: Length) -> Length:
+        """Unit of the file in a recipe in `units`: the file's own, else mm for a solid, else the recipe's."""
         return self.units or ("mm" if self.format.solid else units)
 
     def filename(self, name: str, requests: collections.abc.Sequence[FileRequest]) -> str:
-        """Name the file among all `requests` of recipe `name`: no later one renames it.
+        """Name of the file among all `requests` of recipe `name`; later requests do not change it.
 
-        The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one that is alike in that it is
-        `<name>-<as>-<option>.<kind>` by the options that its format names, such as `R12` of DXF, with `-kerf` and the
-        like behind for a part that is not nominal, and `-inch` or `-mm` for a unit of its own; a part that a capability
-        alters is called so in any case. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
-        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid behind one that is not is `<name>-nominal.<kind>`.
+        The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one of the
+        same form it is `<name>-<as>-<option>.<kind>` by the options that its format names, such as `R12` of DXF, with
+        `-kerf` and the like for a part that is not nominal, and `-inch` or `-mm` for a unit of its own; a part altered
+        by a capability is always tagged. For all bodies of a mechanism it is the first: `<name>-cam.stl`,
+        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid after one that is not is `<name>-nominal.<kind>`.
         """
-        before = requests[: requests.index(self)] if self in requests else requests
-        kin = [request for request in before if request.kind == self.kind]
+        earlier = requests[: requests.index(self)] if self in requests else requests
+        same_kind = [request for request in earlier if request.kind == self.kind]
         parts = [name, variant(self.variant).tag(self.format)] if self.variant else [name]
         parts += [self.format.tail] if self.format.tail else []
-        alike = [request for request in kin if request.as_ == self.as_]
-        if kin and self.as_:
+        alike = [request for request in same_kind if request.as_ == self.as_]
+        if same_kind and self.as_:
             parts.append(self.as_)
             parts += [str(self.own[option]) for option in self.format.named if alike and option in self.own]
         if self.compensation and (alike or self.compensation.altered):
             parts.append(self.compensation.tags)
         if alike and self.units and not self.variant:
             parts.append(self.units)
-        plain = (one for one in alike if len(parts) == 1 and not (one.compensation and one.compensation.altered))
+        plain = (
+            other for other in alike if len(parts) == 1 and not (other.compensation and other.compensation.altered)
+        )
         if any(request.compensation or request.units for request in plain):
             parts.append("nominal")
         return f"{'-'.join(parts)}.{self.own.get('suffix', self.format.ending)}"
 
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
-        """Name every file with a cam of that many discs: one for all, or one for each disc."""
+        """Names of the files of a cam with that many discs: one for all, or one for each disc."""
         whole = self.filename(name, requests)
         if discs == 1 or not self.format.by_disc:
             return (whole,)
-        return tuple(name_of_disc(whole, k) for k in range(discs))
+        return tuple(disc_filename(whole, k) for k in range(discs))
 
 
-def name_of_disc(filename: str, disc: int) -> str:
-    """Name the file of one disc, counted from 0, after that of the cam: `<name>-1.dxf` for `<name>.dxf`."""
+def disc_filename(filename: str, disc: int) -> str:
+    """Name of the file of one disc, counted from 0, by that of the cam: `<name>-1.dxf` for `<name>.dxf`."""
     stem, dot, suffix = filename.rpartition(".")
     return f"{stem}-{disc + 1}{dot}{suffix}"
 
@@ -121,7 +123,7 @@ class Export:
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """What pages show over the mechanism, each once."""
+        """Overlays that pages show on the mechanism, each once."""
         names = (name for request in self.files for name in request.own.get("overlays", ()))
         return tuple(dict.fromkeys(names))
 
@@ -138,45 +140,47 @@ class Options(collections.abc.Mapping[str, Table]):
     def __getitem__(self, name: str) -> Table:
         """Table of a format; raises KeyError."""
         record = self._formats[name]
-        return Table((*(each.option for each in self._more if each.offered(record)), *record.options.fields))
+        return Table(
+            (*(extension.option for extension in self._more if extension.offered(record)), *record.options.fields)
+        )
 
     def __contains__(self, name: object) -> bool:
         """Whether there is such a format; no table is made."""
         return name in self._formats
 
     def __iter__(self) -> collections.abc.Iterator[str]:
-        """Go over the formats; no table is made."""
+        """Names of the formats; no table is made."""
         return iter(self._formats)
 
     def __len__(self) -> int:
-        """How many formats there are."""
+        """Number of formats."""
         return len(self._formats)
 
 
 def read_files(options: Options, reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
     """Read the list of files of these formats; each with its `kind`. A faulty one is left out."""
-    found = []
+    files = []
     for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
-        kind, given = _format(item)
+        kind, options_node = _format(item)
         if kind is None:
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
             reader.fault(item.mark, below, "not a file", describe(item), remedy)
             continue
         if kind.text not in options:
             reader.fault(kind.mark, below, "unknown file format", quote(kind.text), f"give {either(tuple(options))}")
-        elif given is None:
-            found.append({"kind": kind.text, "path": below})
+        elif options_node is None:
+            files.append({"kind": kind.text, "path": below})
         else:
             table = Field("", Kind.TABLE, "", table=options[kind.text])
-            values = reader.field(table, given, join(below, kind.text))
+            values = reader.field(table, options_node, join(below, kind.text))
             if values is not None:
-                found.append({"kind": kind.text, "path": below, **values})
-    return found
+                files.append({"kind": kind.text, "path": below, **values})
+    return files
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:
-    """Take an entry of the list of files apart: `dxf`, or the format and options of `{dxf: {...}}`."""
+    """Format and options of an entry of the list of files: `dxf`, or `{dxf: {...}}`; None for what is neither."""
     if isinstance(node, Scalar):
         return (None if is_empty(node) else node), None
     if isinstance(node, Mapping) and len(node.entries) == 1:
@@ -201,10 +205,9 @@ def export_of(
     more: collections.abc.Sequence[Variant | Alteration] = (),
     unfit: collections.abc.Collection[str] = (),
 ) -> Field:
-    """Make the field of the files that are written, in these formats.
+    """Field of the files that are written, in these formats.
 
-    `more` adds options of capabilities to those of formats; `unfit` are formats that are known only to say what to do
-    instead.
+    `more` adds options of capabilities to those of formats; `unfit` are formats known only for the remedy in an error.
     """
     options = Options(formats, more)
     form = Form(
@@ -233,13 +236,13 @@ EXPORT = export_of(FORMATS)
 
 
 def _variants() -> dict[str, Variant]:
-    """Variants by their capability; one whose record was not read has left no value in a file."""
+    """Variants by their capability, of the records that are loaded: the others have no value in a file."""
     records = {name: registry.capability(name).variant for name in registry.names_loaded()}
-    return {name: made for name, made in records.items() if made is not None}
+    return {name: record for name, record in records.items() if record is not None}
 
 
 def check_files(values: Values, reader: Reader) -> None:
-    """Note the faults between the files that are asked for, and what they lack."""
+    """Note faults between the requested files, and what they lack."""
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
@@ -264,28 +267,28 @@ def check_files(values: Values, reader: Reader) -> None:
 
 TOLERANCE = 0.001  # mm
 SHARED = frozenset({"as", "tolerance", "units", *(item.name for item in COMPENSATION)})
-"""Options of files that a request has fields of its own for."""
+"""Options of files that are fields of a request."""
 
 
 def requests(files: list[Values]) -> tuple[FileRequest, ...]:
-    """Make the list of files."""
+    """Requests of the files, from values without fault."""
     return tuple(_request(file["kind"], file) for file in files)
 
 
 def _request(kind: str, file: Values) -> FileRequest:
     record = FORMATS[kind]
-    chosen = {**record.chosen, **file}
+    values = {**record.chosen, **file}
     return FileRequest(
         kind,
-        chosen.get("as"),
-        chosen.get("tolerance"),
+        values.get("as"),
+        values.get("tolerance"),
         build_compensation(file),
         next((name for name, other in _variants().items() if other.chosen(file)), ""),
-        chosen.get("units"),
-        tuple((name, chosen[name]) for name in record.options.keys if name in chosen and name not in SHARED),
+        values.get("units"),
+        tuple((name, values[name]) for name in record.options.keys if name in values and name not in SHARED),
     )
 
 
 def build_export(values: Values) -> Export:
-    """Make the files of values in which there is no fault."""
+    """Export of values without fault."""
     return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))

@@ -20,11 +20,10 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True, eq=False)
 class Need:
-    """What a figure is taken from, besides the cam and its files.
+    """Something that a figure needs besides the cam and its files, named by `words`.
 
-    `words` name it. `there` says whether a recipe has it, by what its cam offers and the paths of the fields given, the
-    words of its files among them (`words_of`). `part` is whether the part counts as well, its material or its
-    thickness.
+    `there` says whether a recipe has it, by the offers of its cam and the paths of the fields given, the words of its
+    files among them (`words_of`). `part` is whether the part counts as well, by its material or its thickness.
     """
 
     words: str
@@ -39,7 +38,7 @@ def _offered(*names: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool
 
 def _given(*paths: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
     """Whether one of these fields is given."""
-    return lambda _, given: not given.isdisjoint(paths)
+    return lambda _, fields: not fields.isdisjoint(paths)
 
 
 NOTHING = Need("", lambda _offers, _paths: True)
@@ -62,51 +61,26 @@ OF_WANTED_LAW = Need("cam.delta.law", _given("cam.delta.law"))
 OF_STIFFNESS = Need("cam.preload.stiffness", _given("cam.preload.stiffness"))
 OF_DENSITY = Need("part.density, and in a sweep no linkage", _given("part.density"), part=True)
 
-# Names that stand in programs too.
+# Names of figures.
 DWELL, DWELL_RELATIVE, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "dwell-relative", "size", "contact-travel", WALL
-
-
 RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"
-
-
 PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
 LAW_ERROR, DWELL_ERROR, CONTOUR_ERROR, OUTPUT_ERROR = "law-error", "dwell-error", "contour-error", "output-error"
-
-
 PIECES = "pieces"
-
-
 OF_LINKS = TRANSMISSION_ANGLE, FORCE_ANGLE, MARGIN, SHAFT_RATE = (
     "transmission-angle",
     "force-angle",
     "margin",
     "shaft-rate",
 )
-
-
 BACKLASH = "backlash"
-
-
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
-
-
 MASS, ECCENTRICITY, INERTIA, UNBALANCE = "mass", "centre-of-mass", "inertia", "unbalance"
-
-
 DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA = "duration", "lobe-centre", "ramp-velocity", "lift-area"
-
-
 BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
-
-
 FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE = "face-width", "roller-speed", "pivot-clearance"
-
-
 PRELOAD_LEAST, PRELOAD_GREATEST = "preload-force-least", "preload-force-greatest"
-
-
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
-
 
 _RETURN = Field(
     "on_return",
@@ -120,7 +94,7 @@ _RETURN = Field(
 
 
 def lift_key(usual: float) -> tuple[Field]:
-    """Give the key of a limit by which a figure is taken at another lift than its usual one, mm."""
+    """Key of a limit by which a figure is taken at another lift than its usual one, mm."""
     about = "lift at which it is taken, from the lowest"
     return (Field("at_lift", Kind.LENGTH, about, default=f"{usual:g} mm", at_least=0, at_most=MOST),)
 
@@ -129,7 +103,7 @@ def lift_key(usual: float) -> tuple[Field]:
 class Figure:
     """One figure of a design.
 
-    `kind` is that of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
+    `kind` is the kind of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
     the follower or the last link swings or slides. `best` says which values a ranking puts first, `needs` what the
     figure is taken from. `per` ends its unit's name. `of` says whether the exact design has it, each file, or each run
     of a capability. `swept` is whether a sweep knows it, `dear` whether designs are given it only where it ranks or
@@ -158,6 +132,15 @@ def _of_lobe(about: str, kind: Kind, best: Literal["most", "least"], lift: float
     return Figure(about, kind, best, OF_STEM, per, keys=lift_key(lift), at_lift=lift)
 
 
+def _peak(about: str, per: str, needs: Need = NOTHING) -> Figure:
+    return Figure(about, Kind.MOTION, "least", needs, per, dear=True, eased_by="motion")
+
+
+def _of_size(about: str, kind: Kind, needs: Need, *, dear: bool = True) -> Figure:
+    """Figure that a larger cam makes less."""
+    return Figure(about, kind, "least", needs, dear=dear, eased_by="size")
+
+
 def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> Figure:
     return Figure(about, kind, "least", needs, of="file", swept=False)
 
@@ -168,31 +151,9 @@ _CORE: dict[str, Figure] = {
         "longest dwell over the relative angle, at that band", Kind.ANGLE, "most", OF_DWELL, dear=True
     ),
     "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
-    PEAKS[0]: Figure(
-        "its greatest velocity, per radian of shaft angle",
-        Kind.MOTION,
-        "least",
-        per="/rad",
-        dear=True,
-        eased_by="motion",
-    ),
-    PEAKS[1]: Figure(
-        "its greatest acceleration, per radian squared",
-        Kind.MOTION,
-        "least",
-        per="/rad^2",
-        dear=True,
-        eased_by="motion",
-    ),
-    PEAKS[2]: Figure(
-        "the follower's greatest jerk, per radian cubed",
-        Kind.MOTION,
-        "least",
-        OF_FOLLOWER,
-        per="/rad^3",
-        dear=True,
-        eased_by="motion",
-    ),
+    PEAKS[0]: _peak("its greatest velocity, per radian of shaft angle", "/rad"),
+    PEAKS[1]: _peak("its greatest acceleration, per radian squared", "/rad^2"),
+    PEAKS[2]: _peak("the follower's greatest jerk, per radian cubed", "/rad^3", OF_FOLLOWER),
     PRESSURE_ANGLE: Figure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
@@ -201,42 +162,17 @@ _CORE: dict[str, Figure] = {
         eased_by="size",
         keys=(_RETURN,),
     ),
-    ON_RISE: Figure(
-        "greatest pressure angle, above 0 where the cam drives a rise",
-        Kind.ANGLE,
-        "least",
-        OF_GUIDED,
-        dear=True,
-        eased_by="size",
-    ),
-    ON_RETURN: Figure(
-        "the same on the return, greatest below 0", Kind.ANGLE, "least", OF_GUIDED, dear=True, eased_by="size"
-    ),
-    VELOCITY_RATIO: Figure(
-        "greatest angular velocity of the arm over that of the shaft",
-        Kind.NUMBER,
-        "least",
-        OF_SWING,
-        eased_by="size",
+    ON_RISE: _of_size("greatest pressure angle, above 0 where the cam drives a rise", Kind.ANGLE, OF_GUIDED),
+    ON_RETURN: _of_size("the same on the return, greatest below 0", Kind.ANGLE, OF_GUIDED),
+    VELOCITY_RATIO: _of_size(
+        "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, OF_SWING, dear=False
     ),
     LAW_ERROR: Figure(
         "greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", OF_WANTED_LAW
     ),
-    CONTACT_TRAVEL: Figure(
-        "how far the contact travels along the face",
-        Kind.LENGTH,
-        "least",
-        OF_FACE,
-        dear=True,
-        eased_by="size",
-    ),
-    FACE_WIDTH: Figure(
-        "least width of a face, centred on the stem's axis, that the contact does not leave",
-        Kind.LENGTH,
-        "least",
-        OF_STEM_FACE,
-        dear=True,
-        eased_by="size",
+    CONTACT_TRAVEL: _of_size("how far the contact travels along the face", Kind.LENGTH, OF_FACE),
+    FACE_WIDTH: _of_size(
+        "least width of a face, centred on the stem's axis, that the contact does not leave", Kind.LENGTH, OF_STEM_FACE
     ),
     ROLLER_SPEED: Figure(
         "greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", OF_ROLLING, dear=True

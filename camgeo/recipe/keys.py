@@ -1,4 +1,4 @@
-"""The keys of a recipe, and the reading of its values, with the faults between them."""
+"""The keys of a recipe; its values are read here, and faults between them noted."""
 
 from __future__ import annotations
 
@@ -102,14 +102,14 @@ _KEYS: Gathered[Field] = Gathered(
 
 
 def recipe_table(capabilities: Collection[str] | None = None) -> Table:
-    """Give the keys of a recipe, the core's and those of some capabilities, or of all."""
+    """Table of a recipe's keys: the core's and those of some capabilities, or of all."""
     return _table(registry.names_with_record() if capabilities is None else tuple(capabilities))
 
 
 @cache
 def _table(capabilities: tuple[str, ...]) -> Table:
     used = registry.in_order(capabilities)
-    more = [option for one in used for option in (one.variant, one.alteration) if option is not None]
+    more = [option for record in used for option in (record.variant, record.alteration) if option is not None]
     keys = _KEYS.among(capabilities)
     if more:
         keys[EXPORT.name] = export_of(FORMATS, more=more)
@@ -121,19 +121,19 @@ def _table(capabilities: tuple[str, ...]) -> Table:
 
 
 def _with_fields(table: Table, path: list[str], more: Collection[Field]) -> Table:
-    """Give a table with more fields in the mapping at a path of it."""
+    """The table with more fields in the mapping at a path of it."""
     if not path:
         return replace(table, fields=(*table.fields, *more))
     first, *rest = path
-    grown = {first: replace(table.field(first), table=_with_fields(table.field(first).inner, rest, more))}
-    return replace(table, fields=tuple(grown.get(field.name, field) for field in table.fields))
+    changed = {first: replace(table.field(first), table=_with_fields(table.field(first).inner, rest, more))}
+    return replace(table, fields=tuple(changed.get(field.name, field) for field in table.fields))
 
 
 def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
     """Read the whole recipe, the keys of these capabilities among it, and note the faults between its fields.
 
-    What decides how other fields read is looked for first, wherever it stands: the unit, the kinds of cam and linkage,
-    and so whether the follower swings and whether the output of the linkage slides.
+    Keys that decide how others are read come first, wherever they stand: the unit, and the kinds of cam and linkage,
+    which say whether the follower swings and whether the output of the linkage slides.
     """
     root = reader.source.root
     reader.survey(root, "")
@@ -146,16 +146,20 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
         reader.units, reader.mm = units.text, UNITS[units.text]
     linkage = top.get("linkage")
     reader.kinds = {"cam": kind_of(top.get("cam"), CAMS), "linkage": kind_of(linkage, LINKAGES)}
-    last = reader.kinds["linkage"]
+    output_kind = reader.kinds["linkage"]
     dyads = entries(linkage).get("dyads") if isinstance(linkage, Mapping) else None
     if isinstance(dyads, Sequence) and dyads.items:
-        last = kind_of(dyads.items[-1], DYADS)
+        output_kind = kind_of(dyads.items[-1], DYADS)
     if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
-        held = family.of(top["cam"])
-        own = ((Kind.STROKE, held.unit), (Kind.ERROR, held.unit), (Kind.BACKLASH, held.backlash_unit))
+        arrangement = family.of(top["cam"])
+        own = (
+            (Kind.STROKE, arrangement.unit),
+            (Kind.ERROR, arrangement.unit),
+            (Kind.BACKLASH, arrangement.backlash_unit),
+        )
         reader.angular |= {kind for kind, unit in own if unit == "deg"}
-        reader.offers = held.offers
-    if last not in SLIDING:
+        reader.offers = arrangement.offers
+    if output_kind not in SLIDING:
         reader.angular |= {Kind.OUTPUT}
     if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:
         reader.angular |= {Kind.MOTION}
@@ -167,10 +171,9 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
 
 
 def _check(values: Values, reader: Reader) -> None:
-    """Note the faults between fields that show without any geometry.
+    """Note faults between fields that need no geometry.
 
-    Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say,
-    as that fault is noted already.
+    Each check uses the values that were read; it is silent where one is missing or faulty, as that is noted already.
     """
     check_tappet(values, reader)
     check_cam(values.get("cam", {}), reader)

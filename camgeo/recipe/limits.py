@@ -1,4 +1,4 @@
-"""The limits of a recipe: the bounds of its figures, as they are read and as they are kept."""
+"""The limits of a recipe: bounds of its figures."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ class Limit:
 
     @property
     def lift(self) -> float:
-        """Lift, mm, at which a lobe's figure is held."""
+        """Lift, mm, at which the figure of a lobe is bounded."""
         return (FIGURES[self.figure].at_lift or 0.0) if self.at_lift is None else self.at_lift
 
     def field(self, sense: str) -> str:
-        """Give the recipe's field of a bound, `at_least` or `at_most`."""
+        """Path of the recipe's field of a bound, `at_least` or `at_most`."""
         own = f"{self.place or self.figure}.{sense}"
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{own}"
 
 
 def bounds(figure: Figure) -> Table:
-    """Give the table of the limits of a figure; in a recipe's own limits some have a key more."""
+    """Table of the bounds of a figure, without the further keys that some have in a recipe's own limits."""
     return Table(
         tuple(
             Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
@@ -63,16 +63,13 @@ def bounds(figure: Figure) -> Table:
 
 
 def own_bounds(name: str) -> Table:
-    """Give the table of the limits of a figure in a recipe's own `limits`."""
+    """Table of the bounds of a figure in a recipe's own `limits`."""
     figure = FIGURES[name]
     return Table((*bounds(figure).fields, *figure.keys))
 
 
 def limits_form(*, swept: bool) -> Form[Reader]:
-    """Give the form of limits by figures: of a recipe's own, or of a sweep, which knows the figures that are `swept`.
-
-    A sweep's have the bounds alone.
-    """
+    """Form of limits by figures: a recipe's own, or a sweep's, which has `swept` figures and bounds alone."""
     return Form(
         "limits",
         "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
@@ -86,16 +83,16 @@ def _read_limits(swept: bool, reader: Reader, field: Field, node: Node, path: st
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
-    given = entries(node)
+    nodes = entries(node)
     limits = []
     for name, key in keys(node).items():
         below = join(path, name)
         if name not in FIGURES or (swept and not FIGURES[name].swept):
-            known = tuple(here for here in of_recipe(reader) if FIGURES[here].swept or not swept)
-            remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
+            figures = tuple(figure for figure in figures_of(reader) if FIGURES[figure].swept or not swept)
+            remedy = suggestion(name, figures) or f"the figures are {either(figures, 'and')}"
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
-        value = given[name]
+        value = nodes[name]
         if not swept and FIGURES[name].at_lift is not None and isinstance(value, Sequence):
             for i, item in enumerate(reader.items(_bounded(swept, name), value, below, MOST_LIFTS)):
                 own = _read_limit(swept, reader, name, item, join(below, i))
@@ -123,13 +120,13 @@ def _read_limit(swept: bool, reader: Reader, name: str, node: Node, path: str) -
     if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
         none = "no design" if swept else "nothing"
         reader.fault_at(f"{path}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
-    said = {bound: factor * value for bound, value in values.items()}
+    bounds_given = {bound: factor * value for bound, value in values.items()}
     if on_return is None:
-        return [{"figure": name, "at": path, **said, **stated}]
+        return [{"figure": name, "at": path, **bounds_given, **stated}]
     if "at_least" in values:
         reader.fault_at(f"{path}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
         return []
-    both = ((ON_RISE, "at_most", said.get("at_most")), (ON_RETURN, "on_return", on_return))
+    both = ((ON_RISE, "at_most", bounds_given.get("at_most")), (ON_RETURN, "on_return", on_return))
     return [
         {"figure": figure, "at": path, "at_most": most, "key": f"{name}.{bound}"}
         for figure, bound, most in both
@@ -161,38 +158,38 @@ def _given(reader: Reader) -> set[str]:
     return {*reader.marks, *words_of(reader.source.root)}
 
 
-def of_recipe(reader: Reader) -> tuple[str, ...]:
-    """Name the figures that the recipe being read has."""
-    given = _given(reader)
-    return tuple(name for name, figure in FIGURES.items() if figure.needs.there(reader.offers, given))
+def figures_of(reader: Reader) -> tuple[str, ...]:
+    """Names of the figures of the recipe being read."""
+    paths = _given(reader)
+    return tuple(name for name, figure in FIGURES.items() if figure.needs.there(reader.offers, paths))
 
 
 def check_limits(limits: list[Values], reader: Reader) -> None:
-    """Note limits of figures that the recipe has not."""
-    given, bounded = _given(reader), dict[tuple[str, str, float | None], str]()
+    """Note limits of figures that the recipe does not have, and two limits of one bound."""
+    paths, bounded = _given(reader), dict[tuple[str, str, float | None], str]()
     for limit in limits:
         name, figure = limit["figure"], FIGURES[limit["figure"]]
         for bound in ("at_least", "at_most"):
             key = name, bound, limit.get("at_lift", figure.at_lift)
             if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
-                other, path = sorted((bounded[key], limit["at"]), key=len)
-                how = "at the same lift" if "place" in limit else "with on_return"
-                reader.fault_at(path, f"{other} {how} bounds it too", None, "leave one of the two out")
+                general, path = sorted((bounded[key], limit["at"]), key=len)
+                reason = "at the same lift" if "place" in limit else "with on_return"
+                reader.fault_at(path, f"{general} {reason} bounds it too", None, "leave one of the two out")
         # a key of a limit stands for the field that it takes the place of: rpm for that of the train
-        own = {item.default for item in figure.keys if item.name in limit}
-        if not figure.needs.there(reader.offers, given | own):
-            remedy = f"the figures of this recipe are {either(of_recipe(reader), 'and')}"
-            path, what = limit["at"], name
+        defaults = {item.default for item in figure.keys if item.name in limit}
+        if not figure.needs.there(reader.offers, paths | defaults):
+            remedy = f"the figures of this recipe are {either(figures_of(reader), 'and')}"
+            path, subject = limit["at"], name
             if "key" in limit:  # one that a key of another figure gives
-                path, what, remedy = (
+                path, subject, remedy = (
                     f"{path}.on_return",
                     "on_return",
                     "give at_most alone, which holds on the return too",
                 )
-            reader.fault_at(path, f"{what} needs {figure.needs.words}", None, remedy)
+            reader.fault_at(path, f"{subject} needs {figure.needs.words}", None, remedy)
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
-    """Make the limits of values in which there is no fault."""
-    given = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
-    return tuple(Limit(**limit) for limit in given)
+    """Limits of values without fault."""
+    values = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
+    return tuple(Limit(**limit) for limit in values)

@@ -33,7 +33,7 @@ class TracedPoint(NamedTuple):
     point: tuple[float, float]
 
     def name(self, mm: float) -> str:
-        """What it is called, in units of `mm` mm."""
+        """Name of the path, coordinates in units of `mm` mm."""
         x, y = (f"{value / mm:.6g}" for value in self.point)
         return f"path of {self.on} [{x}, {y}]"
 
@@ -50,7 +50,7 @@ class Linkage(NamedTuple):
     traces: tuple[TracedPoint, ...] = ()
 
     def shaped(self, cam: Cam) -> Cam:
-        """The cam, told of the links that shape it where a recipe gives the swing of the frame."""
+        """The cam with the links that shape it where a recipe gives the swing of the frame."""
         from kin.linkage.four_bar import InvertedSliderCrank
         from kin.linkage.loop import side_of
 
@@ -61,7 +61,7 @@ class Linkage(NamedTuple):
 
 
 def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, float, Linkage]]:
-    """Give the linkage with one link after the other of a loop times a factor, to six digits: path, length, linkage.
+    """Path, length and linkage with each link of a loop in turn multiplied by a factor, to six digits.
 
     Loop 0 is the linkage's own, k that of its k-th dyad.
     """
@@ -87,13 +87,13 @@ def _with_other(part: Part, factor: float) -> Iterator[tuple[str, float, Part]]:
 
 
 def output_slides(linkage: Linkage) -> bool:
-    """Tell whether the output of a linkage, that of its last dyad if it has any, is a length and not an angle."""
+    """Whether the output of a linkage, that of its last dyad if there is one, is a length and not an angle."""
     return (linkage.dyads[-1] if linkage.dyads else linkage.loop).unit == "mm"
 
 
 @dataclass(frozen=True)
-class DwellAsked:
-    """Dwells of the output: within `band` (rad, or mm where it slides); `at_least` (rad) is a check, over one angle."""
+class DwellLimits:
+    """Dwells of the output: its range `band`, rad, or mm where it slides, and the least length to be checked, rad."""
 
     band: float
     at_least: float | None = None
@@ -204,7 +204,8 @@ def read_traces(reader: Reader, field: Field, node: Node, path: str) -> list[Tra
     """Read the list of points to be traced, or None where one is faulty."""
     item = Field("", Kind.TABLE, "", table=_TRACE)
     values = [
-        reader.field(item, each, join(path, i)) for i, each in enumerate(reader.items(field, node, path, MOST_TRACES))
+        reader.field(item, point_node, join(path, i))
+        for i, point_node in enumerate(reader.items(field, node, path, MOST_TRACES))
     ]
     if any(value is None or len(value) < len(_TRACE.fields) for value in values):
         return None
@@ -346,26 +347,26 @@ def check_linkage(values: Values, reader: Reader) -> None:
                 reader.fault_at(f"cam.fourier.{part}", "an even harmonic under a linkage", str(j), remedy)
     dyads: list[Values] = values.get("linkage", {}).get("dyads", [])
     traces: list[TracedPoint] = values.get("linkage", {}).get("trace", [])
-    there = ("coupler", "output", *(f"dyads[{k}]" for k in range(len(dyads))))
+    links = ("coupler", "output", *(f"dyads[{k}]" for k in range(len(dyads))))
     for i, trace in enumerate(traces):
-        if trace.on not in there:
-            reader.fault_at(f"linkage.trace[{i}].on", "there is no such link", f"'{trace.on}'", f"give {either(there)}")
+        if trace.on not in links:
+            reader.fault_at(f"linkage.trace[{i}].on", "there is no such link", f"'{trace.on}'", f"give {either(links)}")
     if dyads and dyads[0].get("on") == "previous":
         remedy = "give output or coupler"
         reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
 
 
 def build_linkage(linkage: Values) -> Linkage:
-    """Make the linkage of values in which there is no fault."""
+    """Linkage of values without fault."""
     from kin.linkage.dyad import RPR, RRP, RRR
     from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 
     loops = {"four-bar": FourBar, "inverted-slider-crank": InvertedSliderCrank, "slider-crank": SliderCrank}
     dyads = {"rrr": RRR, "rrp": RRP, "rpr": RPR}
-    kind, first = linkage["kind"], {key: value for key, value in linkage.items() if key not in {"dyads", "trace"}}
-    hung = ({"on": "output", **dyad} for dyad in linkage.get("dyads", []))
+    kind, loop_values = linkage["kind"], {key: value for key, value in linkage.items() if key not in {"dyads", "trace"}}
+    dyad_values = ({"on": "output", **dyad} for dyad in linkage.get("dyads", []))
     traces = tuple(linkage.get("trace", ()))
-    return Linkage(kind, _of_kind(loops, first), tuple(_of_kind(dyads, dyad) for dyad in hung), traces)
+    return Linkage(kind, _of_kind(loops, loop_values), tuple(_of_kind(dyads, dyad) for dyad in dyad_values), traces)
 
 
 def _of_kind(classes: Mapping[str, Callable[..., Part]], values: Values) -> Part:

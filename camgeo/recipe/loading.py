@@ -1,11 +1,11 @@
-"""From a recipe's file to a `Recipe`, or to all of its faults."""
+"""Reading of a recipe's file, into a `Recipe` or an error with all its faults."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.recipe import file_bytes, load_text, meant_root, of_source, read, without_places
+from camgeo.recipe.recipe import file_bytes, intended_root, load_text, of_source, read, without_places
 from camgeo.registry.root import CAM, root
 from camgeo.schema.yaml_source import read_source
 from kin.numeric.records import replace
@@ -36,7 +36,7 @@ def load_order_text(text: str, path: str, unplaced: str = "") -> Order:
 
 def _order(data: bytes, path: str | PathLike[str]) -> Order:
     source = read_source(data, str(path))
-    key = meant_root(source)
+    key = intended_root(source)
     if key == CAM:
         return of_source(source, path)
     order: Order = root(key).read(source, Path(path))

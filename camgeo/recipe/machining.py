@@ -1,4 +1,4 @@
-"""How the part is milled, and what the contour of a file is moved by."""
+"""Milling and grinding of the part, and compensation of files."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Manufacture:
-    """Milling, in mm, mm a minute, turns a minute and radians; figures that only a program needs are None without one.
+    """Milling, in mm, mm a minute, turns a minute and radians; what only a program needs may be None.
 
-    `allowance` is left by all passes but a last one at full depth. `unreached` is how deep metal may be left where the
-    cutter does not reach.
+    `allowance` is left by all passes but a last one at full depth. `unreached` is the greatest depth of metal that may
+    remain where the cutter does not reach.
     """
 
     cutter: float
@@ -50,11 +50,11 @@ class Manufacture:
 
 @dataclass(frozen=True)
 class Compensation:
-    """What a file's part is made different by: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` a share.
+    """Compensation of a file's part: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` as a share.
 
     A cut along the drawn lines takes half its width from the part, so the metal is drawn larger by that; clearance is
-    taken from it all round. What shrinks is drawn larger by 1/(1 - shrinkage) about the shaft. `altered` is what
-    capabilities change besides.
+    taken from it all round. A part that shrinks is drawn larger by 1/(1 - shrinkage) about the shaft. `altered` has the
+    alterations of capabilities.
     """
 
     kerf: float = 0.0
@@ -64,12 +64,12 @@ class Compensation:
 
     @property
     def out(self) -> float:
-        """How far the metal's edges move outward, mm, before the part is scaled."""
+        """Outward movement of the metal's edges, mm, before the part is scaled."""
         return 0.5 * self.kerf - self.clearance
 
     @property
     def scale(self) -> float:
-        """How many times as large the part is drawn."""
+        """Factor by which the part is drawn larger."""
         return 1.0 / (1.0 - self.shrinkage)
 
     @property
@@ -151,11 +151,11 @@ COMPENSATION = (
         at_most=20,
     ),
 )
-"""By what the part of a file is made different from the nominal one."""
+"""Options of a file whose part differs from the nominal one."""
 
 
 def check_cutter(reader: Reader) -> None:
-    """Note a part that is to be milled without a cutter: of a grinder the wheel alone is given."""
+    """Note milling without a cutter; grinding has its wheel alone."""
     milled = any(f"manufacture.{field.name}" in reader.marks for field in MANUFACTURE.fields if field.name != "wheel")
     if milled and "manufacture.cutter" not in reader.marks:
         field = MANUFACTURE.field("cutter")
@@ -164,7 +164,7 @@ def check_cutter(reader: Reader) -> None:
 
 
 def check_allowance(milling: Values, reader: Reader) -> None:
-    """Note an allowance that is too much for a last pass of this cutter."""
+    """Note an allowance too large for a last pass of the cutter."""
     if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.25 * milling["cutter"]:
         remedy = f"give less than {0.25 * milling['cutter'] / reader.mm:.6g} {reader.units}"
         value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
@@ -172,14 +172,14 @@ def check_allowance(milling: Values, reader: Reader) -> None:
 
 
 def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]:
-    """Make the milling, where there is any, and the radius of the grinding wheel, mm."""
+    """Milling and radius of the grinding wheel, mm, each None where it is not given."""
     milling = {name: value for name, value in values.items() if name != "wheel"}
     wheel = values.get("wheel")
     return Manufacture(**milling) if milling else None, None if wheel is None else 0.5 * wheel
 
 
 def build_compensation(file: Values) -> Compensation | None:
-    """Make the compensation of a file, where it has any."""
+    """Compensation of a file; None without one."""
     own = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
     if "shrinkage" in own:
         own["shrinkage"] /= 100.0
@@ -192,6 +192,6 @@ def build_compensation(file: Values) -> Compensation | None:
 
 
 def alterations() -> dict[str, Alteration]:
-    """Alterations by their capability; one whose record was not read has left no value in a file."""
+    """Alterations by their capability, of the records that are loaded: the others have no value in a file."""
     records = {name: registry.capability(name).alteration for name in registry.names_loaded()}
-    return {name: made for name, made in records.items() if made is not None}
+    return {name: record for name, record in records.items() if record is not None}

@@ -1,4 +1,4 @@
-"""Preloads by interference: what their recipes cannot have beside them."""
+"""Preloads by interference: keys and tolerances that exclude them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIDES = 2.0  # of a contour, each of which may be off by the tolerance
 
 
 def check_preload(values: Values, reader: Reader) -> None:
-    """Note what does not go with metal that both contacts overlap, and tolerances in which the overlap is lost."""
+    """Note keys that do not go with a preload, and tolerances that may take all of the interference."""
     cam = values.get("cam", {})
     preload = cam.get("preload")
     if preload is None:
@@ -35,7 +35,7 @@ def check_preload(values: Values, reader: Reader) -> None:
 
 
 def _check_tolerances(values: Values, reader: Reader, interference: float) -> None:
-    """Note a tolerance in which a file may lose all of the interference."""
+    """Note a tolerance that may take all of a file's interference."""
     export = values.get("export", {})
     for file in export.get("files", [{"kind": "dxf", "path": ""}]):
         tolerance = file.get("tolerance", export.get("tolerance", TOLERANCE))
@@ -43,9 +43,11 @@ def _check_tolerances(values: Values, reader: Reader, interference: float) -> No
             continue
         paths = (f"{file['path']}.{file['kind']}.tolerance", "export.tolerance", f"{PATH}.interference")
         path = next(path for path in paths if path in reader.marks)
-        what = f"a tolerance of {tolerance / reader.mm:g} on either side of a contour leaves none of the interference"
+        problem = (
+            f"a tolerance of {tolerance / reader.mm:g} on either side of a contour leaves none of the interference"
+        )
         remedy = f"give a tolerance below {downward(interference / SIDES / reader.mm)}"
         if path == paths[-1]:
             remedy = f"give an export.tolerance below {downward(interference / SIDES / reader.mm)}"
-        reader.fault_at(path, what, None, remedy)
+        reader.fault_at(path, problem, None, remedy)
         return

@@ -1,8 +1,8 @@
-"""What a recipe says, checked and converted: lengths in mm, angles in radians.
+"""A recipe, checked and converted: lengths in mm, angles in radians.
 
-Plain values throughout, so that recipes compare, hash and travel between processes. Formulas stay text; their values
-are in the recipe's units, and `scale` (mm per unit) turns those into mm. Each topic has a file of its own beside this
-one: its keys, how they are read and published, what they are checked for and what they become.
+Values are plain, so that recipes can be compared, hashed and pickled. Formulas stay text; their values
+are in the recipe's units, and `scale` (mm per unit) turns those into mm. Each topic has its keys, checks
+and values in a file of its own beside this one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.limits import Limit, build_limits
-from camgeo.recipe.linkage import DwellAsked, build_linkage
+from camgeo.recipe.linkage import DwellLimits, build_linkage
 from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
@@ -53,7 +53,7 @@ ANGLES = 3600  # of a turn at which files are judged
 
 @dataclass(frozen=True)
 class Verify:
-    """How each file is judged: shaft angles, and the greatest errors or None for the implied ones.
+    """Judgement of files: number of shaft angles, and the greatest errors permitted, None for the implied ones.
 
     `motion_error` (mm, or rad where the follower swings) is that of follower or frame against the cam, `output_error`
     (rad, or mm where it slides) that of the linkage's output. Openings that the part does not name are faults of a
@@ -67,18 +67,18 @@ class Verify:
 
 
 class Angle(NamedTuple):
-    """An angle in place of a word: the path of its field, and degrees."""
+    """An angle chosen in place of a word: the path of its field, and degrees."""
 
     path: str
     degrees: float
 
 
 @dataclass(frozen=True)
-class Settled:
-    """Angles of a motion that were found for `over: least` and `dwell: rest`.
+class ChosenAngles:
+    """Angles of a motion chosen for `over: least` and `dwell: rest`.
 
-    `kind` is the key of the segment with the least. `bound` are the checks that fail at the next shorter angle,
-    `again` the longer angles that were tried and fail too, degrees.
+    `kind` is the key of the segment with the least angle. `bound` are the checks that fail at the next shorter angle,
+    `again` the longer angles, degrees, that were tried and fail too.
     """
 
     kind: str
@@ -90,7 +90,7 @@ class Settled:
 
 @dataclass(frozen=True)
 class Order(Document):
-    """What a recipe of any kind says; `mm` is the length of its unit, `root` the key that its kind goes by (`Root`)."""
+    """A recipe of any kind; `mm` is the length of its unit, mm, `root` the key of its kind (`Root`)."""
 
     root: ClassVar[str]
 
@@ -107,7 +107,7 @@ class Order(Document):
 
     @property
     def parts(self) -> tuple[Path, ...]:
-        """The files of other recipes that this one is made of, each once; none of a cam."""
+        """Files of the recipes that this one is made of, each once; none for a cam."""
         return ()
 
     @property
@@ -116,22 +116,22 @@ class Order(Document):
         return False
 
     def field_of(self, request: FileRequest | None) -> str:
-        """Give the path of a request; that of the list for one that does not stand there."""
+        """Path of a request's field; that of the list for a request that is not in it."""
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
     def using(self, *options: str) -> Self:
-        """Give the recipe as one that uses the capabilities of these options; raises CallError where it has no cam."""
+        """The recipe, made to use the capabilities of these options; raises CallError where it has no cam."""
         if options:
             raise CallError(f"{options[0]} looks at files of one cam: leave it out for a {self.root}")
         return self
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
-        """Name the files of a request that hold what the recipe is of."""
+        """Names of the files of a request that hold the recipe's subject."""
         return (request.filename(self.name, self.export.files),)
 
     def request_of(self, filename: str) -> FileRequest | None:
-        """Give the request one of whose files has this name, the first of all bodies' files, or None."""
+        """The request with a file of this name, the first for files of all bodies; None without one."""
         return next((request for request in self.export.files if filename in self.filenames(request)), None)
 
 
@@ -139,21 +139,21 @@ class Order(Document):
 class Recipe(Order):
     """A recipe of a cam, checked as far as no geometry is needed.
 
-    `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` are those that it uses by
-    name, each with the value that it makes of its keys, or None. `settled` is what was found of a motion that the
-    recipe leaves open, None of one that it gives.
+    `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` has the names of
+    those that it uses, each with the value made of its keys, or None. `settled` has the angles chosen for a motion that
+    the recipe leaves open, None where it gives all.
     """
 
     root = CAM
     cam: Cam
     part: Part
     linkage: Linkage | None = None
-    dwell: DwellAsked | None = None
+    dwell: DwellLimits | None = None
     manufacture: Manufacture | None = None
     wheel: float | None = None
     limits: tuple[Limit, ...] = ()
     capabilities: tuple[tuple[str, object], ...] = ()
-    settled: Settled | None = None
+    settled: ChosenAngles | None = None
 
     @property
     def uses(self) -> tuple[str, ...]:
@@ -162,39 +162,41 @@ class Recipe(Order):
 
     @property
     def rpm(self) -> float | None:
-        """Turns a minute of the shaft, None where no capability says them."""
+        """Speed of the shaft, turns a minute; None where no capability gives it."""
         speeds = (capability.speed(self) for capability in registry.in_order(self.uses))
         return next((rpm for rpm in speeds if rpm is not None), None)
 
     @property
     def profile(self) -> float | None:
-        """Width, mm, of the zone in which the contour is to lie once it is made; None where no capability says it."""
+        """Width, mm, of the tolerance zone of the made contour; None where no capability gives it."""
         return None if self.zone is None else self.zone[1]
 
     @property
     def zone(self) -> tuple[str, float] | None:
-        """The field that states the zone in which the contour is to lie, and the zone's width, mm; None without one."""
+        """Field of the tolerance zone of the made contour, and the zone's width, mm; None without one."""
         zones = (capability.profile(self) for capability in registry.in_order(self.uses))
         return next((zone for zone in zones if zone is not None), None)
 
     def of(self, kind: type[T]) -> T | None:
-        """Give the value of this class that a capability made of its keys, None where the recipe has none."""
+        """The value of this class that a capability made of its keys; None where the recipe has none."""
         return next((value for _, value in self.capabilities if isinstance(value, kind)), None)
 
     def without(self, *names: str) -> Recipe:
-        """Give the recipe as one that does not use these capabilities; its text and its places stay."""
+        """The recipe without these capabilities; its text and its places stay."""
         return replace(self, capabilities=tuple(item for item in self.capabilities if item[0] not in names))
 
     def using(self, *options: str) -> Recipe:
-        """Give the recipe as one that also uses these capabilities, of whose keys it gives none."""
+        """The recipe, made to use these capabilities too, of whose keys it gives none."""
         return replace(self, capabilities=(*self.capabilities, *((option, None) for option in options)))
 
     def with_value(self, value: object) -> Recipe:
-        """Give the recipe with another value in the place of the one of its class; raises ValueError without one."""
+        """The recipe with another value in place of the one of its class; raises ValueError without one."""
         if self.of(type(value)) is None:
             raise ValueError(f"{self.name}: no {type(value).__name__}")
-        swapped = ((name, value if isinstance(one, type(value)) else one) for name, one in self.capabilities)
-        return replace(self, capabilities=tuple(swapped))
+        capabilities = (
+            (name, value if isinstance(current, type(value)) else current) for name, current in self.capabilities
+        )
+        return replace(self, capabilities=tuple(capabilities))
 
     __repr__ = Order.__repr__
 
@@ -205,7 +207,7 @@ class Recipe(Order):
     def replace(self, path: collections.abc.Mapping[str, Value], /) -> Recipe: ...
 
     def replace(self, path: str | collections.abc.Mapping[str, Value], value: Value = None, /) -> Recipe:
-        """Give the recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
+        """The recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
 
         Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
         in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and
@@ -218,7 +220,7 @@ class Recipe(Order):
         return load_text(text, self.path, f"{self.path} (replaced)")
 
     def sized(self) -> Recipe:
-        """Give the recipe with what was found in the place of `sizing`, of `least` and `rest`; itself without them."""
+        """The recipe with the values chosen for `sizing`, `least` and `rest` written out; itself without these keys."""
         from camgeo.schema.change import replace_entry, set_value
 
         angles = {} if self.settled is None else dict((self.settled.least, self.settled.rest))
@@ -232,13 +234,13 @@ class Recipe(Order):
             document = Document(path=self.path, text=text)
         return load_text(document.text, self.path, f"{self.path} (sized)") if self.cam.sizes or angles else self
 
-    def told_in(self, units: Length) -> Recipe:
-        """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
+    def in_units(self, units: Length) -> Recipe:
+        """The recipe with its lengths reported in another unit; the cam stays."""
         return replace(self, units=units, mm=UNITS[units])
 
-    def told_for(self, request: FileRequest) -> Recipe:
-        """Give the recipe as one in the unit of a file."""
-        return self.told_in(request.told_in(self.units))
+    def in_units_of(self, request: FileRequest) -> Recipe:
+        """The recipe with its lengths reported in the unit of a file."""
+        return self.in_units(request.unit_for(self.units))
 
     @property
     def trims(self) -> bool:
@@ -246,26 +248,26 @@ class Recipe(Order):
         return self.cam.undercut == "trim"
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
-        """Name the files of a request that hold the cam: one, or one for each of its discs."""
+        """Names of the files of a request that hold the cam: one, or one for each of its discs."""
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
 
-    def unstated(self, path: Path) -> float | None:
-        """Give the unit, mm, of points of a curve or a drive, or of a file of the recipe that states none."""
+    def unstated_unit(self, path: Path) -> float | None:
+        """Unit, mm, of points of a curve or a drive, or of a file of the recipe that states none; None for others."""
         from kin.read.curve_points import is_curve_points
         from kin.read.formats import format_of
         from kin.read.point_list import is_point_list
 
         request = self.request_of(path.name)
-        told = self if request is None else self.told_for(request)
+        in_file = self if request is None else self.in_units_of(request)
         if format_of(path).contents == "table" and (is_point_list(path) or is_curve_points(path)):
-            return told.mm
-        return None if request is None or request.format.units else told.mm
+            return in_file.mm
+        return None if request is None or request.format.units else in_file.mm
 
 
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
     """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors.
 
-    Bytes that no file has, and nobody has seen, have no lines to speak of: `unplaced` names them in errors.
+    `unplaced` names in errors bytes that stand in no file and so have no lines to refer to.
     """
     with without_places(unplaced):
         return replace(of_source(read_source(data, str(path)), path), unplaced=unplaced)
@@ -273,7 +275,7 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
 
 @contextmanager
 def without_places(name: str) -> Iterator[None]:
-    """Have errors meanwhile name this text, which has no lines that anybody has seen; without a name leave them."""
+    """Errors raised within name this text in place of lines, which it has none of; without a name they stay."""
     try:
         yield
     except RecipeErrors as errors:
@@ -281,13 +283,13 @@ def without_places(name: str) -> Iterator[None]:
 
 
 def root_key(source: Source) -> str:
-    """Key of the kind of recipe that a text is of, that of one cam where none stands there."""
+    """Key of the kind of recipe of a text; that of a cam where it has none."""
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     return next((key for key in roots.folders() if key in top), CAM)
 
 
-def meant_root(source: Source) -> str:
-    """Key of the kind that a text is of, or has a slip in that word in the place of a cam."""
+def intended_root(source: Source) -> str:
+    """Key of the kind of recipe of a text, also where that key is misspelt and there is no cam."""
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     key = root_key(source)
     if key != CAM or CAM in top:
@@ -298,7 +300,7 @@ def meant_root(source: Source) -> str:
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
-    """Make the recipe of a text that was parsed; raises RecipeErrors."""
+    """Recipe of a parsed text; raises RecipeErrors with all its faults."""
     if (key := root_key(source)) != CAM:
         mark = keys(source.root)[key].mark if isinstance(source.root, Mapping) else source.root.mark
         remedy = f"export, check and verify take it; give any other command {roots.root(key).instead}"
@@ -321,7 +323,7 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
         marks=reader.marks,
         kinds=reader.kinds,
     )
-    recipe = _built(values, document, words_of(source.root))
+    recipe = _build(values, document, words_of(source.root))
     return recipe if recipe.cam.open is None else roots.settle(recipe)
 
 
@@ -345,8 +347,8 @@ def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recip
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 
 
-def _built(values: Values, document: Document, words: set[str]) -> Recipe:
-    """Make the recipe of values in which there is no fault; `words` are those by which it uses capabilities."""
+def _build(values: Values, document: Document, words: set[str]) -> Recipe:
+    """Recipe of values without fault; `words` are those by which it uses capabilities."""
     capabilities = tuple((name, registry.capability(name).build(values)) for name in _used(document, words))
     values = _of_core(values, [name for name, _ in capabilities])
     milling, wheel = build_manufacture(values.get("manufacture", {}))
@@ -363,7 +365,7 @@ def _built(values: Values, document: Document, words: set[str]) -> Recipe:
         export=build_export(values.get("export", {})),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         linkage=linkage,
-        dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
+        dwell=DwellLimits(**values["dwell"]) if "dwell" in values else None,
         manufacture=milling,
         wheel=wheel,
         limits=build_limits(values.get("limits", [])),
@@ -373,7 +375,7 @@ def _built(values: Values, document: Document, words: set[str]) -> Recipe:
 
 
 def _used(document: Document, words: set[str]) -> tuple[str, ...]:
-    """Name the capabilities that a recipe uses: by its words, or by a key of theirs in another table."""
+    """Names of the capabilities that a recipe uses: by its words, or by a key of theirs in another table."""
     named = registry.by_words(words)
     below = [
         name
@@ -385,16 +387,16 @@ def _used(document: Document, words: set[str]) -> tuple[str, ...]:
 
 
 def _of_core(values: Values, capabilities: list[str]) -> Values:
-    """Take the keys of these capabilities out of the tables of the core."""
+    """The values without the keys of these capabilities in the tables of the core."""
     for capability in registry.in_order(capabilities):
         for path, fields in capability.below.items():
-            values = _left(values, path.split("."), {field.name for field in fields})
+            values = _without_names(values, path.split("."), {field.name for field in fields})
     return values
 
 
-def _left(values: Values, path: list[str], names: set[str]) -> Values:
-    """Give values without some names in the mapping at a path of them."""
+def _without_names(values: Values, path: list[str], names: set[str]) -> Values:
+    """The values without some names in the mapping at a path of them."""
     if not path:
         return {name: value for name, value in values.items() if name not in names}
     first, *rest = path
-    return {**values, first: _left(values[first], rest, names)} if first in values else values
+    return {**values, first: _without_names(values[first], rest, names)} if first in values else values

@@ -1,4 +1,4 @@
-"""Recipes to start from: each one valid as it stands, its comments taken from the schema."""
+"""Starters: recipes to begin with, each valid as it is, with comments from the schema."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 class Starter:
     """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
 
-    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown.
-    `after` is the core's starter behind which that of a capability stands, `root` the key of a recipe of another kind,
+    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are left out.
+    `after` is the core's starter after which a capability's is listed, `root` the key of a recipe of another kind,
     which has no cam.
     """
 
@@ -259,28 +259,28 @@ _REST: Given = {
 
 
 def starters_for(kind: str) -> tuple[str, ...]:
-    """Name the starters of a kind of cam, such as disc; none for another word."""
-    return tuple(name for name, each in STARTERS.items() if each.root == CAM and each.kind == kind)
+    """Names of the starters of a kind of cam, such as disc; none for another word."""
+    return tuple(name for name, entry in STARTERS.items() if entry.root == CAM and entry.kind == kind)
 
 
 def starter(kind: str) -> str:
-    """Write a recipe to start from; raises ValueError for a kind that is not one of STARTERS."""
+    """Text of a starter; raises ValueError for a name that is none of STARTERS."""
     if kind not in STARTERS:
-        there = f"there is {either(starters_for(kind) or tuple(STARTERS), 'and')}"
-        hint = there if starters_for(kind) else suggestion(kind, STARTERS) or there
+        known = f"there is {either(starters_for(kind) or tuple(STARTERS), 'and')}"
+        hint = known if starters_for(kind) else suggestion(kind, STARTERS) or known
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = STARTERS[kind]
-    given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
-    lines = _lines(_recipe(kind, chosen) if chosen.root == CAM else root(chosen.root).table(), given, "")
+    fields: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
+    lines = _lines(_recipe(kind, chosen) if chosen.root == CAM else root(chosen.root).table(), fields, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 
 def _recipe(name: str, chosen: Starter) -> Table:
-    """Make the table of a starter's recipe, with its kinds of cam and linkage; without a linkage, none of its keys."""
+    """Table of a starter's recipe, with its kinds of cam and linkage; without a linkage, without its keys."""
     linkage = chosen.more.get("linkage")
-    kinds = {"cam": _with_forms(_kinded("the kind of cam", CAMS, chosen.kind), chosen)}
+    kinds = {"cam": _with_forms(_kind_table("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):
-        kinds["linkage"] = _kinded("the kind of linkage", LINKAGES, str(linkage["kind"]))
+        kinds["linkage"] = _kind_table("the kind of linkage", LINKAGES, str(linkage["kind"]))
     fields = (
         replace(item, table=kinds.get(item.name, item.table))
         for item in recipe_table().fields
@@ -294,14 +294,14 @@ def _recipe(name: str, chosen: Starter) -> Table:
 
 
 def _with_forms(table: Table, chosen: Starter) -> Table:
-    """Give each field that has kinds of its own the table of the kind that is given."""
+    """The table in which each field with kinds has the keys of the starter's kind."""
 
     def shown(item: Field) -> Field:
         value = chosen.cam.get(item.name)
         if not isinstance(value, dict) or item.form is None or not item.form.tables:
             return item
-        found = _kinded(f"the kind of {item.name}", item.form.tables, str(value["kind"]))
-        return replace(item, table=_without(found, set(chosen.unfit)))
+        table_of_kind = _kind_table(f"the kind of {item.name}", item.form.tables, str(value["kind"]))
+        return replace(item, table=_without(table_of_kind, set(chosen.unfit)))
 
     return replace(table, fields=tuple(map(shown, table.fields)))
 
@@ -316,14 +316,14 @@ def _without(table: Table, unfit: set[str]) -> Table:
     return replace(table, fields=tuple(item for item in table.fields if item.name not in unfit))
 
 
-def _kinded(about: str, tables: Mapping[str, Table], kind: str) -> Table:
-    """Make the table of one kind with the field `kind` before the others."""
+def _kind_table(about: str, tables: Mapping[str, Table], kind: str) -> Table:
+    """Table of one kind with the field `kind` before the others."""
     first = Field("kind", Kind.CHOICE, f"{about}: {either(tuple(tables))}")
     return replace(tables[kind], fields=(first, *tables[kind].fields))
 
 
 def _lines(table: Table, values: Given, indent: str) -> Iterator[str]:
-    """Write the fields of a table: those given, the others as comments, rival alternatives in one line."""
+    """Lines of a table's fields: those given, the others as comments, alternatives in one line."""
     rivals = tuple(name for name, _ in table.alternatives if name not in values)
     chosen = tuple(name for name, _ in table.alternatives if name in values)
     for item in table.fields:

@@ -23,7 +23,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.recipe.linkage import DwellAsked, Linkage
+    from camgeo.recipe.linkage import DwellLimits, Linkage
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
@@ -129,7 +129,7 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
     return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
 
 
-def _dwell_check(dwell: DwellAsked, longest: Dwell) -> list[Check]:
+def _dwell_check(dwell: DwellLimits, longest: Dwell) -> list[Check]:
     """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
     if dwell.at_least is None:
         return []

@@ -330,7 +330,7 @@ def test_the_unit_where_none_is_given(kind: str, mm: str, inch: str) -> None:
         recipe = load_text(TEXT.format(units=units, files=kind), "cam.yaml")
         (asked,) = recipe.export.files
         assert asked.units is None
-        assert recipe.told_for(asked).units == wanted
+        assert recipe.in_units_of(asked).units == wanted
         assert asked.filename("cam", recipe.export.files) == f"cam.{kind}"
 
 
@@ -392,6 +392,6 @@ def test_the_numbers_of_a_mesh_in_inch(value: float, numbers: Any) -> None:
 
 
 def test_a_request_says_its_unit() -> None:
-    assert FileRequest("dxf", units="inch").told_in("mm") == "inch"
-    assert FileRequest("dxf").told_in("inch") == "inch"
-    assert FileRequest("step").told_in("inch") == "mm"
+    assert FileRequest("dxf", units="inch").unit_for("mm") == "inch"
+    assert FileRequest("dxf").unit_for("inch") == "inch"
+    assert FileRequest("step").unit_for("inch") == "mm"

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from camgeo.recipe.linkage import DwellAsked, output_slides
+from camgeo.recipe.linkage import DwellLimits, output_slides
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.starter import starter
@@ -105,7 +105,7 @@ def test_the_last_output_says_whether_band_and_error_are_angles_or_lengths(linka
     unit = MM if slides else DEG
     assert found.linkage
     assert output_slides(found.linkage) == slides
-    assert found.dwell == DwellAsked(0.5 * unit, 40 * DEG, "shaft")
+    assert found.dwell == DwellLimits(0.5 * unit, 40 * DEG, "shaft")
     assert found.verify == Verify(3600, None, 0.25 * unit)
 
 
@@ -116,7 +116,7 @@ def test_the_frame_runs_straight_whatever_the_output_does() -> None:
 
 def test_a_dwell_may_be_told_without_a_check() -> None:
     found = recipe(f"{SUPPORT}linkage: {{{FOUR_BAR}}}\ndwell: {{band: 180, over: relative}}")
-    assert found.dwell == DwellAsked(math.pi, None, "relative")
+    assert found.dwell == DwellLimits(math.pi, None, "relative")
 
 
 @pytest.mark.parametrize("kind", ["four-bar", "inverted-slider-crank", "slider-crank"])

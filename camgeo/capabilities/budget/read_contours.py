@@ -43,7 +43,7 @@ def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict
     try:
         first, *others = sets_of(recipe, paths, recipe.export.tolerance)
         intent = shaft_of_file(recipe, design, first.requirement.kind)
-        files = [DiscFile(path, disc, recipe.unstated(path)) for _, path, disc in first.files]
+        files = [DiscFile(path, disc, recipe.unstated_unit(path)) for _, path, disc in first.files]
         verdicts = verify_set(files, intent, LOOKS, permitted(recipe, recipe.export.tolerance))
     except ReadError as error:
         raise CallError(f"{escaped(str(error.path))}: {error.message}") from error

@@ -192,7 +192,7 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
         return _solid(job, request, path)
     with job.clock.stage(request.kind):
         write(recipe, [lobe.on_shaft(recipe.engine) for lobe in job.lobes], request, path)
-    return FileResult(path, request, units=UNIT_MM[request.told_in(recipe.units)]), ()
+    return FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]), ()
 
 
 def _table(job: _Job, request: FileRequest, path: Path) -> FileResult:

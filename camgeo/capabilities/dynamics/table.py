@@ -28,7 +28,7 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     running = running_of(job.recipe, job.design)
     if running is None:
         raise ValueError(f"{job.recipe.name}: there are no forces")
-    return forces_table(running, job.recipe.verify.angles, job.recipe.told_for(request).units)
+    return forces_table(running, job.recipe.verify.angles, job.recipe.in_units_of(request).units)
 
 
 # nan: a stem that jams has no force

@@ -47,7 +47,7 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 def _make(job: Job, request: FileRequest, path: Path) -> Made:
     from camgeo.output.job import unjudged
 
-    recipe = job.recipe.told_for(request)
+    recipe = job.recipe.in_units_of(request)
     with job.clock.stage("dmis"):
         text = "\n".join(program(recipe, job.design, request.own.get("step"))) + "\n"
         path.write_bytes(text.encode("ascii", "replace"))

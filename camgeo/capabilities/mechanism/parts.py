@@ -90,7 +90,7 @@ def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[Meshe
     """Write and judge a file for each body: the cam's at `path`, others as `<name>-<body>` beside it, lying flat."""
     from kin.read.files import read_meshes
 
-    mm, ending, write = job.recipe.told_for(request).mm, request.format.ending, _writer(request)
+    mm, ending, write = job.recipe.in_units_of(request).mm, request.format.ending, _writer(request)
     files: list[FileResult] = []
     checks: list[Check] = []
     for part in parts:
@@ -115,7 +115,7 @@ def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[M
     """Write and judge two files of all bodies: laid out for printing at `path`, assembled in `<name>-assembly`."""
     from kin.read.files import read_meshes
 
-    recipe, mm, write = job.recipe, job.recipe.told_for(request).mm, _writer(request)
+    recipe, mm, write = job.recipe, job.recipe.in_units_of(request).mm, _writer(request)
     on_plate = layout([part.mesh for part in parts])
     assembled = path.with_name(f"{recipe.name}-assembly.{request.format.ending}")
     made = Made(())
@@ -161,7 +161,7 @@ def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, co
     from kin.judge.check import about
     from kin.judge.printed import judge_body
 
-    tolerance, units = job.tolerance(request), job.recipe.told_for(request).mm
+    tolerance, units = job.tolerance(request), job.recipe.in_units_of(request).mm
     with job.clock.stage(f"judge {request.kind}"):
         checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
     file = FileResult(path, request, tolerance, None, part.bound, part.body.name, units)

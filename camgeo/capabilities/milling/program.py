@@ -57,7 +57,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
         checks = tuple(about(check, path.name) for check, _ in reach_checks(recipe, job.design))
     if not all(check.ok for check in checks):
         return Made((), checks)
-    mm = recipe.told_for(request).mm
+    mm = recipe.in_units_of(request).mm
     with job.refusals(request):
         places_apart, mill = _told_apart(job, asked), _contour if pocket_of(job.design) is None else _pocket
         count = places(job.tolerance(request), mm, places_apart)
@@ -171,7 +171,7 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
     recipe, asked = job.recipe, job.recipe.manufacture
     if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
-    told = recipe.told_for(request)
+    told = recipe.in_units_of(request)
     mm = told.mm
     top = "top of the stock" if recipe.part.of(Hub) is None else "upper face of the disc"
     remarks = [

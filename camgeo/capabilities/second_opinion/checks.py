@@ -40,7 +40,7 @@ def _judged_by(library: str) -> OfFile:
     """Predicate whether a library judges a file; a file of all bodies is left out."""
 
     def judged(_: Scene, file: FileRequest) -> bool:
-        return library in libraries(file.format) and not file.united
+        return library in libraries(file.format) and not file.holds_other_bodies
 
     return judged
 

@@ -94,7 +94,7 @@ def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Se
     for file in files:
         name = file.path.name
         why = reason_without(file.request.format)
-        if file.body != "cam" or file.request.united:
+        if file.body != "cam" or file.request.holds_other_bodies:
             why = "it holds other bodies than the cam"
         elif name in unread:
             why = "the file cannot be read"

@@ -21,7 +21,7 @@ from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.part_geometry import contours_of, openings_of, remarks, rim_of
 from camgeo.part.keyway import Keyway
-from camgeo.recipe.export import FileRequest, name_of_disc
+from camgeo.recipe.export import FileRequest, disc_filename
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
     if run.job is None:
         return Made(())
     jobs = run.job.single
-    paths = [path.with_name(name_of_disc(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
+    paths = [path.with_name(disc_filename(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
     pairs = enumerate(zip(jobs, paths, strict=True))
     sheet = build_sheet(request.own)
     drawings = [_make_sheet(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]

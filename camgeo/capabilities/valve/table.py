@@ -26,7 +26,7 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 def _columns(job: Job, request: FileRequest) -> Columns:
     """Column names and rows (angles + 1, 6), derivatives by rad of the cam, in the unit of the file."""
-    recipe = job.recipe.told_for(request)
+    recipe = job.recipe.in_units_of(request)
     valve = valve_of(recipe, job.design)
     if valve is None:
         raise ValueError(f"{recipe.name}: there is no valve")

@@ -66,7 +66,7 @@ def contact_table(
 
 
 def _columns(job: Job, request: FileRequest) -> Columns:
-    return contact_table(job.recipe.told_for(request), job.design, motion_columns(job, request))
+    return contact_table(job.recipe.in_units_of(request), job.design, motion_columns(job, request))
 
 
 FORM = Form(name="contacts", surfaces=2, discs=2, make=tabled("contacts", _columns, gaps=True))  # nan: not touched

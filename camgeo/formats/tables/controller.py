@@ -105,7 +105,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     from camgeo.output.job import Made
     from camgeo.synthesis.intent import permitted
 
-    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)
     gauge = job.design.exact.gauge
     limits = permitted(recipe, tolerance)
     own = math.radians(1.0) if gauge.unit == "deg" else 1.0
@@ -135,7 +135,7 @@ class _Rows:
     """The motion as a controller is given it: from its lowest place, in the unit of the file, as it is written."""
 
     def __init__(self, job: Job, request: FileRequest) -> None:
-        recipe, exact = job.recipe.told_for(request), job.design.exact
+        recipe, exact = job.recipe.in_units_of(request), job.design.exact
         self.motion = exact.motion
         self.controller = CONTROLLERS[str(request.own["for"])]
         swings = recipe.cam.arrangement.unit == "deg"

@@ -40,7 +40,7 @@ def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
     from camgeo.fit.bound import Bound
     from camgeo.machining.grinding import grinding_table
 
-    recipe = job.recipe.told_for(request)
+    recipe = job.recipe.in_units_of(request)
     with job.clock.stage("grinding"), job.refusals(request):
         made = grinding_table(recipe, job.design, request, job.tolerance(request), job.field(request))
         write_table(path, made.columns, made.rows, head=made.head)

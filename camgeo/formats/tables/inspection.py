@@ -106,7 +106,7 @@ def _degrees(x: Array, y: Array) -> Array:
 
 
 def _columns(job: Job, request: FileRequest) -> Columns:
-    return inspection_table(job.recipe.told_for(request), job.design, request.own.get("step"))
+    return inspection_table(job.recipe.in_units_of(request), job.design, request.own.get("step"))
 
 
 FORM = Form(

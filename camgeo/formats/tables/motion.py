@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def motion_columns(job: Job, request: FileRequest) -> Columns:
     """Give column names and rows (angles + 1, k) over equal steps of the shaft, in the unit of the file."""
-    told = job.recipe.told_for(request)
+    told = job.recipe.in_units_of(request)
     if job.design.driven is not None:
         from camgeo.synthesis import linkage
 

@@ -79,7 +79,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     from camgeo.synthesis.intent import intended, permitted
     from kin.judge.verify import verify_points
 
-    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
+    recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)
     ((_, contour),) = job.design.contours
     if len(contour.runs) > 1 or not contour.closed:
         remedy = "give {dxf: {as: spline}}, which has them"

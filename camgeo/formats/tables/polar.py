@@ -42,7 +42,7 @@ def _columns(job: Job, request: FileRequest) -> Columns:
 
     try:
         (fit,) = job.fits
-        return polar_table(job.recipe.told_for(request), fit.contour)
+        return polar_table(job.recipe.in_units_of(request), fit.contour)
     except StarError as error:
         where, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
         raise job.recipe.error(where, str(error), "'polar'", remedy) from error

@@ -63,6 +63,6 @@ def tabled(
         with job.clock.stage(stage):
             names, rows = columns(job, request)
             write_table(path, names, rows, gaps=gaps)
-        return unjudged(path, request, job.recipe.told_for(request).mm)
+        return unjudged(path, request, job.recipe.in_units_of(request).mm)
 
     return make

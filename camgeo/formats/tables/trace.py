@@ -23,7 +23,7 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 def _columns(job: Job, request: FileRequest) -> Columns:
     from camgeo.synthesis.traces import trace_table
 
-    return trace_table(job.recipe.told_for(request), job.design)
+    return trace_table(job.recipe.in_units_of(request), job.design)
 
 
 FORM = Form(name="trace", check=_check, make=tabled("trace", _columns, gaps=True))  # nan: nothing moves
