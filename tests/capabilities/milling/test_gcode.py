@@ -85,6 +85,13 @@ def test_what_is_left_of_a_sheet(tmp_path, cam, more, top):
     assert len(part.interiors) == 1
 
 
+def test_a_slot_is_left_and_the_program_says_so(tmp_path):
+    slotted = "{thickness: 6, bore: 10, slot: {length: 14, width: 8, circle: 34}}"
+    _, outcome, path = made(tmp_path, part=slotted, more=", holes: true")
+    assert "(not milled: slot, not a round hole)" in path.read_text(encoding="utf-8").splitlines()
+    assert "holes" not in [check["name"] for check in outcome.report["checks"] if check.get("file") == "c.ngc"]
+
+
 def test_the_report_and_the_header(tmp_path):
     _, outcome, path = made(tmp_path, part=FEATURED, more=", holes: true", top="about: for (you)\n")
     (file,) = outcome.report["files"]
