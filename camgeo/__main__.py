@@ -55,10 +55,10 @@ class _Interrupts:
         elif now - self.first > _IMPATIENT:
             os._exit(130)
 
-    def _swallowed(self, what: sys.UnraisableHookArgs) -> None:
+    def _swallowed(self, unraisable: sys.UnraisableHookArgs) -> None:
         """Raise an interrupt again that fell into a callback from which nothing can be raised."""
-        if not isinstance(what.exc_value, KeyboardInterrupt):
-            sys.__unraisablehook__(what)
+        if not isinstance(unraisable.exc_value, KeyboardInterrupt):
+            sys.__unraisablehook__(unraisable)
         elif not self.over:
             import threading
             from _thread import interrupt_main

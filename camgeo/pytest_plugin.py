@@ -62,8 +62,8 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError("--camgeo-out: an empty name")
     if patterns:
         config.addinivalue_line("markers", "camgeo: a check of a recipe")
-        kept = None if out is None else Path(config.invocation_params.dir, out)
-        config.pluginmanager.register(Recipes(config, patterns, kept), "camgeo-recipes")
+        folder = None if out is None else Path(config.invocation_params.dir, out)
+        config.pluginmanager.register(Recipes(config, patterns, folder), "camgeo-recipes")
     elif config.getini(VERIFIED) and not config.getoption("help"):
         raise pytest.UsageError(f"{VERIFIED}: no recipes are named; give {INI} in the pytest configuration")
     elif out is not None and not config.getoption("help"):
@@ -91,8 +91,8 @@ class Recipes:
             )
         options = {name: True for name in registry.options() if self.config.getini(OPTION.format(name))}
         for path in self._found():
-            shown = _relative(path, self.config.invocation_params.dir)
-            self.runs[path.resolve()] = RecipeRun(path, shown, self.out, options)
+            shown_path = _relative(path, self.config.invocation_params.dir)
+            self.runs[path.resolve()] = RecipeRun(path, shown_path, self.out, options)
         for line in self.config.getini(VERIFIED):
             self._verified(line)
         sources = type(self.config).ArgsSource
@@ -115,11 +115,11 @@ class Recipes:
     @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep one of each item: a recipe may have been found both by itself and on the way through its folder."""
-        seen: set[str] = set()
+        names: set[str] = set()
         for item in [item for item in items if isinstance(item, RecipeItem)]:
-            if item.nodeid in seen:
+            if item.nodeid in names:
                 items.remove(item)
-            seen.add(item.nodeid)
+            names.add(item.nodeid)
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Note which items are left of each recipe once -k, -m and the like have had their say."""
@@ -129,7 +129,7 @@ class Recipes:
 
     def _found(self) -> list[Path]:
         """Files that the patterns match, each once, in the patterns' order; raises UsageError."""
-        found: dict[Path, None] = {}
+        paths: dict[Path, None] = {}
         faults = []
         for pattern in self.patterns:
             # pathlib's own glob takes no absolute patterns
@@ -137,12 +137,12 @@ class Recipes:
             matches = sorted(self.base / name for name in names)
             files = [path for path in matches if path.is_file()]
             if not files:
-                what = "names a folder; name the files in it, such as folder/*.yaml" if matches else "matches no file"
-                faults.append(f"{INI}: {pattern!r} {what} (looked for in {self.base})")
-            found |= dict.fromkeys(files)
+                fault = "names a folder; name the files in it, such as folder/*.yaml" if matches else "matches no file"
+                faults.append(f"{INI}: {pattern!r} {fault} (looked for in {self.base})")
+            paths |= dict.fromkeys(files)
         if faults:
             raise pytest.UsageError("\n".join(faults))
-        return list(found)
+        return list(paths)
 
     def _verified(self, line: str) -> None:
         """Have a recipe verify the files of a line; raises UsageError."""
@@ -154,8 +154,8 @@ class Recipes:
         if run is None:
             raise pytest.UsageError(f"{VERIFIED}: {words[0]!r} is not among the recipes of {INI}")
         if missing or not files:
-            told = f"no file {', '.join(missing)}" if missing else "no file is named"
-            raise pytest.UsageError(f"{VERIFIED}: {line!r}: {told}")
+            problem = f"no file {', '.join(missing)}" if missing else "no file is named"
+            raise pytest.UsageError(f"{VERIFIED}: {line!r}: {problem}")
         run.verified.append((tuple(files), options))
 
     def _can_be_named(self, run: RecipeRun) -> bool:
@@ -244,23 +244,27 @@ class RecipeFile(pytest.File):
         self.run.load()
         recipe = self.run.recipe
         if recipe is not None and self.run.out is not None:
-            for other in self.others.values():
-                if other is not self.run and other.recipe and other.recipe.name.casefold() == recipe.name.casefold():
+            for other_run in self.others.values():
+                if (
+                    other_run is not self.run
+                    and other_run.recipe
+                    and other_run.recipe.name.casefold() == recipe.name.casefold()
+                ):
                     raise self.CollectError(
-                        f"{self.run.shown}: its files would go to the folder of {other.shown}, "
+                        f"{self.run.shown}: its files would go to the folder of {other_run.shown}, "
                         f"as both are named {recipe.name}; give each its own `name:`"
                     )
-        checks = () if recipe is None else _foreseen(recipe, self.run.options)
+        checks = () if recipe is None else _expected_checks(recipe, self.run.options)
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
             yield CheckItem.from_parent(self, name=name, run=self.run, check=check, foreseen=frozenset(checks))
         for files, options in self.run.verified:
-            told = [file.name for file in files] + [f"{key}={value}" for key, value in options.items()]
-            name = f"verify[{' '.join(told)}]"
+            words = [file.name for file in files] + [f"{key}={value}" for key, value in options.items()]
+            name = f"verify[{' '.join(words)}]"
             yield VerifyItem.from_parent(self, name=name, run=self.run, files=files, options=options)
 
 
-def _foreseen(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
+def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
     """Tell the checks to come; the item of the recipe itself has those that are not foreseen."""
     from camgeo.common.errors import CallError
     from camgeo.registry.root import root_of
@@ -299,10 +303,10 @@ class RecipeItem(pytest.Item):
         return self.path, None, self.name
 
     def _hold(self, checks: list[Entry], report: Entry) -> None:
-        from camgeo.api.report import explained
+        from camgeo.api.report import explanation
 
         assert self.run.recipe is not None
-        failed = [explained(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
+        failed = [explanation(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
         if failed:
             _fail("\n".join(failed))
 
@@ -369,10 +373,10 @@ class CheckItem(RecipeItem):
         self._hold(more, report)
 
     def _one(self, foreseen: Foreseen, report: Entry) -> None:
-        found = [check for check in report["checks"] if (check["name"], check.get("file")) == foreseen]
-        if found:
-            self.user_properties += [(key, found[0][key]) for key in ("value", "limit", "unit", "at_deg")]
-            self._hold(found, report)
+        checks = [check for check in report["checks"] if (check["name"], check.get("file")) == foreseen]
+        if checks:
+            self.user_properties += [(key, checks[0][key]) for key in ("value", "limit", "unit", "at_deg")]
+            self._hold(checks, report)
             return
         self._missing(foreseen, report)
 

@@ -25,7 +25,7 @@ from camgeo.checks.declared import (
     UNDERCUT_LOCAL,
     WATERTIGHT,
 )
-from camgeo.common.arguments import number_of, path_of, spelled, whole_of
+from camgeo.common.arguments import number_of, path_of, short_repr, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.keys import MOST_ANGLES
 from kin.numeric.errors import CamgeoError
@@ -159,17 +159,18 @@ def assert_constant_breadth(
     none. The extremes are those of the whole turn, not of samples. Returns them.
     """
     path = path_of("path", path)
-    found = _breadth(_contour(path, None if mm is None else _length("mm", mm)))
-    nominal = 0.5 * (found.least + found.greatest) if breadth is None else number_of("breadth", breadth)
+    measured = _breadth(_contour(path, None if mm is None else _length("mm", mm)))
+    nominal = 0.5 * (measured.least + measured.greatest) if breadth is None else number_of("breadth", breadth)
     tolerance = _length("tolerance", tolerance)
-    for value, at in ((found.greatest, found.greatest_at_deg), (found.least, found.least_at_deg)):
+    for value, at_deg in ((measured.greatest, measured.greatest_at_deg), (measured.least, measured.least_at_deg)):
         if not abs(value - nominal) <= 2.0 * tolerance:
             named = "the mean" if breadth is None else "the nominal"
+            span = f"breadth from {measured.least:.9g} to {measured.greatest:.9g} mm"
             raise AssertionError(
-                f"{path}: breadth {value:.9g} at {at:.4f} deg, {value - nominal:+.6g} from {named} {nominal:.9g} mm, "
-                f"at most {2.0 * tolerance:.6g} mm allowed (breadth from {found.least:.9g} to {found.greatest:.9g} mm)"
+                f"{path}: breadth {value:.9g} at {at_deg:.4f} deg, {value - nominal:+.6g} from {named} "
+                f"{nominal:.9g} mm, at most {2.0 * tolerance:.6g} mm allowed ({span})"
             )
-    return found
+    return measured
 
 
 def _breadth(contour: Contour) -> Breadth:
@@ -214,7 +215,7 @@ def assert_motion(
     error, of several surfaces the greatest.
     """
     names = {MOTION.name, *BACKLASH}
-    rows = _judged(recipe, path, names, options, limit=limit, tolerance=tolerance, gap=gap, angles=angles)
+    rows = _judge(recipe, path, names, options, limit=limit, tolerance=tolerance, gap=gap, angles=angles)
     if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     motion = max((row["motion"] for row in rows), key=lambda found: float(found["max"]))
@@ -230,11 +231,11 @@ def assert_contour(
     Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance`, `gap` and `options` as in
     `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
-    rows = _judged(recipe, path, {CONTOUR.name}, options, tolerance=tolerance, gap=gap)
+    rows = _judge(recipe, path, {CONTOUR.name}, options, tolerance=tolerance, gap=gap)
     return max(float(row["measured_error"]) for row in rows)
 
 
-def _judged(
+def _judge(
     recipe: RecipeSource,
     path: AnyPath,
     names: set[str],
@@ -257,18 +258,18 @@ def _judged(
     if angles is not None:
         angles = whole_of("angles", angles)
         if not 1 <= angles <= MOST_ANGLES:
-            raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
+            raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {short_repr(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
     report: Entry = dict(judged(recipe, path, tolerance=tolerance, gap=gap, **options))
-    own = [check for check in report["checks"] if check.get("file") == path.name]
-    if len(own) == 1 and own[0]["name"] in UNREAD:
-        _all_hold(own, report, recipe, str(path))
+    file_checks = [check for check in report["checks"] if check.get("file") == path.name]
+    if len(file_checks) == 1 and file_checks[0]["name"] in UNREAD:
+        _all_hold(file_checks, report, recipe, str(path))
     names = names | {name for name in CHECKS if options.get(CHECKS.owner(name), False)}
-    asked = [check for check in own if check["name"] in names]
-    if not asked:
+    wanted_checks = [check for check in file_checks if check["name"] in names]
+    if not wanted_checks:
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
-    _all_hold(asked, report, recipe, str(path))
+    _all_hold(wanted_checks, report, recipe, str(path))
     entry: Entry = report["files"][0]
     surfaces: list[Entry] = entry.get("surfaces", [entry])
     return surfaces
@@ -313,7 +314,7 @@ def assert_verified(
     recipe = order_of(recipe)
     report = verify(recipe, path, *paths, **options)
     entry: Entry = dict(report)
-    _all_hold(entry["checks"], entry, recipe, ", ".join(str(each) for each in (path, *paths)))
+    _all_hold(entry["checks"], entry, recipe, ", ".join(str(file) for file in (path, *paths)))
     return report
 
 
@@ -340,21 +341,21 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
 
 def _length(name: str, value: float) -> float:
     """Give an argument that is 0 or above and finite, as a breadth, a tolerance and the like are."""
-    found = number_of(name, value)
-    if not 0.0 <= found < math.inf:
-        raise CallError(f"{name} is a number of 0 or above, not {found!r}")
-    return found
+    length = number_of(name, value)
+    if not 0.0 <= length < math.inf:
+        raise CallError(f"{name} is a number of 0 or above, not {length!r}")
+    return length
 
 
 # --- all of them ------------------------------------------------------------------------------------------------------
 
 
-def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Order, what: str) -> None:
-    from camgeo.api.report import explained
+def _all_hold(checks: Iterable[Entry], report: Entry, recipe: Order, title: str) -> None:
+    from camgeo.api.report import explanation
 
-    failed = [explained(check, report, recipe) for check in checks if not check["ok"]]
+    failed = [explanation(check, report, recipe) for check in checks if not check["ok"]]
     if failed:
-        raise AssertionError(f"{what}: " + "\n".join(failed))
+        raise AssertionError(f"{title}: " + "\n".join(failed))
 
 
 def _no_faults(path: Path, faults: list[str]) -> None:
@@ -405,8 +406,8 @@ def _is_solid(path: Path) -> bool:
     """Whether a file is a solid, not a drawing; raises CallError for one that is neither."""
     from kin.read.formats import FORMATS, suffixes
 
-    known = {suffix: FORMATS[name].contents for suffix, name in suffixes().items()}
-    readable = [suffix for suffix, contents in known.items() if contents in {"drawing", "solid"}]
+    contents = {suffix: FORMATS[name].contents for suffix, name in suffixes().items()}
+    readable = [suffix for suffix, contents in contents.items() if contents in {"drawing", "solid"}]
     if path.suffix.lower() not in readable:
         raise CallError(f"{path.name}: a contour is read from one of {', '.join(readable)}")
-    return known[path.suffix.lower()] == "solid"
+    return contents[path.suffix.lower()] == "solid"

@@ -17,7 +17,7 @@ import numpy as np
 import yaml
 
 import camgeo
-from camgeo.api.report import explained
+from camgeo.api.report import explanation
 from camgeo.capabilities.follow.command import summary  # needs: follow
 from camgeo.capabilities.follow.library import judged_by_recipe  # needs: follow
 from camgeo.checks.declared import declaration
@@ -136,7 +136,7 @@ def _recipe(name: str, text: str | Source) -> Recipe:
 
 def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> dict[str, Any]:
     """A check that fails in words, with the line of the recipe's field that it hangs on."""
-    head, *rows = explained(check, report, recipe).splitlines()
+    head, *rows = explanation(check, report, recipe).splitlines()
     parts = {name: text.strip() for name, _, text in (row.strip().partition(" ") for row in rows)}
     place = re.fullmatch(r".*?:(\d+):(\d+) (.*)", parts.get("recipe", ""))
     line, column, path = (int(place[1]), int(place[2]), place[3]) if place else (0, 0, "")

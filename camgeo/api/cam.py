@@ -59,10 +59,10 @@ def _show(
     return pipeline.judge_and_show(recipe, paths, tolerance=tolerance, units=units, gap=gap)
 
 
-def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None) -> str:
+def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, file_name: str | None) -> str:
     from camgeo.report.failure import failure
 
-    return failure(check, report, recipe, shown)
+    return failure(check, report, recipe, file_name)
 
 
 def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:

@@ -11,7 +11,7 @@ from camgeo.api import notebook
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.edges import FORMS, Edges, Form
 from camgeo.api.errors import CallError
-from camgeo.common.arguments import number_of, numbers_of, spelled, text_of, whole_of
+from camgeo.common.arguments import number_of, numbers_of, short_repr, text_of, whole_of
 from camgeo.schema.fields import MOST
 from kin.numeric.records import dataclass, field
 
@@ -55,12 +55,12 @@ class Design:
 
     @cached_property
     def _checks(self) -> tuple[Checked, ...]:
-        found = self.exact.checks
+        checks = self.exact.checks
         if self.recipe.limits:
             from camgeo.measures.limits import limit_checks
 
-            found = (*found, *limit_checks(self.recipe, self.exact, found, (), None))
-        return found
+            checks = (*checks, *limit_checks(self.recipe, self.exact, checks, (), None))
+        return checks
 
     @property
     def ok(self) -> bool:
@@ -73,11 +73,13 @@ class Design:
         from camgeo.measures.figures import design_figures
         from camgeo.recipe.figures import FIGURES
 
-        given = set(self.recipe.marks)
+        paths = set(self.recipe.marks)
         offers = self.recipe.cam.arrangement.offers
-        names = [name for name, one in FIGURES.items() if one.of == "design" and one.needs.there(offers, given)]
-        found = design_figures(self.recipe, self.exact, self.exact.checks, names)
-        return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
+        names = [
+            name for name, figure in FIGURES.items() if figure.of == "design" and figure.needs.there(offers, paths)
+        ]
+        values = design_figures(self.recipe, self.exact, self.exact.checks, names)
+        return Figures({name: Figure.of(self.recipe, figure) for name, figure in values.items()})
 
     @property
     def sized(self) -> Recipe:
@@ -114,7 +116,7 @@ class Design:
         if not np.isfinite(angle).all():
             raise CallError("shaft angles are finite numbers, in radians")
         if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {spelled(order)}")
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
         row = self._motion(angle.ravel(), order).reshape(angle.shape)
         return float(row) if row.ndim == 0 else row
 
@@ -124,8 +126,8 @@ class Design:
             if not exact.driven.turns:
                 raise CallError(f"{self.recipe.name}: the linkage does not make a full turn, so it has no motion")
             mechanism = exact.driven.mechanism
-            found = mechanism.at(mechanism.relative(angle), order)
-            return np.asarray(found.over_shaft(found.output)[order])
+            state = mechanism.at(mechanism.relative(angle), order)
+            return np.asarray(state.over_shaft(state.output)[order])
         swing: Array = exact.motion.rows(angle, order)[order]
         return swing
 
@@ -139,14 +141,14 @@ class Design:
         """
         n = whole_of("n", n)
         if not 3 <= n <= MOST_POINTS:
-            raise CallError(f"a contour takes 3 points at least and {MOST_POINTS} at most, not {spelled(n)}")
+            raise CallError(f"a contour takes 3 points at least and {MOST_POINTS} at most, not {short_repr(n)}")
         runs = self._made().runs
         ends = np.cumsum([run.high - run.low for run in runs])
         along = ends[-1] * np.arange(n) / n
-        which = np.searchsorted(ends, along, side="right")
+        piece = np.searchsorted(ends, along, side="right")
         low = np.array([run.low for run in runs])
         before = np.concatenate([[0.0], ends[:-1]])
-        points = self._made().sample(low[which] + along - before[which]).point
+        points = self._made().sample(low[piece] + along - before[piece]).point
         if self.recipe.rotation == "ccw":  # the mirror image, and again counter-clockwise from the same first point
             points = np.roll(points[::-1], 1, axis=0) * np.array([1.0, -1.0])
         return points
@@ -196,8 +198,8 @@ class Design:
         remarks = remarks_of(self.recipe, self.exact, self._checks)
         findings = Findings(self._checks, (), (), (), self.exact.follower.name, remarks=remarks)
         report = document(self.recipe, findings)
-        shown = scene(self.recipe, content(self.recipe, self.exact, ()), report)
-        return {**shown, "checks": finite(report["checks"]), "remarks": finite(report["remarks"])}
+        data = scene(self.recipe, content(self.recipe, self.exact, ()), report)
+        return {**data, "checks": finite(report["checks"]), "remarks": finite(report["remarks"])}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.recipe.name!r}, {self.exact.follower.name})"
@@ -212,4 +214,6 @@ class Design:
 
     def _repr_html_(self) -> str:
         rows = [(name, str(figure)) for name, figure in self.figures.items()]
-        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows))
+        return notebook.notebook_html(
+            self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows)
+        )

@@ -67,10 +67,10 @@ Edge: TypeAlias = Line | Arc | Spline
 
 @dataclass(frozen=True)
 class Edges(Sequence[Edge]):
-    """The edges of a closed contour, counter-clockwise, each beginning where the one before ends; mm.
+    """Edges of a closed contour, counter-clockwise, each beginning where the one before ends; mm.
 
-    No point of them is proved to lie farther than `outward` outside or `inward` inside of the exact contour. `area`,
-    mm^2, is what they enclose.
+    It is proved that no point of them lies farther than `outward` outside or `inward` inside of the exact contour.
+    `area`, mm^2, is the enclosed area.
     """
 
     edges: tuple[Edge, ...]
@@ -97,10 +97,12 @@ class Edges(Sequence[Edge]):
 
     @staticmethod
     def of(outline: Outline) -> Edges:
-        """Tell a fitted outline in plain numbers."""
+        """Edges of a fitted outline."""
         if isinstance(outline, Polygon):
-            at = _points(outline.vertices)
-            edges: tuple[Edge, ...] = tuple(itertools.starmap(Line, zip(at, (*at[1:], at[0]), strict=True)))
+            corners = _points(outline.vertices)
+            edges: tuple[Edge, ...] = tuple(
+                itertools.starmap(Line, zip(corners, (*corners[1:], corners[0]), strict=True))
+            )
         elif isinstance(outline, ArcSpline):
             edges = tuple(itertools.starmap(_piece, outline.pieces()))
         else:

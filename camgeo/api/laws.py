@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, overload
 
-from camgeo.common.arguments import numbers_of, spelled, whole_of
+from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.errors import CallError
 from kin.law.sources.laws import NAMES, formula, named
 from kin.numeric.records import dataclass, field
@@ -52,13 +52,13 @@ class Law:
         if not bool(((share >= 0.0) & (share <= 1.0)).all()):
             raise CallError("u is the share of a segment, from 0 to 1")
         if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {spelled(order)}")
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
         row = self._motion.derivatives(share.ravel(), order)[order].reshape(share.shape)
         return float(row) if row.ndim == 0 else row
 
 
 def laws() -> Mapping[str, Law]:
-    """Give the motion laws by the names that recipes have, in the order in which `camgeo laws` lists them."""
+    """Motion laws by their names in recipes, in the order of `camgeo laws`."""
     return {
         law.name: Law(law.name, formula(law.name), law.peaks.velocity, law.peaks.acceleration, law.peaks.jerk, law)
         for law in map(named, NAMES)

@@ -1,4 +1,4 @@
-"""Recipes from wherever they come: a file, a text, a mapping."""
+"""Recipes of a file, a text or a mapping."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     OrderSource: TypeAlias = Order | str | PathLike[str]
 
 Loaded: TypeAlias = "Recipe | Any"
-"""A Recipe, or one of another kind: that is Any to a type checker, as what a path leads to is seen when it is read."""
-NAME = "recipe"  # of what has no file
+"""A Recipe, or one of another kind, which is Any to a type checker: the kind is known when the file is read."""
+NAME = "recipe"  # of a recipe without a file
 
 OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `str`
 
@@ -29,9 +29,9 @@ OF_TEXT = ("\n", "\r", ": ")  # in a text, and in no path that is given as a `st
 def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
-    A `str` with a line break, or with `: ` as YAML has it, is a text, any other the path of a file. A recipe that is no
-    file and gives no `name` is called recipe. Raises RecipeErrors, which
-    has every fault with line, column and remedy, and TypeError for what is none of the three.
+    A `str` with a line break or with `: ` is YAML text, any other is the path of a file. A recipe without a file and
+    without `name` is called recipe. Raises RecipeErrors with every fault, its line, column and remedy, and TypeError
+    for another type.
     """
     is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
@@ -44,7 +44,7 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
 
 
 def order_of(recipe: OrderSource) -> Order:
-    """Give a recipe of any kind, read from its file where its path is given; raises as `load` does."""
+    """Recipe of any kind, read from its file if the argument is a path; raises as `load` does."""
     if isinstance(recipe, (str, PathLike)):
         return load_order(path_of("recipe", recipe))
     is_a("recipe", recipe, Order, "a Recipe or the path of one")
@@ -52,6 +52,6 @@ def order_of(recipe: OrderSource) -> Order:
 
 
 def recipe_of(recipe: RecipeSource) -> Recipe:
-    """Give a recipe, read from its file where its path is given; raises as `load` does."""
+    """Recipe of one cam, read from its file if the argument is a path; raises as `load` does."""
     is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
     return recipe if isinstance(recipe, Recipe) else load_file(path_of("recipe", recipe))

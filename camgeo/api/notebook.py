@@ -1,4 +1,4 @@
-"""How designs and reports show themselves in a notebook: a drawing, the verdict, tables. Plain HTML, no script."""
+"""HTML of designs and reports in a notebook: a drawing, the verdict, tables. No script."""
 
 from __future__ import annotations
 
@@ -18,36 +18,33 @@ FAULT = "#b00020"
 
 
 def drawing(recipe: Recipe, exact: Exact) -> str:
-    """Draw the exact cam with its follower at shaft angle 0 as one SVG."""
+    """SVG of the exact cam with its follower at shaft angle 0."""
     from camgeo.report.page import svg
     from camgeo.report.page.content import content
 
     return svg.still(content(recipe, exact, ()).scene, 0, recipe.name)
 
 
-def shown(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:
-    """Put together a drawing, the verdict and tables.
-
-    The drawing is an image of its own, as its style would else reach the rest of the notebook.
-    """
+def notebook_html(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:
+    """HTML of a drawing, the verdict and tables; the drawing is an image, so that its style stays within it."""
     data = base64.b64encode(picture.encode("utf-8")).decode("ascii")
     failed = sum(not check.ok for check in checks)
-    told = f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
-    head = f'<strong style="color:{FAULT if failed else "inherit"}">{escape(title)}: {told}</strong>'
+    verdict = f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
+    head = f'<strong style="color:{FAULT if failed else "inherit"}">{escape(title)}: {verdict}</strong>'
     image = f'<img width="{WIDTH}" alt="{escape(title)}" src="data:image/svg+xml;base64,{data}">'
     rows = [_row(check) for check in checks]
     return f"<div>{head}<br>{image}{table(('check', '', 'value', 'limit', 'at', 'file'), rows)}{''.join(more)}</div>"
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """Write a table."""
+    """HTML of a table; texts are escaped."""
     cells = "".join(f"<th>{escape(name)}</th>" for name in head)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def line(text: str) -> str:
-    """Write a line of text."""
+    """HTML of a line of text, escaped."""
     return f"<p>{escape(text)}</p>"
 
 

@@ -115,8 +115,8 @@ class Report(Mapping[str, JSON]):
         path = self._paths[index] if self._paths else None if self.path is None else self.path / name
         motion = entry.get("motion")
         names = ("kind", "pieces", "tolerance", "geometry_error", "measured_error", "perimeter", "area")
-        told = None if motion is None else Motion(*(motion[name] for name in Motion.__dataclass_fields__))
-        return File(name, path, **{name: entry.get(name) for name in names}, motion=told)
+        motion_error = None if motion is None else Motion(*(motion[name] for name in Motion.__dataclass_fields__))
+        return File(name, path, **{name: entry.get(name) for name in names}, motion=motion_error)
 
     @cached_property
     def design(self) -> Designed:
@@ -136,7 +136,7 @@ class Report(Mapping[str, JSON]):
         is_a("check", check, Check, "a Check")
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
-        return explained(self._document["checks"][self.checks.index(check)], self._document, self.recipe)
+        return explanation(self._document["checks"][self.checks.index(check)], self._document, self.recipe)
 
     def to_json(self) -> str:
         """Write the report as report.json has it."""
@@ -181,7 +181,7 @@ class Report(Mapping[str, JSON]):
     def _repr_html_(self) -> str:
         from camgeo.api import notebook
 
-        told = [f"remark: {remark.sentence}" for remark in self.remarks]
+        lines = [f"remark: {remark.sentence}" for remark in self.remarks]
         rows = [
             (
                 file.name,
@@ -192,7 +192,9 @@ class Report(Mapping[str, JSON]):
         ]
         head = ("file", "pieces", "tolerance", "proved", "measured")
         more = [notebook.table(head, rows)] if rows else []
-        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, *more, *map(notebook.line, told))
+        return notebook.notebook_html(
+            self._repr_svg_(), self.recipe.name, self.checks, *more, *map(notebook.line, lines)
+        )
 
 
 def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
@@ -200,8 +202,8 @@ def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
 
 
-def explained(check: dict[str, Any], report: dict[str, Any], recipe: Order, shown: str | None = None) -> str:
+def explanation(check: dict[str, Any], report: dict[str, Any], recipe: Order, file_name: str | None = None) -> str:
     """Tell of a check that fails over several lines; `shown` names the recipe's file in place of its path."""
     from camgeo.registry.root import root_of
 
-    return root_of(recipe).explain(check, report, recipe, shown)
+    return root_of(recipe).explain(check, report, recipe, file_name)

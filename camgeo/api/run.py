@@ -1,4 +1,4 @@
-"""From a recipe to files and a verdict: made and kept, made and only judged, or judged alone."""
+"""Functions that write and judge the files of a recipe, or judge files of any origin by it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from camgeo.api.errors import CallError
 from camgeo.api.loading import order_of
 from camgeo.api.log import heard, staged, tell_checks
 from camgeo.api.report import Report
-from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
+from camgeo.common.arguments import demand_callable, is_a, number_of, path_of, short_repr, texts_of
 from camgeo.common.errors import with_packages
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
@@ -38,35 +38,35 @@ def export(
 ) -> Report:
     """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
 
-    Nothing is there but whole sets: files in which a check fails go to `out`/<name>.rejected. `only` names kinds of
-    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. `options` are those of
-    capabilities, as `camgeo verify --help` lists them: more checks that can fail. Raises RecipeErrors where there is no
-    such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what it should be,
-    CallError for a kind of which the recipe lists no file, TypeError for an option that there is not. A check that
-    fails raises nothing: see `Report.ok`.
+    The folder has whole sets only: a set in which a check fails goes to `out`/<name>.rejected. `only` names kinds of
+    files, such as "dxf"; others stay as they are. `progress` is called with each stage as it begins. `options` are
+    those of capabilities, as `camgeo verify --help` lists them: further checks. Raises RecipeErrors where there is no
+    such cam or a tolerance cannot be held, SurroundingsError where the disk refuses or a package is missing, CallError
+    for a kind of which the recipe lists no file, TypeError for an unknown option. A check that fails raises nothing:
+    see `Report.ok`.
     """
     recipe = order_of(recipe)
-    called("progress", progress)
-    used = _using("export", recipe, options)
+    demand_callable("progress", progress)
+    used = _with_options("export", recipe, options)
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
-    faults = [_unlisted(kind) for kind in only if kind not in listed]
+    faults = [_fault_of_kind(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
-    told = staged(recipe, progress)
-    outcome = root_of(used).export(used, folder, only, told)
-    return _told(Report(recipe, outcome.report, outcome.folder))
+    progress_log = staged(recipe, progress)
+    outcome = root_of(used).export(used, folder, only, progress_log)
+    return _log(Report(recipe, outcome.report, outcome.folder))
 
 
 @with_packages()
 def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
     recipe = order_of(recipe)
-    called("progress", progress)
-    used = _using("check", recipe, options)
-    told = staged(recipe, progress)
-    outcome = root_of(used).check(used, told)
-    return _told(Report(recipe, outcome.report))
+    demand_callable("progress", progress)
+    used = _with_options("check", recipe, options)
+    progress_log = staged(recipe, progress)
+    outcome = root_of(used).check(used, progress_log)
+    return _log(Report(recipe, outcome.report))
 
 
 @with_packages()
@@ -82,72 +82,83 @@ def verify(
 ) -> Report:
     """Judge drawings, solids, milling programs and measured points of any origin by a recipe's motion.
 
-    They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
-    its export. `units` is that of files that state none. Ends in drawings within `gap` of one other, in its unit
-    and at most the tolerance, are joined by a line; it is added to the errors of contour and motion. With `page` the
-    report has the page that shows the files, `Report.page`. `options` as in `export`, and those of files that a
-    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for what is no file of
-    a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file states
-    another unit than `units`, SurroundingsError where a library is missing. Any other file that cannot be read raises
-    nothing: that is a check that fails.
+    `tolerance`, in the recipe's unit, is by default that of the recipe's file of the same name, or of its export.
+    `units` is the unit of files that state none. Ends in drawings within `gap` of one other, in the recipe's unit and
+    at most the tolerance, are joined by a line; the gap is added to the errors of contour and motion. With `page` the
+    report has the page that shows the files, `Report.page`. `options` are those of `export`, and those of files that a
+    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for a path that is no
+    file of a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file
+    states another unit than `units`, SurroundingsError where a library is missing. A file that cannot be read raises
+    nothing: the check `readable` fails.
     """
     from kin.read.formats import suffixes
 
     recipe = order_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
-    wide = None if gap is None else number_of("gap", gap)
+    gap_width = None if gap is None else number_of("gap", gap)
     if units is not None:
         is_a("units", units, str, "a str")
     is_a("page", page, bool, "a bool")
     known_options = {name for judge in registry.judges().values() for name in judge.options}
-    own = {name: value for name, value in options.items() if name in known_options}
-    used = _using("verify", recipe, {name: value for name, value in options.items() if name not in own})
-    told = {path: _no_file(path) for path in paths}
-    claimed = [path for path in paths if not told[path] and registry.judge_of(path, own)]
+    judge_options = {name: value for name, value in options.items() if name in known_options}
+    used = _with_options(
+        "verify", recipe, {name: value for name, value in options.items() if name not in judge_options}
+    )
+    path_faults = {path: _path_fault(path) for path in paths}
+    claimed = [path for path in paths if not path_faults[path] and registry.judge_of(path, judge_options)]
     if claimed:
-        return _told(
-            _judged_by(recipe, paths, claimed, units, own, held=within is not None or wide is not None or page)
+        return _log(
+            _judge_claimed(
+                recipe,
+                paths,
+                claimed,
+                units,
+                judge_options,
+                has_file_bounds=within is not None or gap_width is not None or page,
+            )
         )
-    told |= {path: _too_large(path) for path in paths if not told[path]}
-    found = [path for path in paths if not told[path]]
-    faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
-    again = [path for path in dict.fromkeys(found) if found.count(path) > 1]
-    faults += [f"{escaped(str(path))}: it is given {found.count(path)} times; give each file once" for path in again]
-    known = [suffix for suffix, name in suffixes().items() if name in FORMATS]
+    path_faults |= {path: _size_fault(path) for path in paths if not path_faults[path]}
+    readable = [path for path in paths if not path_faults[path]]
+    faults = [f"{escaped(str(path))}: {path_faults[path]}" for path in paths if path_faults[path]]
+    again = [path for path in dict.fromkeys(readable) if readable.count(path) > 1]
+    faults += [f"{escaped(str(path))}: it is given {readable.count(path)} times; give each file once" for path in again]
+    known_suffixes = [suffix for suffix, name in suffixes().items() if name in FORMATS]
     faults += [
-        f"{escaped(str(path))}: none of {', '.join(known)}" for path in found if path.suffix.lower() not in known
+        f"{escaped(str(path))}: none of {', '.join(known_suffixes)}"
+        for path in readable
+        if path.suffix.lower() not in known_suffixes
     ]
     if within is not None and not 0.0 < within <= MOST:
         faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {within!r}")
-    if wide is not None and not 0.0 < wide <= MOST:
-        faults.append(f"a gap is a length above 0 and at most the tolerance, not {wide!r}")
-    if wide is not None and not any(_is_drawing(path) for path in paths):
+    if gap_width is not None and not 0.0 < gap_width <= MOST:
+        faults.append(f"a gap is a length above 0 and at most the tolerance, not {gap_width!r}")
+    if gap_width is not None and not any(_is_drawing(path) for path in paths):
         faults.append("a gap is one between ends in a drawing: leave it out, as none of the files is one")
     if units is not None and units not in UNIT_MM:
-        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {short_repr(units)}")
     if faults:
         raise CallError(*faults)
     within = None if within is None else within * recipe.mm
-    wide = None if wide is None else wide * recipe.mm
+    gap_width = None if gap_width is None else gap_width * recipe.mm
     unit = None if units is None else UNIT_MM[units]
     kind = root_of(used)
     if not page:
-        return _told(Report(recipe, kind.judge(used, paths, within, unit, wide), None, tuple(paths)))
+        return _log(Report(recipe, kind.judge(used, paths, within, unit, gap_width), None, tuple(paths)))
     if kind.show is None:
         raise CallError(f"{recipe.name}: a page shows the files of one cam; give {kind.instead}, or leave page out")
-    report, text = kind.show(used, paths, within, unit, wide)
-    return _told(Report(recipe, report, None, tuple(paths), page=text))
+    report, text = kind.show(used, paths, within, unit, gap_width)
+    return _log(Report(recipe, report, None, tuple(paths), page=text))
 
 
-def _judged_by(
+def _judge_claimed(
     recipe: Order,
     paths: Sequence[Path],
     claimed: Sequence[Path],
     units: Units | None,
     options: Mapping[str, object],
     *,
-    held: bool,
+    has_file_bounds: bool,
 ) -> Report:
     """Report on files that a capability judges; raises CallError where others are among them."""
     from camgeo.registry.capability import FileCall
@@ -156,9 +167,9 @@ def _judged_by(
     again = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
     faults += [f"{escaped(str(path))}: it is given {paths.count(path)} times; give each file once" for path in again]
     if units is not None and units not in UNIT_MM:
-        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {short_repr(units)}")
     name = escaped(str(claimed[0]))
-    if held:
+    if has_file_bounds:
         faults.append(f"{name}: measured points have no tolerance, gap and page of files: give made.profile, and out")
     if faults:
         raise CallError(*faults)
@@ -168,18 +179,18 @@ def _judged_by(
     return Report(recipe, report, None, tuple(paths))
 
 
-def _using(function: str, recipe: Order, options: Mapping[str, object]) -> Order:
-    """Give the recipe as one that uses the capabilities of these options of a call, where they are True."""
-    known = registry.options()
+def _with_options(function: str, recipe: Order, options: Mapping[str, object]) -> Order:
+    """Recipe that uses the capabilities of the options of a call that are True; raises TypeError for others."""
+    known_options = registry.options()
     for name, value in options.items():
-        if name not in known:
+        if name not in known_options:
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
         is_a(name, value, bool, "a bool")
     return recipe.using(*(name for name, value in options.items() if value))
 
 
-def _told(report: Report) -> Report:
-    """Tell the log of a report."""
+def _log(report: Report) -> Report:
+    """The report itself, after its files and checks were logged."""
     name = report.recipe.name
     if log := heard():
         for file in report.files if report.path is not None else ():
@@ -189,9 +200,9 @@ def _told(report: Report) -> Report:
     return report
 
 
-def _unlisted(kind: str) -> str:
+def _fault_of_kind(kind: str) -> str:
     if kind not in FORMATS:
-        return f"a kind of file is one of {', '.join(FORMATS)}, not {spelled(kind)}"
+        return f"a kind of file is one of {', '.join(FORMATS)}, not {short_repr(kind)}"
     return f"export.files lists no {kind}"
 
 
@@ -203,8 +214,8 @@ def _is_drawing(path: Path) -> bool:
     return name is not None and READ[name].contents == "drawing"
 
 
-def _no_file(path: Path) -> str:
-    """Say why a path leads to no file; empty where it does."""
+def _path_fault(path: Path) -> str:
+    """Reason why a path leads to no file; empty where it does."""
     try:
         if path.is_file():
             return ""
@@ -215,8 +226,8 @@ def _no_file(path: Path) -> str:
         return f"cannot be read: {error.strerror or error}"
 
 
-def _too_large(path: Path) -> str:
-    """Say that a file is larger than is read of its kind; empty where it is not."""
+def _size_fault(path: Path) -> str:
+    """Message on a file that is larger than the reader of its kind allows; empty for others."""
     from kin.read.formats import suffixes
     from kin.read.size import oversize
 

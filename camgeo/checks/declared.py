@@ -1,9 +1,8 @@
-"""Every check, declared once: name, unit, when it applies, the recipe's field it hangs on, and what would do.
+"""Declarations of all checks: name, unit, when a check applies, the recipe's field behind it, its remedy.
 
-The list of checks to come (`camgeo.synthesis.expected_checks`), that of what a run leaves out
-(`camgeo.output.skipped`) and the texts of failures (`camgeo.report.failure`) are read from here, and what makes a
-check takes its name from here. The judge (kin) knows nothing of recipes: the checks of files that it makes are
-declared here by the same names.
+The list of expected checks (`camgeo.synthesis.expected_checks`), the list of skipped ones (`camgeo.output.skipped`) and
+the texts of failures (`camgeo.report.failure`) are made from them, and the functions that make checks take the names
+from here. The judge (kin) knows nothing of recipes: the checks of files that it makes are declared by the same names.
 """
 
 from __future__ import annotations
@@ -45,9 +44,9 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
 @dataclass(frozen=True)
 class Scene:
-    """What decides which checks are made: the recipe, and the follower that its motion calls for.
+    """Facts that decide which checks are made: the recipe and the follower of its motion.
 
-    Of a run further whether its contour is trimmed, and whether its linkage turns right round.
+    In a run also whether the contour is trimmed, and whether the linkage turns right round.
     """
 
     recipe: Recipe
@@ -82,16 +81,19 @@ OfFile: TypeAlias = "Callable[[Scene, FileRequest], bool]"
 
 @dataclass(frozen=True)
 class Declared:
-    """One check.
+    """Declaration of one check.
 
-    `units` are those it may have, lengths as mm. `exact` says whether it is made of the exact cam, its motion and
-    mechanism, `of_file` whether of a file; `why_not` why it is not made, empty where that needs no words. `field` is
-    the recipe's field that it hangs on most, `own_field` the one that takes its place where the recipe gives it.
-    `remedy` says what would let it hold, empty where nothing would or where the check itself says it. `backlash` is
-    whether it concerns what is left between contour and follower, `between` whether of a pair of discs it is made
-    once, of the last of their files; `in_frame` whether under a linkage it concerns the cam in its frame alone, its
-    place being the relative angle then. A figure on its limit does not hold a `strict` check, nor one whose limit is
-    among `strict_at`. `after` is the core's check behind which it is foreseen.
+    units      units that it may have, lengths as mm
+    exact      whether it is made for the exact cam, its motion and mechanism
+    of_file    whether it is made for a file
+    why_not    reason why it is not made; empty where none is reported
+    field      path of the recipe's field that influences it most; `own_field` takes its place where the recipe has it
+    remedy     change that would let it hold; empty where none is known or the check itself says it
+    backlash   whether it concerns the play between contour and follower
+    between    whether it is made once for a pair of discs, with the last of their files
+    in_frame   whether with a linkage it concerns the cam in its frame, so that its place is the relative angle
+    strict     whether a figure equal to its limit fails; `strict_at` are limits at which it fails
+    after      core's check behind which the check of a capability stands
     """
 
     name: str
@@ -110,7 +112,7 @@ class Declared:
     after: str = ""
 
     def place(self, recipe: Recipe, file: str | None) -> str:
-        """Give the recipe's field on which it hangs most."""
+        """Path of the recipe's field that influences the check most; `file` is that of the check, if it has one."""
         section, _, name = self.own_field.partition(".")
         if name and getattr(getattr(recipe, section), name) is not None:
             return self.own_field
@@ -130,8 +132,8 @@ def _named(name: str) -> Exact:
 
 
 def _dwells(scene: Scene) -> bool:
-    asked = scene.recipe.dwell
-    return scene.linked and asked is not None and asked.at_least is not None
+    dwell = scene.recipe.dwell
+    return scene.linked and dwell is not None and dwell.at_least is not None
 
 
 def _ground(scene: Scene) -> bool:
@@ -171,9 +173,9 @@ def _solid(scene: Scene, file: FileRequest) -> bool:
 
 
 def _reached(scene: Scene, file: FileRequest) -> bool:
-    asked = scene.recipe.manufacture
-    drawn = file.format.path and file.compensation is None and asked is not None and asked.layer
-    return drawn or file.format.program
+    manufacture = scene.recipe.manufacture
+    is_drawn = file.format.path and file.compensation is None and manufacture is not None and manufacture.layer
+    return is_drawn or file.format.program
 
 
 def _ringed(scene: Scene, file: FileRequest) -> bool:
@@ -219,7 +221,7 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
 
 
 def run_with(scene: Scene, file: FileRequest) -> bool:
-    """Whether a file drives what runs behind it: of a linkage the intended output alone does."""
+    """Whether a file's motion drives a run: without a linkage, of a nominal part."""
     return not scene.linked and file.format.part and file.compensation is None
 
 

@@ -1,4 +1,4 @@
-"""What would let a check hold: one function for each that knows, empty text where nothing would do.
+"""Remedies of failed checks: functions that give a change of the recipe as text, empty where none is known.
 
 Each takes the check as the report has it, the report and the recipe. Figures are in the recipe's unit, rounded to the
 side on which the text is true.
@@ -62,17 +62,17 @@ Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
 
 
 def smaller_swing(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell of a motion that is too steep."""
+    """Remedy for a motion that is too steep."""
     return SMALLER_SWING
 
 
 def more_harmonics(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell of a law that its series is too far from: the cam of the law itself follows it exactly."""
+    """Remedy for a series that is too far from its law: more harmonics, or the cam of the law itself."""
     return MORE_HARMONICS
 
 
 def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell what would make the least radius of curvature large enough."""
+    """Remedy for a least radius of curvature that is too small."""
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
         return ""
@@ -80,7 +80,7 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell which chamfer the contour has room for; nothing of the chamfer in a file."""
+    """Widest chamfer that the contour permits; empty for a check of a file."""
     value = check["value"]
     if value is None or check["limit"] is None or "file" in check:
         return ""
@@ -88,25 +88,25 @@ def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
 
 
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Tell the largest wheel that reaches into the hollows; nothing of a sharp one."""
+    """Largest wheel that reaches into the hollows; empty for a sharp hollow."""
     value = check["value"]
     return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
 
 
 def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell the least face that the contact does not leave."""
+    """Least width of a face that the contact does not leave."""
     return f"{recipe.cam.advice.wider_face(check['value'], recipe.mm)} {check['unit']} or more"
 
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
-    """Tell the dwell that the output has as intended and with every file; nothing of a linkage that does not turn."""
+    """Dwell that the output has in the intended motion and with every file; empty for a linkage that does not turn."""
     length = worst(check, report)
     return f"a dwell.at_least of {downward(length)} or less, or a wider dwell.band" if length > 0.0 else ""
 
 
 def worst(check: Entry, report: Entry) -> float:
     """Least value of all checks of the same name, of the design and of files; nan where one has none."""
-    values = [one["value"] for one in report["checks"] if one["name"] == check["name"]]
+    values = [other_check["value"] for other_check in report["checks"] if other_check["name"] == check["name"]]
     return math.nan if None in values else min(values)
 
 
@@ -120,7 +120,7 @@ def lone_ring(recipe: Recipe) -> bool:
 
 
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
+    """Bore, or outline of a ring, that leaves the wall; empty for other parts, whose check names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
     detail = check.get("detail", "")
     outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")
@@ -135,7 +135,7 @@ def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell what would bring the motion error, or its limit, to where it holds."""
+    """Tolerance that brings the motion error to its limit, or a wider limit."""
     value = check["value"]
     if value is None or check["limit"] is None or recipe.verify.motion_error is None or value <= 0.0:
         return ""
@@ -143,23 +143,23 @@ def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
 
 
 def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell which motion error would permit a play: the limits of both are proportional where the recipe gives it."""
-    given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
-    if given is None or value is None or not limit:
+    """Motion error whose limit would permit the play: both limits are proportional where the recipe gives it."""
+    motion_error, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
+    if motion_error is None or value is None or not limit:
         return ""
-    own = math.degrees(given) if recipe.cam.arrangement.unit == "deg" else given / recipe.mm
-    return f"verify.motion_error above {upward(own * value / limit)}"
+    in_recipe_unit = math.degrees(motion_error) if recipe.cam.arrangement.unit == "deg" else motion_error / recipe.mm
+    return f"verify.motion_error above {upward(in_recipe_unit * value / limit)}"
 
 
 def _tighter(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
+    """Tolerance that would bring a motion error to its limit, followed by ` or `; empty where none is known."""
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
-    own = _tolerance(recipe, check["value"], check["limit"], tolerance)
-    return f"{own}, or " if own else ""
+    finer_tolerance = _tolerance(recipe, check["value"], check["limit"], tolerance)
+    return f"{finer_tolerance}, or " if finer_tolerance else ""
 
 
 def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
-    """Tell of the tolerance that would bring a motion error to a limit; nothing where none is known."""
+    """Tolerance that would bring a motion error to a limit; empty where none is known."""
     if limit <= 0.0:
         return ""
     if recipe.cam.advice.gain == 1.0:  # the follower is off by no more than the contour
@@ -183,8 +183,8 @@ class Missed(NamedTuple):
     surface: str = ""
 
 
-def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
-    """Tell what would keep a limit: something to do to the cam where that is known, else the limit that it keeps.
+def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
+    """Remedy for a missed limit: a change of the cam where one is known, else the limit that the figure keeps.
 
     Lengths are in the recipe's unit.
     """
@@ -194,10 +194,10 @@ def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     figure = limit.figure
     geometry = _to_lower(recipe, figure, missed) if lower else _to_raise(recipe, figure, missed)
     owner = FIGURES.owner(figure)
-    own = registry.capability(owner).remedy(recipe, figure, value, bound) if owner else ""
-    others = (own, _of_preload(figure, value, bound), _of_lobe(recipe, limit, value, bound))
+    own_remedy = registry.capability(owner).remedy(recipe, figure, value, bound) if owner else ""
+    other_remedies = (own_remedy, _of_preload(figure, value, bound), _of_lobe(recipe, limit, value, bound))
     places = (_of_place(recipe, figure, value, bound), _of_files(recipe, figure, missed))
-    if remedy := next(filter(None, (geometry, *others, *places)), ""):
+    if remedy := next(filter(None, (geometry, *other_remedies, *places)), ""):
         return remedy
     return f"{limit.field('at_most' if lower else 'at_least')} of {_outward(value, up=lower)}"
 
@@ -235,40 +235,40 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
 
 
 def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
-    """Tell what would raise a figure of a surface to a bound, in the recipe's unit."""
-    unit, own = "in" if recipe.units == "inch" else "mm", ""
+    """Change that would raise a figure of a surface to a bound, in the recipe's unit; empty where none is known."""
+    unit, remedy = "in" if recipe.units == "inch" else "mm", ""
     value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
     by, advice = bound - value, recipe.cam.advice.on(missed.surface)
     if figure == RADIUS and recipe.cam.sizes:
-        own = advice.rounder(value, bound, unit)
+        remedy = advice.rounder(value, bound, unit)
     elif figure in {RADIUS, HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = advice.radius / recipe.mm, figure == HOLLOW_RADIUS
         wider = recipe.cam.side > 0 and roller + by < advice.most_radius / recipe.mm
         if wider if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
-            own = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
-            own += advice.same_pitch(recipe.mm)
+            remedy = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+            remedy += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:
-        own = advice.rounder(0.0, by, unit)
+        remedy = advice.rounder(0.0, by, unit)
     elif figure == PITCH_RADIUS:
-        own = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))
+        remedy = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))
     elif figure in OF_LINKS:
-        own = "longer links, all in one proportion, about the same cam"
+        remedy = "longer links, all in one proportion, about the same cam"
     elif figure in {DWELL, DWELL_RELATIVE}:
-        own = "a wider dwell.band"
+        remedy = "a wider dwell.band"
     elif figure == PIVOT_CLEARANCE:
-        own = "a pivot farther from the shaft"
+        remedy = "a pivot farther from the shaft"
     elif figure == LEAST_WALL and lone_ring(recipe):
-        own = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
+        remedy = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
-        own = (
+        remedy = (
             f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
         )
-    return own
+    return remedy
 
 
 def _of_preload(figure: str, value: float, bound: float) -> str:
-    """Tell what would change the force of a preload to a bound above 0; nothing of other figures."""
+    """Interference that would bring the force of a preload to a bound above 0; empty for other figures."""
     if bound <= 0.0 or value <= 0.0 or figure not in {PRELOAD_LEAST, PRELOAD_GREATEST}:
         return ""
     share = upward(bound / value) if value < bound else downward(bound / value)  # in proportion to it
@@ -276,7 +276,7 @@ def _of_preload(figure: str, value: float, bound: float) -> str:
 
 
 def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Tell what would bring a size or a place that the recipe gives, in its unit, to a bound."""
+    """Size or place of the recipe, in its unit, that would meet a bound; empty for other figures."""
     more, unit = value < bound, "in" if recipe.units == "inch" else "mm"
     if figure == LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
         nose = f"a cam.motion.lobe.nose {'larger' if more else 'smaller'} by"
@@ -291,7 +291,7 @@ def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
 
 
 def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
-    """Tell which tolerance would bring a figure of a file to its bound: errors are in proportion to it."""
+    """Tolerance that would bring a figure of a file to its bound: errors are in proportion to it."""
     less = missed.bound < missed.value
     if figure == PIECES:
         return f"a {'larger' if less else 'smaller'} tolerance"
@@ -305,7 +305,7 @@ def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
 
 
 def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
-    """Tell by how much the half of a lobe would bring its duration or area to a bound, or of segments what would."""
+    """Change of a lobe's half, or of segments, that would bring duration, area or ramp velocity to a bound."""
     half, more = "cam.motion.lobe.half", value < bound
     if limit.figure not in {DURATION, LIFT_AREA, RAMP_VELOCITY} or bound <= 0.0 or value <= 0.0:
         return ""
@@ -320,7 +320,7 @@ def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
 
 
 def _outward(value: float, *, up: bool) -> str:
-    """Round a limit so that the value keeps it, whatever its sign."""
+    """Text of a limit that the value keeps, rounded outwards whatever its sign."""
     if value == 0.0:
         return "0"
     text = upward(abs(value)) if up == (value > 0.0) else downward(abs(value))

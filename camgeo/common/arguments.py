@@ -1,7 +1,7 @@
-"""Arguments of the library's functions, checked where they come in.
+"""Checks of the arguments of the library's functions.
 
-A wrong Python type is a TypeError, which names the argument, what it must be and what it is; a value of the right type
-that makes no sense is a CallError.
+A wrong Python type raises TypeError, which names the argument, the type it must have and the type it has; a value of
+the right type that makes no sense raises CallError.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ _SHOWN = 60  # characters of a value that a message repeats
 
 
 def is_a(name: str, value: object, kind: type | tuple[type, ...], must: str, remedy: str = "") -> None:
-    """Raise TypeError for an argument that is none of the types `kind`, which `must` names."""
+    """Raise TypeError for an argument that is of none of the types `kind`; `must` names them in the message."""
     if not isinstance(value, kind):
         raise TypeError(f"{name} must be {must}, not {type(value).__name__}{f'; {remedy}' if remedy else ''}")
 
 
 def path_of(name: str, value: object) -> Path:
-    """Give the path that an argument names; raises CallError for one that no file can have."""
+    """Path of an argument; raises TypeError, and CallError for a path that no file can have."""
     is_a(name, value, (str, PathLike), "a str or a path")
     text = os.fspath(value)  # type: ignore[call-overload]
     is_a(name, text, str, "a str or a path of a str")
@@ -48,7 +48,7 @@ def path_of(name: str, value: object) -> Path:
 
 
 def number_of(name: str, value: object) -> float:
-    """Give an argument that is a number as a float; one beyond all floats is infinite."""
+    """Argument as a float, infinite beyond all floats; raises TypeError for one that is no number."""
     if isinstance(value, bool):
         raise TypeError(f"{name} must be a number, not bool")
     is_a(name, value, Real, "a number")
@@ -59,23 +59,23 @@ def number_of(name: str, value: object) -> float:
 
 
 def numbers_of(name: str, value: object) -> Array:
-    """Give an argument that is a number or an array of numbers as floats, in its shape; raises as `number_of` does."""
+    """Argument that is a number or an array of numbers, as floats in its shape; raises TypeError, and CallError."""
     import numpy as np
 
     try:
-        found = np.asarray(value)
+        array = np.asarray(value)
     except ValueError:
         raise CallError(f"{name} is no array: its rows differ in length") from None
-    if found.dtype.kind in "iuf":
-        return found.astype(np.float64)
-    if found.dtype.kind == "O":  # whole numbers of many digits and fractions, or what is no number
-        return np.array([number_of(name, one) for one in found.ravel()], dtype=np.float64).reshape(found.shape)
-    held = type(value) if found.ndim == 0 else type(found.ravel().tolist()[0]) if found.size else found.dtype.type
-    raise TypeError(f"{name} must be a number or an array of numbers, not {held.__name__}")
+    if array.dtype.kind in "iuf":
+        return array.astype(np.float64)
+    if array.dtype.kind == "O":  # whole numbers of many digits and fractions, or what is no number
+        return np.array([number_of(name, item) for item in array.ravel()], dtype=np.float64).reshape(array.shape)
+    kind = type(value) if array.ndim == 0 else type(array.ravel().tolist()[0]) if array.size else array.dtype.type
+    raise TypeError(f"{name} must be a number or an array of numbers, not {kind.__name__}")
 
 
-def spelled(value: object) -> str:
-    """Write a value that an argument has, for a message: shortened, and not failing for want of digits."""
+def short_repr(value: object) -> str:
+    """`repr` of a value for a message, at most 60 characters; numbers of thousands of digits are described."""
     try:
         text = repr(value)
     except ValueError:
@@ -84,7 +84,7 @@ def spelled(value: object) -> str:
 
 
 def whole_of(name: str, value: object) -> int:
-    """Give an argument that is a whole number, of numpy too, as an int."""
+    """Argument that is a whole number, of numpy too, as an int; raises TypeError."""
     try:
         if not isinstance(value, bool):
             return operator.index(value)  # type: ignore[arg-type]
@@ -93,28 +93,28 @@ def whole_of(name: str, value: object) -> int:
     raise TypeError(f"{name} must be an int, not {type(value).__name__}")
 
 
-def text_of(name: str, value: object, choices: Sequence[str], what: str) -> str:
-    """Give an argument that is one of several words; `what` begins the sentence that lists them."""
+def text_of(name: str, value: object, choices: Sequence[str], subject: str) -> str:
+    """Argument that is one of several words; raises CallError, whose message begins with `subject`."""
     is_a(name, value, str, "a str")
     if value not in choices:
-        raise CallError(f"{what} is one of {', '.join(choices)}, not {spelled(value)}")
+        raise CallError(f"{subject} is one of {', '.join(choices)}, not {short_repr(value)}")
     return str(value)
 
 
 def texts_of(name: str, value: object) -> tuple[str, ...]:
-    """Give an argument that is a text or several."""
+    """Argument that is a text or several, as a tuple; raises TypeError."""
     if isinstance(value, str):
         return (value,)
     try:
-        found: tuple[object, ...] = tuple(value)  # type: ignore[arg-type]
+        texts: tuple[object, ...] = tuple(value)  # type: ignore[arg-type]
     except TypeError:
         raise TypeError(f"{name} must be a str or a sequence of str, not {type(value).__name__}") from None
-    for i, text in enumerate(found):
+    for i, text in enumerate(texts):
         is_a(f"{name}[{i}]", text, str, "a str")
-    return tuple(map(str, found))
+    return tuple(map(str, texts))
 
 
-def called(name: str, value: object) -> None:
+def demand_callable(name: str, value: object) -> None:
     """Raise TypeError for an argument that is neither a function nor None."""
     if value is not None and not callable(value):
         raise TypeError(f"{name} must be a function or None, not {type(value).__name__}")

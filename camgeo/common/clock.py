@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 @dataclass()
 class Clock:
-    """Seconds of each stage in the order of their ends; `told` hears of each as it begins.
+    """Seconds of each stage in the order of their ends; `report` is called with the name of each as it begins.
 
-    What stages within a stage take is theirs, so that no second counts twice.
+    A stage's seconds leave out those of stages within it, so that no second counts twice.
     """
 
-    told: Callable[[str], None] | None = None
+    report: Callable[[str], None] | None = None
     stages: list[tuple[str, float]] = field(default_factory=list)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time one stage."""
-        if self.told is not None:
-            self.told(name)
+        if self.report is not None:
+            self.report(name)
         start, first = time.perf_counter(), len(self.stages)
         try:
             yield

@@ -1,4 +1,4 @@
-"""Errors that any room may raise: a call that makes no sense, and surroundings that refuse."""
+"""Errors that any package may raise: a call that makes no sense, and surroundings that refuse."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DISTRIBUTIONS = {"yaml": "PyYAML"}  # packages that are installed by another nam
 
 
 class CallError(CamgeoError, ValueError):
-    """What a function was asked for cannot be: a file that is none, an unknown form; `faults` has a line for each."""
+    """A call that cannot be carried out: a path without a file, an unknown form; `faults` has a line for each fault."""
 
     def __init__(self, *faults: str) -> None:
         super().__init__(*faults)
@@ -29,7 +29,7 @@ class CallError(CamgeoError, ValueError):
 
 
 class SurroundingsError(CamgeoError):
-    """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
+    """Surroundings of a run are missing or refuse: the disk, a permission, a package; `path` is the place."""
 
     def __init__(self, message: str, path: Path) -> None:
         super().__init__(f"{escaped(str(path))}: {message}")
@@ -42,7 +42,7 @@ class BusyError(SurroundingsError):
 
 @contextmanager
 def with_packages() -> Iterator[None]:
-    """Turn an import that fails meanwhile into a SurroundingsError, which names the package."""
+    """Turn a ModuleNotFoundError into a SurroundingsError with the command that installs the package."""
     try:
         yield
     except ModuleNotFoundError as error:

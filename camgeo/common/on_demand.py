@@ -1,4 +1,4 @@
-"""Tables whose values are made when they are first asked for, such as what a module of its own declares."""
+"""Tables whose values are made at first use, such as records that have modules of their own."""
 
 from __future__ import annotations
 
@@ -9,10 +9,7 @@ T = TypeVar("T")
 
 
 class OnDemand(Mapping[str, T]):
-    """Names that are known from the start, and their values by `make`, each of which is called once.
-
-    Where the names are those of a mapping that grows or shrinks, so does the table.
-    """
+    """Mapping of known names to values, each made once by `make`; it follows a change of the collection of names."""
 
     def __init__(self, names: Collection[str], make: Callable[[str], T]) -> None:
         self._names = names
@@ -20,7 +17,7 @@ class OnDemand(Mapping[str, T]):
         self._values: dict[str, T] = {}
 
     def __getitem__(self, name: str) -> T:
-        """The value of a name; raises KeyError for one that there is not."""
+        """Value of a name; raises KeyError for an unknown one."""
         if name not in self._names:
             raise KeyError(name)
         if name not in self._values:
@@ -28,13 +25,13 @@ class OnDemand(Mapping[str, T]):
         return self._values[name]
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a name; nothing is made."""
+        """Whether a name is known; no value is made."""
         return name in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Go over the names; nothing is made."""
+        """Names in their order; no value is made."""
         return iter(self._names)
 
     def __len__(self) -> int:
-        """How many names there are."""
+        """Number of names."""
         return len(self._names)

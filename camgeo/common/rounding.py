@@ -1,4 +1,4 @@
-"""Figures as messages tell them: where one says what would do, it is rounded to the side on which that is true."""
+"""Texts of figures in remedies, rounded to the side on which the remedy is true."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is
 
 
 def upward(value: float, digits: int = 6) -> str:
-    """A positive figure with so many digits, not below it but for noise: more than that will do."""
+    """Text of a positive figure with so many digits, rounded up: a remedy that needs at least the figure holds."""
     return _rounded(value * (1.0 - NOISE), digits, up=True)
 
 
 def downward(value: float, digits: int = 6) -> str:
-    """A positive figure with so many digits, not above it but for noise: less than that will do."""
+    """Text of a positive figure with so many digits, rounded down: a remedy that needs at most the figure holds."""
     return _rounded(value * (1.0 + NOISE), digits, up=False)
 
 

@@ -1,7 +1,7 @@
-"""What is said on the terminal: any text, on a stream of any encoding, also where nobody can hear it.
+"""Output on the terminal: any text, on a stream of any encoding, also on a closed one.
 
-Standard output carries results: where it cannot be written the run fails. Standard error carries what is wrong: where
-it cannot be written nothing more can be said, and the exit status stays what it would have been.
+Standard output carries results: where it cannot be written the run fails. Standard error carries faults: where it
+cannot be written the texts are lost, and the exit status stays the same.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})  # controls, marks of direct
 
 
 def open_streams() -> None:
-    """Let both streams take any text: a closed one (`>&-`, None in Python) is no one's, a narrow encoding is escaped.
+    """Let both streams take any text: a closed one (`>&-`, None in Python) drops it, a narrow encoding escapes it.
 
     Lines end with LF on every system.
     """
@@ -28,10 +28,10 @@ def open_streams() -> None:
 
 
 def escaped(text: str, *, keep: str = "") -> str:
-    """Text with whatever could disturb or deceive a terminal as a backslash and its number, but for those of `keep`."""
+    """Text without characters that could disturb or deceive a terminal: those not in `keep` are escaped."""
     if text.isprintable():
         return text
-    return "".join(c if c in keep or _seen(c) else c.encode("unicode_escape").decode() for c in text)
+    return "".join(c if c in keep or _is_visible(c) else c.encode("unicode_escape").decode() for c in text)
 
 
 def say(text: str, *, at_once: bool = False) -> None:
@@ -54,7 +54,7 @@ def whisper(text: str) -> None:
 
 
 def silence(name: str) -> None:
-    """Let a stream that cannot be written lead nowhere, with what it still holds: else its flush at the end fails."""
+    """Lead a stream that cannot be written to the null device, as its flush at the end of the process would fail."""
     stream = getattr(sys, name)
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -65,23 +65,23 @@ def silence(name: str) -> None:
 
 
 def say_json(text: str) -> None:
-    """Print a JSON text; what the stream's encoding has not, or a terminal would obey, is escaped as JSON has it."""
+    """Print a JSON text; characters that the encoding lacks or a terminal would obey are escaped as JSON does."""
     try:
         text.encode(sys.stdout.encoding or "utf-8")
         narrow = False
     except UnicodeEncodeError:
         narrow = True
     if narrow or not text.replace("\n", "").isprintable():
-        plain = str.isascii if narrow else _seen
+        plain = str.isascii if narrow else _is_visible
         text = "".join(c if c == "\n" or (plain(c) and c != "\x7f") else _as_json(c) for c in text)
     print(text, end="")
 
 
-def _seen(c: str) -> bool:
+def _is_visible(c: str) -> bool:
     return unicodedata.category(c) not in _UNSEEN
 
 
 def _as_json(c: str) -> str:
-    """A character within a string of JSON as its number, beyond the first 65536 as a pair of them."""
+    """Escape of a character in a string of JSON by its number, beyond the first 65536 a pair of surrogates."""
     units = c.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))

@@ -32,7 +32,7 @@ KILLED = "a process was killed before {} was done, perhaps for lack of memory; s
 
 
 class _OverError(BaseException):
-    """The run is over: nobody would fetch the result of what is at work."""
+    """The run is over: the result of a worker is not needed."""
 
 
 class _State:
@@ -51,7 +51,7 @@ class Pool:
     def submit(self, function: Callable[[T], R], item: T) -> Future[R]:
         """Hand an item to a function of a module; raises BrokenProcessPool where a process was killed."""
         with uninterrupted():  # this may start processes
-            return self._executor.submit(cast("Callable[[T], R]", partial(_called, function)), item)
+            return self._executor.submit(cast("Callable[[T], R]", partial(_work_on, function)), item)
 
 
 def available() -> int:
@@ -101,22 +101,22 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
 
 
 def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
-    """Give each item, as it is done, with what a function of a module makes of it, `workers` at once.
+    """Pairs of an item and the function's result, in the order of their ends, `workers` at once.
 
-    Raises BrokenProcessPool where a process was killed.
+    The function is one of a module. Raises BrokenProcessPool where a process was killed.
     """
     from concurrent.futures import FIRST_COMPLETED, wait
 
-    left = list(items)[::-1]
-    workers = needed(workers, len(left))
+    waiting = list(items)[::-1]
+    workers = needed(workers, len(waiting))
     with pool(workers) as processes:
         running: dict[Future[R], T] = {}
-        while left or running:
-            while left and len(running) < AHEAD * workers:
-                item = left.pop()
+        while waiting or running:
+            while waiting and len(running) < AHEAD * workers:
+                item = waiting.pop()
                 running[processes.submit(function, item)] = item
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
+            finished, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in finished:
                 yield running.pop(future), future.result()
 
 
@@ -143,8 +143,8 @@ def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
 
     if inherited is not None:
         inherited.close()
-    signal.signal(signal.SIGINT, _interrupted)
-    sys.unraisablehook = _swallowed
+    signal.signal(signal.SIGINT, _interrupt)
+    sys.unraisablehook = _stop_again
 
     def watch() -> None:
         wait([run])
@@ -156,17 +156,17 @@ def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def _interrupted(_number: int, _frame: FrameType | None) -> None:
-    """Of a worker: stop what is at work if the run is over; an interrupt of the terminal is not for us."""
+def _interrupt(_number: int, _frame: FrameType | None) -> None:
+    """Signal handler of a worker: end its work if the run is over; an interrupt of the terminal is left to the run."""
     if _State.over and _State.busy:
         _State.busy = False
         raise _OverError
 
 
-def _swallowed(what: sys.UnraisableHookArgs) -> None:
-    """Of a worker: stop again where that fell into a callback from which nothing can be raised, and tell nobody."""
-    if not isinstance(what.exc_value, _OverError):
-        sys.__unraisablehook__(what)
+def _stop_again(unraisable: sys.UnraisableHookArgs) -> None:
+    """Hook of a worker: end its work again where the first end fell into a callback that cannot raise."""
+    if not isinstance(unraisable.exc_value, _OverError):
+        sys.__unraisablehook__(unraisable)
         return
     import threading
     from _thread import interrupt_main
@@ -177,8 +177,8 @@ def _swallowed(what: sys.UnraisableHookArgs) -> None:
     again.start()
 
 
-def _called(function: Callable[[T], R], item: T) -> R | None:
-    """Work on one item; None where nobody waits for it any more."""
+def _work_on(function: Callable[[T], R], item: T) -> R | None:
+    """Result of the function for one item; None once the run is over."""
     if _State.over:
         return None
     try:

@@ -61,7 +61,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     """
     stack = _Stack()
     top = solid.thickness
-    outermost, *others = (one.outline for one in outlines)
+    outermost, *inner_outlines = (layered.outline for layered in outlines)
     first, last = _contour(stack, outermost, solid)
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
     within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
@@ -73,18 +73,18 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     inner_high: list[Shape] = []
     island: list[Shape] = []  # in the upper face within a pocket
     if solid.floor is not None:
-        ledge, rim = sorted(others, key=lambda one: one.box()[2])
-        (island_foot, island_head), (foot, head) = (stack.wall(one, solid.floor, top) for one in (ledge, rim))
+        ledge, rim = sorted(inner_outlines, key=lambda outline: outline.box()[2])
+        (island_foot, island_head), (foot, head) = (stack.wall(outline, solid.floor, top) for outline in (ledge, rim))
         stack.lid(solid.floor, foot.wire, [island_foot.wire])
         above.append(head.wire)
-        others = []
-    for outline in others:
+        inner_outlines = []
+    for outline in inner_outlines:
         foot, head = stack.wall(outline, 0.0, top)
         under.append(foot.wire)
         above.append(head.wire)
     for cut in solid.cuts:
-        inside = any(cut is one for one in within)
-        if not any(cut is one for one in through):
+        inside = any(cut is other for other in within)
+        if not any(cut is other for other in through):
             foot, head = stack.wall(cut.outline, cut.low, cut.high)
             stack.lid(cut.low, foot.wire, [])
             (island if cut.island else above).append(head.wire)
@@ -128,7 +128,7 @@ def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline
     return stack.solid()
 
 
-def raised(shape: Shape, z: float) -> Shape:
+def raise_shape(shape: Shape, z: float) -> Shape:
     """The solid with its faces drawn anew at a height, mm: a place in the file would be read as an assembly's."""
     if not z:
         return shape
@@ -175,10 +175,10 @@ class _Stack:
             ends = (vertices[k], vertices[(k + 1) % len(vertices)])
             # a spline is taken whole: by its ends alone a closed one would be nothing
             range_ = (curve.FirstParameter(), curve.LastParameter()) if hasattr(curve, "FirstParameter") else ()
-            made = BRepBuilderAPI_MakeEdge(curve, *ends, *range_)
-            if not made.IsDone():
-                raise RegionError(f"Open CASCADE makes no edge of piece {k}: {made.Error().name}")
-            edges.append(made.Edge())
+            edge_maker = BRepBuilderAPI_MakeEdge(curve, *ends, *range_)
+            if not edge_maker.IsDone():
+                raise RegionError(f"Open CASCADE makes no edge of piece {k}: {edge_maker.Error().name}")
+            edges.append(edge_maker.Edge())
             maker.Add(edges[-1])
         return Wire(maker.Wire(), edges, vertices)
 
@@ -318,11 +318,11 @@ def _parts(shape: Shape, kind: str) -> list[Shape]:
     from OCP.TopExp import TopExp_Explorer
 
     explorer = TopExp_Explorer(shape, getattr(TopAbs_ShapeEnum, f"TopAbs_{kind.upper()}"))
-    found = []
+    parts = []
     while explorer.More():
-        found.append(_cast(explorer.Current(), kind))
+        parts.append(_cast(explorer.Current(), kind))
         explorer.Next()
-    return found
+    return parts
 
 
 def _cast(shape: Shape, kind: str) -> Shape:

@@ -53,17 +53,17 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
         return [(circle, (x + radius, y))]
     length, radii, flat = measures(outline)
     _demand_long(length)
-    found = []
+    curves = []
     for k, (start, end, bulge) in enumerate(outline.pieces()):
         place = (float(start[0]), float(start[1]))
         if flat[k]:
-            found.append((_line(start, end, z), place))
+            curves.append((_line(start, end, z), place))
             continue
         centre = centre_of(start, end, bulge)
         axis = up if bulge > 0.0 else up.Reversed()
         towards = gp_Dir(*((start - centre) / radii[k]).tolist(), 0.0)
-        found.append((gp_Circ(gp_Ax2(point(centre.tolist(), z), axis, towards), float(radii[k])), place))
-    return found
+        curves.append((gp_Circ(gp_Ax2(point(centre.tolist(), z), axis, towards), float(radii[k])), place))
+    return curves
 
 
 def _line(start: Array, end: Array, z: float) -> Shape:

@@ -34,31 +34,31 @@ def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
     place = points[way]
     turn = np.zeros(len(way), dtype=np.intp)
     blocker = np.full(len(way), UNKNOWN)
-    left = fresh = np.arange(len(way))
+    remaining = fresh = np.arange(len(way))
     cut: list[Indices] = []
-    while left.size > 2:
+    while remaining.size > 2:
         before, after = np.empty((2, len(way)), dtype=np.intp)
-        before[left], after[left] = np.roll(left, 1), np.roll(left, -1)
+        before[remaining], after[remaining] = np.roll(remaining, 1), np.roll(remaining, -1)
         turn[fresh] = sides(place[before[fresh]], place[fresh], place[after[fresh]])
         blocker[fresh] = UNKNOWN
-        known = left[blocker[left] >= 0]
-        blocker[known[turn[blocker[known]] > 0]] = UNKNOWN  # what was in the way is cut, or has become an ear's tip
-        tips = left[turn[left] > 0]
+        blocked = remaining[blocker[remaining] >= 0]
+        blocker[blocked[turn[blocker[blocked]] > 0]] = UNKNOWN  # what was in the way is cut, or has become an ear's tip
+        tips = remaining[turn[remaining] > 0]
         look = tips[blocker[tips] == UNKNOWN]
         triangles = np.stack((before[look], look, after[look]), axis=1)
-        blocker[look] = _blockers(way, place, triangles, left[turn[left] <= 0])
-        chosen = alternate((turn[left] > 0) & (blocker[left] == FREE), left.size - 2)
-        gone = left[chosen]
+        blocker[look] = _blockers(way, place, triangles, remaining[turn[remaining] <= 0])
+        chosen = alternate((turn[remaining] > 0) & (blocker[remaining] == FREE), remaining.size - 2)
+        gone = remaining[chosen]
         cut.append(way[np.stack((before[gone], gone, after[gone]), axis=1)])
         if not gone.size:  # the way may run back on itself from a vertex: its two neighbours are the same point
-            spikes = left[way[before[left]] == way[after[left]]]
+            spikes = remaining[way[before[remaining]] == way[after[remaining]]]
             if not spikes.size:
                 break
             gone = np.array([spikes[0], after[spikes[0]]])
         turn[gone] = 1  # they are in nobody's way
-        stays = np.isin(left, gone, invert=True)
+        stays = np.isin(remaining, gone, invert=True)
         touched = stays & (np.roll(~stays, 1) | np.roll(~stays, -1))
-        left, fresh = left[stays], left[touched]
+        remaining, fresh = remaining[stays], remaining[touched]
     return np.concatenate(cut)
 
 
@@ -112,15 +112,15 @@ def _bridged(points: Array, loops: Sequence[Indices]) -> Indices:
 
 def _visible(points: Array, way: Indices, start: int) -> int | None:
     """Place on the way of the nearest vertex right of a point that a bridge from there reaches, None without."""
-    begin, where = points[start], points[way]
-    before, after = np.roll(where, 1, axis=0), np.roll(where, -1, axis=0)
-    right = np.flatnonzero(where[:, 0] > begin[0])
-    nearest: list[int] = right[np.argsort(np.hypot(*(where[right] - begin).T))].tolist()
+    begin, places = points[start], points[way]
+    before, after = np.roll(places, 1, axis=0), np.roll(places, -1, axis=0)
+    right = np.flatnonzero(places[:, 0] > begin[0])
+    nearest: list[int] = right[np.argsort(np.hypot(*(places[right] - begin).T))].tolist()
     for place in nearest:
-        end = where[place]
+        end = places[place]
         left_of = _side(before[place], end, begin), _side(end, after[place], begin)
         inside = (min if _side(before[place], end, after[place]) > 0 else max)(left_of) > 0
-        if inside and not _crossed(begin, end, where, after, (way != way[place]) & (np.roll(way, -1) != way[place])):
+        if inside and not _crossed(begin, end, places, after, (way != way[place]) & (np.roll(way, -1) != way[place])):
             return place
     return None
 

@@ -1,4 +1,4 @@
-"""What a writer refuses: a library that is not installed, a region that has no triangles."""
+"""Errors of writers: a library that is not installed, a region that has no triangles."""
 
 from importlib.util import find_spec
 
@@ -6,7 +6,7 @@ from kin.numeric.errors import CamgeoError
 
 
 class MissingExtraError(CamgeoError, ImportError):
-    """An extra of this package is not installed; the message names it and says how to get it."""
+    """An extra of this package is not installed; the message has the command that installs it."""
 
 
 class RegionError(CamgeoError, ValueError):
@@ -14,17 +14,17 @@ class RegionError(CamgeoError, ValueError):
 
 
 def demand_package(name: str, reason: str) -> None:
-    """Raise MissingExtraError where a package is not installed; the message begins with what needs it."""
+    """Raise MissingExtraError where a package is not installed; the message begins with `reason`."""
     if find_spec(name) is None:
         raise MissingExtraError(f"{reason}: pip install {name}")
 
 
 def install(extra: str) -> str:
-    """How to get an extra of this package, which no index has: from a clone of it."""
+    """Command that installs an extra of this package from a clone, as no index has the package."""
     return f"pip install '.[{extra}]' in a clone of camgeo"
 
 
 def demand_uninterrupted(error: ImportError) -> None:
-    """Raise the interrupt by which an import was ended: a binding reports one so while it is set up."""
+    """Raise the KeyboardInterrupt that ended an import, which a binding reports as an ImportError."""
     if isinstance(error.__cause__, KeyboardInterrupt):
         raise error.__cause__

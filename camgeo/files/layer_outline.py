@@ -1,4 +1,4 @@
-"""The closed outlines of a part as every writer takes them: each on the layer of a drawing, in millimetres."""
+"""Closed outlines of a part for all writers: each on the layer of a drawing, in millimetres."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class LayerOutline(NamedTuple):
-    """A closed outline on a layer; `circle` is the centre and radius of a round one, which a drawing says exactly."""
+    """A closed outline on a layer, mm; `circle` is the centre and radius of a round one, None for others."""
 
     layer: str
     outline: Outline

@@ -39,7 +39,7 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """A named mesh, and where it stands: (4, 3), the images of the three axes and of the origin; None as it is."""
+    """A named mesh and its place (4, 3): the images of the three axes and of the origin; None: the mesh's own axes."""
 
     name: str
     mesh: Mesh
@@ -48,7 +48,7 @@ class Item:
 
 @dataclass(frozen=True)
 class MeshFacts:
-    """What a solid's mesh holds and how far it is from what was meant.
+    """Counts of a solid's mesh, and its distances from the exact part.
 
     `vertices` and `bore_vertices` count the corners of the two loops; `dropped` vertices of the contour fell together
     with their neighbours when they were rounded, which leaves the drawn line as it is. `displacement` is the farthest
@@ -64,11 +64,11 @@ class MeshFacts:
     bore_bound: Bound | None
 
 
-def settled(points: Array, triangles: Triangles, precision: Precision) -> Mesh:
-    """Mesh of rounded points (v, 3), each there once, checked to be closed.
+def closed_mesh(points: Array, triangles: Triangles, precision: Precision) -> Mesh:
+    """Mesh of rounded points (v, 3), mm, without duplicates, checked to be closed.
 
-    Triangles whose corners rounding has made one are left out: their neighbours then meet. Raises RegionError where
-    what is left is not closed or a triangle has no area.
+    Triangles with corners that rounding merges are left out: their neighbours then meet. Raises RegionError where the
+    mesh is not closed or a triangle has no area.
     """
     points, _ = precision.rounded(points)
     points, number = np.unique(points, axis=0, return_inverse=True)

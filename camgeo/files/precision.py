@@ -57,8 +57,8 @@ class Precision:
 
     def rounded(self, points: Array) -> tuple[Array, float]:
         """Points (n, d) as written, without negative zeros, and the farthest that one moved."""
-        held: Array = self.nearest(points) + 0.0
-        return held, float(np.sqrt(np.sum((held - points) ** 2, axis=1)).max())
+        nearest: Array = self.nearest(points) + 0.0
+        return nearest, float(np.sqrt(np.sum((nearest - points) ** 2, axis=1)).max())
 
     def number(self, value: float) -> float:
         """One number as written."""
@@ -84,19 +84,19 @@ class Precision:
                 f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {upward(least, 3)} mm",
                 least,
             )
-        left, more = tolerance - moved, 0.0 if self.again is None else self.again.bound(size + tolerance)
-        return left - more if left >= _LEAST * more else left
+        remainder, more = tolerance - moved, 0.0 if self.again is None else self.again.bound(size + tolerance)
+        return remainder - more if remainder >= _LEAST * more else remainder
 
-    def within(self, what: str, deviation: float, tolerance: float) -> None:
+    def within(self, noun: str, deviation: float, tolerance: float) -> None:
         """Raise ToleranceError for a deviation, in mm, above the tolerance or not a number."""
         if not deviation <= tolerance:
             raise ToleranceError(
-                f"{self.file}: {what} would be off by {deviation:.6g} mm in {self.name}, more than {tolerance:.6g} mm",
+                f"{self.file}: {noun} would be off by {deviation:.6g} mm in {self.name}, more than {tolerance:.6g} mm",
                 deviation,
             )
 
 
-def converted(outline: Outline) -> float:
+def conversion_error(outline: Outline) -> float:
     """Farthest in mm that writing an outline in another unit, and reading it back, moves one of its points.
 
     A quotient and a product of each coordinate, each of which rounds by half a unit in the last place, and a factor
@@ -115,8 +115,8 @@ _UNIT = 1e9
 
 def _nine_decimals(values: Array) -> Array:
     # a quotient is rounded once: what is read back from nine decimals is this very double
-    held: Array = np.round(values * _UNIT) / _UNIT
-    return held
+    rounded: Array = np.round(values * _UNIT) / _UNIT
+    return rounded
 
 
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))

@@ -45,12 +45,12 @@ def extruded(
     if not (math.isfinite(thickness) and thickness > 0.0):
         raise ValueError(f"thickness must be > 0, not {thickness!r}")
     precision.within("the thickness", abs(precision.number(thickness) - thickness), tolerance)
-    loops, facts = _rounded(outlines, tolerance, precision)
-    mesh = _standing(*_turned(loops), precision.number(thickness))
+    loops, facts = _round_all(outlines, tolerance, precision)
+    mesh = _wall(*_turned(loops), precision.number(thickness))
     return mesh, replace(facts, triangles=len(mesh.triangles))
 
 
-def pocketed(
+def pocketed_mesh(
     outlines: Sequence[LayerOutline], *, depth: float, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
     """Closed solid within the first outline, with a pocket of a depth from the top face between its two contours; mm.
@@ -59,8 +59,8 @@ def pocketed(
     """
     for name, height in (("the thickness", thickness), ("the floor", thickness - depth)):
         precision.within(name, abs(precision.number(height) - height), tolerance)
-    loops, facts = _rounded(outlines, tolerance, precision)
-    flanks = [k for k, one in enumerate(outlines) if isinstance(one.outline, Polygon)]
+    loops, facts = _round_all(outlines, tolerance, precision)
+    flanks = [k for k, layered in enumerate(outlines) if isinstance(layered.outline, Polygon)]
     inner, outer = sorted(flanks, key=lambda k: float(np.hypot(*loops[k].T).max()))
     holes = [k for k in range(1, len(loops)) if k not in flanks]
     within = [k for k in holes if _encloses(loops[inner], loops[k][0])]
@@ -78,19 +78,19 @@ def pocketed(
 
     def sheet(bound: int, cut: Sequence[int], *, up: bool, high: bool) -> Triangles:
         number = np.concatenate([first[k] + np.arange(sizes[k]) for k in (bound, *cut)]) + (count if high else 0)
-        found: Triangles = number[region(loops[bound], [loops[k] for k in cut])]
-        return found if up else found[:, ::-1]
+        triangles: Triangles = number[region(loops[bound], [loops[k] for k in cut])]
+        return triangles if up else triangles[:, ::-1]
 
     def wall(k: int) -> Triangles:
-        here = first[k] + np.arange(sizes[k])
-        following = np.roll(here, -1)
-        found = np.concatenate(
+        lower = first[k] + np.arange(sizes[k])
+        following = np.roll(lower, -1)
+        triangles = np.concatenate(
             (
-                np.column_stack((here, following, following + count)),
-                np.column_stack((here, following + count, here + count)),
+                np.column_stack((lower, following, following + count)),
+                np.column_stack((lower, following + count, lower + count)),
             )
         )
-        return found if k in {0, inner} else found[:, ::-1]
+        return triangles if k in {0, inner} else triangles[:, ::-1]
 
     triangles = np.concatenate(
         [
@@ -111,10 +111,12 @@ def _encloses(loop: Array, point: Array) -> bool:
     return bool(abs(around[-1] - around[0]) > math.pi)
 
 
-def _rounded(outlines: Sequence[LayerOutline], tolerance: float, precision: Precision) -> tuple[list[Array], MeshFacts]:
-    """The loops of outlines (n, 2) as written, and what is known of them before they are joined."""
+def _round_all(
+    outlines: Sequence[LayerOutline], tolerance: float, precision: Precision
+) -> tuple[list[Array], MeshFacts]:
+    """Loops of outlines (n, 2) as written, mm, and the facts of the mesh that they give."""
     loops, moved, vertices, dropped = [], 0.0, 0, 0
-    bound, others = EXACT, []
+    bound, opening_errors = EXACT, []
     for layer, outline, _ in outlines:
         if isinstance(outline, Polygon):
             loop, by, fallen = rounded_contour(outline, precision)
@@ -123,21 +125,21 @@ def _rounded(outlines: Sequence[LayerOutline], tolerance: float, precision: Prec
             vertices, dropped = vertices + len(loop), dropped + fallen
         elif isinstance(outline, ArcSpline):
             loop, off, by = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
-            others.append(off)
+            opening_errors.append(off)
         else:
             raise TypeError("a prism has no splines")
         loops.append(loop)
         moved = max(moved, by)
     inner_count = len(loops[1]) if len(loops) > 1 else 0
-    besides = Bound(max(others), max(others)) if others else None
+    besides = Bound(max(opening_errors), max(opening_errors)) if opening_errors else None
     return loops, MeshFacts(0, vertices, inner_count, dropped, moved, bound, besides)
 
 
 def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:
     """Vertices (n, 2) of a polygon as written, each unlike the one before, how far one moved, how many fell away."""
     outer, moved = precision.rounded(polygon.vertices)
-    kept = np.any(outer != np.roll(outer, 1, axis=0), axis=1)
-    return outer[kept], moved, int(np.count_nonzero(~kept))
+    is_kept = np.any(outer != np.roll(outer, 1, axis=0), axis=1)
+    return outer[is_kept], moved, int(np.count_nonzero(~is_kept))
 
 
 def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:
@@ -153,7 +155,7 @@ def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:
 
 
 def rounded_loop(
-    hole: ArcSpline, tolerance: float, precision: Precision, what: str = "a hole"
+    hole: ArcSpline, tolerance: float, precision: Precision, noun: str = "a hole"
 ) -> tuple[Array, float, float]:
     """Vertices (n, 2) as written of a hole's polygon, how far it is off in all, and how far a vertex moved.
 
@@ -161,7 +163,7 @@ def rounded_loop(
     """
     polygon, off = loop_polygon(hole, precision.fit_tolerance(tolerance, float(np.abs(hole.box()).max())))
     inner, moved = precision.rounded(polygon)
-    precision.within(what, off + moved, tolerance)
+    precision.within(noun, off + moved, tolerance)
     return inner, off + moved, moved
 
 
@@ -202,21 +204,21 @@ def bore_polygon(diameter: float, tolerance: float) -> tuple[Array, float]:
     return vertices, radius * math.tan(0.5 * math.pi / n) ** 2
 
 
-def _standing(loops: list[Array], triangles: Triangles, thickness: float) -> Mesh:
+def _wall(loops: list[Array], triangles: Triangles, thickness: float) -> Mesh:
     """Prism over `triangles`, whose walls stand on the loops; the solid lies left of each loop."""
     corners = np.concatenate(loops)
     n, faces = len(corners), len(triangles)
     points = np.zeros((2 * n, 3))
     points[:n, :2] = points[n:, :2] = corners
     points[n:, 2] = thickness
-    here = np.arange(n)
-    parts = np.split(here, np.cumsum([len(loop) for loop in loops])[:-1])
+    lower = np.arange(n)
+    parts = np.split(lower, np.cumsum([len(loop) for loop in loops])[:-1])
     following = np.concatenate([np.roll(part, -1) for part in parts])
 
     index = np.empty((2 * faces + 2 * n, 3), dtype=np.intp)
     index[:faces] = triangles[:, ::-1]
     index[faces : 2 * faces] = triangles + n
     walls = index[2 * faces :]
-    walls[:n] = np.column_stack((here, following, following + n))
-    walls[n:] = np.column_stack((here, following + n, here + n))
+    walls[:n] = np.column_stack((lower, following, following + n))
+    walls[n:] = np.column_stack((lower, following + n, lower + n))
     return Mesh(points, index)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.files.errors import RegionError, demand_package
-from camgeo.files.mesh import MeshFacts, settled
+from camgeo.files.mesh import MeshFacts, closed_mesh
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import disc
 from camgeo.fit.pieces import Bound, Polygon
@@ -151,10 +151,10 @@ def meshed(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN4
     """
     points, triangles = _arrays(part)
     try:
-        return settled(points, triangles, precision), 0.0
+        return closed_mesh(points, triangles, precision), 0.0
     except RegionError:
         apart = 2.0 * precision.spacing(float(np.abs(points).max()))
-        return settled(*_arrays(part.simplify(apart)), precision), apart
+        return closed_mesh(*_arrays(part.simplify(apart)), precision), apart
 
 
 def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d has no types
@@ -165,7 +165,7 @@ def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d 
 
 def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:
     """Points (2 n, 3) and triangles of the prism over a rounded counter-clockwise loop (n, 2)."""
-    return _stacked([(loop, low), (loop, high)], disc(loop), precision)
+    return _stack([(loop, low), (loop, high)], disc(loop), precision)
 
 
 def _disc(outer: Array, thickness: float, chamfer: float | None, precision: Precision) -> tuple[Array, Triangles]:
@@ -174,7 +174,7 @@ def _disc(outer: Array, thickness: float, chamfer: float | None, precision: Prec
         return prism(outer, 0.0, thickness, precision)
     inner, _ = precision.rounded(inset(outer, chamfer))
     layers = [(inner, 0.0), (outer, chamfer), (outer, thickness - chamfer), (inner, thickness)]
-    return _stacked(layers, disc(inner), precision)
+    return _stack(layers, disc(inner), precision)
 
 
 def inset(loop: Array, distance: float) -> Array:
@@ -194,17 +194,17 @@ def inset(loop: Array, distance: float) -> Array:
     return moved
 
 
-def _stacked(layers: list[tuple[Array, float]], lid: Triangles, precision: Precision) -> tuple[Array, Triangles]:
+def _stack(layers: list[tuple[Array, float]], lid: Triangles, precision: Precision) -> tuple[Array, Triangles]:
     """Body between loops of equally many vertices at rising heights; `lid` triangulates the first and the last."""
     n = len(layers[0][0])
     points = np.concatenate([np.column_stack([loop, np.full(n, precision.number(z))]) for loop, z in layers])
-    here = np.arange(n)
-    following = np.roll(here, -1)
+    lower = np.arange(n)
+    following = np.roll(lower, -1)
     faces = [lid[:, ::-1], lid + (len(layers) - 1) * n]
     for k in range(len(layers) - 1):
         a, b = k * n, (k + 1) * n
-        faces.append(np.column_stack((here + a, following + a, following + b)))
-        faces.append(np.column_stack((here + a, following + b, here + b)))
+        faces.append(np.column_stack((lower + a, following + a, following + b)))
+        faces.append(np.column_stack((lower + a, following + b, lower + b)))
     return points, np.concatenate(faces)
 
 

@@ -45,7 +45,7 @@ def ring(outer: Array, inner: Array) -> Triangles:
         points = np.concatenate((outer, inner))
         if _all_positive(points, merged):
             return merged
-    return clipped(outer, [inner])
+    return clip_region(outer, [inner])
 
 
 def region(outer: Array, inners: Sequence[Array]) -> Triangles:
@@ -56,7 +56,7 @@ def region(outer: Array, inners: Sequence[Array]) -> Triangles:
     """
     if len(inners) < 2:
         return ring(outer, inners[0]) if len(inners) else disc(outer)
-    return clipped(outer, inners)
+    return clip_region(outer, inners)
 
 
 def disc(outer: Array) -> Triangles:
@@ -68,8 +68,8 @@ def disc(outer: Array) -> Triangles:
     other contours. Raises RegionError where the loop is not simple.
     """
     centre: Array = outer.mean(axis=0)
-    cut, left = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
-    return np.concatenate([*cut, left[clipped(outer[left])]])
+    cut, remaining = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
+    return np.concatenate([*cut, remaining[clip_region(outer[remaining])]])
 
 
 def star_shaped(loop: Array, centre: Array | None = None) -> bool:
@@ -82,7 +82,7 @@ def star_shaped(loop: Array, centre: Array | None = None) -> bool:
     return int(np.count_nonzero((loop[:, 1] >= about[1]) & (following[:, 1] < about[1]))) == 1
 
 
-def clipped(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
+def clip_region(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
     """Triangles, counter-clockwise, of any simple loop (n, 2) with any holes (m, 2); all counter-clockwise.
 
     The ears are clipped by manifold3d, on these very doubles, and where that is not installed by `clip_ears`. It takes
@@ -94,7 +94,7 @@ def clipped(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
     loops = np.split(np.arange(len(points)), np.cumsum([len(outer), *map(len, inners)])[:-1])
     ways = [loops[0], *(loop[::-1] for loop in loops[1:])]  # the metal lies left of each
     if len(np.unique(points, axis=0)) == len(points):
-        triangles = _turned(points, _ears(points, ways))
+        triangles = _without_flat(points, _ears(points, ways))
         if triangles is not None and _bounded(triangles, ways):
             return triangles
     reached = ("", "the bore reaches the contour, or ", "a hole reaches another or the contour, or ")[
@@ -134,18 +134,18 @@ def _angles(points: Array) -> Array:
 
 def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], Indices]:
     """Cut ears off a star-shaped loop until three vertices are left or none can go; returns them and what is left."""
-    left = np.arange(len(loop))
+    remaining = np.arange(len(loop))
     cut: list[Triangles] = []
-    while left.size > 3:
-        before, after = np.roll(left, 1), np.roll(left, -1)
-        a, b, c = loop[before], loop[left], loop[after]
+    while remaining.size > 3:
+        before, after = np.roll(remaining, 1), np.roll(remaining, -1)
+        a, b, c = loop[before], loop[remaining], loop[after]
         ear = (sides(a, b, c) > 0) & (sides(np.broadcast_to(centre, a.shape), a, c) > 0)
-        chosen = alternate(ear, left.size - 3)
+        chosen = alternate(ear, remaining.size - 3)
         if not chosen.any():
             break
-        cut.append(np.column_stack((before, left, after))[chosen])
-        left = left[~chosen]
-    return cut, left
+        cut.append(np.column_stack((before, remaining, after))[chosen])
+        remaining = remaining[~chosen]
+    return cut, remaining
 
 
 def _ears(points: Array, ways: list[Indices]) -> Triangles:
@@ -156,11 +156,11 @@ def _ears(points: Array, ways: list[Indices]) -> Triangles:
         import manifold3d
     except ModuleNotFoundError:
         return clip_ears(points, ways)
-    found = manifold3d.triangulate([points[way] for way in ways], 0.0)
-    return np.concatenate(ways)[np.asarray(found, dtype=np.intp).reshape(-1, 3)]
+    corners = manifold3d.triangulate([points[way] for way in ways], 0.0)
+    return np.concatenate(ways)[np.asarray(corners, dtype=np.intp).reshape(-1, 3)]
 
 
-def _turned(points: Array, triangles: Triangles) -> Triangles | None:
+def _without_flat(points: Array, triangles: Triangles) -> Triangles | None:
     """Triangles that all run counter-clockwise, of triangles some of which are flat or turned over; None without.
 
     A flat triangle's longest edge passes through its third corner. There it is cut, and with it the neighbour over
@@ -202,8 +202,8 @@ def _edges(triangle: list[int]) -> list[tuple[int, int]]:
 
 def _longest_last(points: Array, triangle: list[int]) -> list[int]:
     """The corners of a triangle in their order, its longest edge from the last to the first."""
-    at = points[triangle]
-    first = (int(np.argmax(np.hypot(*(np.roll(at, -1, axis=0) - at).T))) + 1) % 3
+    places = points[triangle]
+    first = (int(np.argmax(np.hypot(*(np.roll(places, -1, axis=0) - places).T))) + 1) % 3
     return triangle[first:] + triangle[:first]
 
 

@@ -42,10 +42,10 @@ FORMS = Gathered(OnDemand(MODULES, _form), lambda capability: capability.tables(
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
-    """Note options of other tables than that which a file is."""
-    taken = FORMAT.form(file.get("as")).takes
+    """Note options that the table of a file does not take."""
+    taken_options = FORMAT.form(file.get("as")).takes
     for key in OF_SOME:
-        if key in file and key not in taken:
+        if key in file and key not in taken_options:
             kinds = either(tuple(name for name, form in FORMS.items() if key in form.takes))
             reader.fault_at(f"{file['path']}.csv.{key}", f"belongs to a table as {kinds}", None, "leave it out")
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
 PIECES = {"arcs": "arcs", "polyline": "edges", "spline": "spans"}
-"""What a piece of a contour is called, by the form of the drawing."""
+"""Noun for the pieces of a contour, by the form of the drawing."""
 _AS = Field("as", Kind.CHOICE, "what the contour is made of", default="arcs", choices=tuple(PIECES))
 
 
@@ -31,10 +31,10 @@ def drawing_format(
     check: Callable[[Values, Values, Reader], None] = NO_CHECK,
     foresee: Callable[[Job, FileRequest], None] = NO_CHECK,
 ) -> Format:
-    """Make the record of a format of drawings; `draw` writes one, as `make_drawing` takes it.
+    """Record of a format of drawings; `draw` writes one file, see `make_drawing`.
 
-    `more` are options of its own, which tell files of one form apart in their names and in reports; `path` is whether
-    it shows the path of the cutter.
+    `more` are options of its own, which stand in the names of its files and in reports; `path` is whether it shows the
+    path of the cutter.
     """
     named = tuple(item.name for item in more)
 

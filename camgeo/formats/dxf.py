@@ -131,9 +131,9 @@ def write_dxf(
     from ezdxf.enums import InsertUnits
 
     drawing = Drawing.new(VERSIONS[version])
-    _set_layers(drawing, mm, {one.layer for one in outlines})
+    _set_layers(drawing, mm, {layered.layer for layered in outlines})
     space = drawing.modelspace()
-    boxes = [_draw_layer(space, one, mm) for one in outlines] + _draw_reference(space, reference, mm)
+    boxes = [_draw_layer(space, layered, mm) for layered in outlines] + _draw_reference(space, reference, mm)
     if annotate is not None:
         boxes.append(annotate(space))
     corners = np.array(boxes)
@@ -275,13 +275,13 @@ def _check_points(points: Array) -> None:
     order = np.sort(place)
     twice = np.flatnonzero(order[1:] == order[:-1])
     if twice.size:
-        where = complex(order[twice[0]])
-        raise ValueError(f"the contour comes twice through ({where.real!r}, {where.imag!r})")
+        repeated = complex(order[twice[0]])
+        raise ValueError(f"the contour comes twice through ({repeated.real!r}, {repeated.imag!r})")
 
 
 def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]]]:
     """Each shape once, with all the names it is given: a prime circle may be the pivots' circle as well."""
-    found: dict[tuple[float, ...] | int, tuple[Reference, list[str]]] = {}
+    shapes: dict[tuple[float, ...] | int, tuple[Reference, list[str]]] = {}
     for item in reference:
         key: tuple[float, ...] | int
         if isinstance(item, Circle):
@@ -290,8 +290,8 @@ def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]
             key = item.at
         else:
             key = id(item.points) if isinstance(item, Line) else id(item.outline)
-        found.setdefault(key, (item, []))[1].append(item.name)
-    return list(found.values())
+        shapes.setdefault(key, (item, []))[1].append(item.name)
+    return list(shapes.values())
 
 
 def _comment(text: str) -> str:
@@ -325,8 +325,8 @@ def _draw(
 
 def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerOutline]]:
     """The path of the cutter's centre where it is to be shown, and whether the cutter reaches everything."""
-    asked = job.recipe.manufacture
-    if asked is None or not asked.layer or request.compensation is not None:
+    manufacture = job.recipe.manufacture
+    if manufacture is None or not manufacture.layer or request.compensation is not None:
         return [], []
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.machining.reach import path_arcs, reach_checks
@@ -334,8 +334,8 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerO
     with job.clock.stage("cutter path"):
         reached = reach_checks(job.recipe, job.design)
         paths = [path_arcs(job.recipe, path, job.tolerance(request)) for _, path in reached if path is not None]
-    drawn = [arcs.mirrored() if job.recipe.rotation == "ccw" else arcs for arcs in paths]
-    return [check for check, _ in reached], [LayerOutline("TOOLPATH", arcs) for arcs in drawn]
+    outlines = [arcs.mirrored() if job.recipe.rotation == "ccw" else arcs for arcs in paths]
+    return [check for check, _ in reached], [LayerOutline("TOOLPATH", arcs) for arcs in outlines]
 
 
 def _reference(job: Job, tolerance: float) -> list[Reference]:
@@ -345,26 +345,26 @@ def _reference(job: Job, tolerance: float) -> list[Reference]:
 
     recipe, exact = job.recipe, job.design.exact
     pitches = {id(surface.base): surface for surface, _ in job.design.contours}.values()
-    found: list[Reference] = [Point("shaft", (0.0, 0.0))]
+    shapes: list[Reference] = [Point("shaft", (0.0, 0.0))]
     hub = recipe.part.of(Hub)
     if hub is not None:
-        found.append(Circle("hub", (0.0, 0.0), 0.5 * hub.diameter))
+        shapes.append(Circle("hub", (0.0, 0.0), 0.5 * hub.diameter))
     for surface in pitches:
         for name, radius in exact.circles(surface.name):
             if radius is not None:
-                found.append(Circle(name, (0.0, 0.0), radius))
+                shapes.append(Circle(name, (0.0, 0.0), radius))
                 continue
             least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
             if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
-                found.append(Circle(name, (0.0, 0.0), least))
+                shapes.append(Circle(name, (0.0, 0.0), least))
             if surface.radius:
                 pitch = fit_arcs(surface.base, COARSE)
-                found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+                shapes.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
     if recipe.linkage is not None and recipe.linkage.traces:
         from camgeo.synthesis.traces import trace_lines
 
-        found += [Line(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
-    return found
+        shapes += [Line(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
+    return shapes
 
 
 def _foresee(_job: Job, _request: FileRequest) -> None:

@@ -64,7 +64,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
     for k, actor in enumerate(actors):
         meshes.append(_mesh(buffer, actor, k))
         materials.append(_material(actor))
-        shift = _turned_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
+        shift = _y_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
         half = 0.5 * actor.pose[:, 2]
         zero = np.zeros(len(half))
         turn = np.column_stack((zero, np.sin(half), zero, np.cos(half))).astype("<f4")
@@ -74,10 +74,10 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
             continue
         if steps not in times:
             clock = np.linspace(0.0, PERIOD, steps).astype("<f4").reshape(-1, 1)
-            times[steps] = buffer.added(clock, "SCALAR", None, bounds=True)
-        for what, values, shape in (("translation", shift, "VEC3"), ("rotation", turn, "VEC4")):
-            channels.append({"sampler": len(samplers), "target": {"node": k, "path": what}})
-            output = buffer.added(values, shape, None)
+            times[steps] = buffer.append(clock, "SCALAR", None, bounds=True)
+        for channel, values, shape in (("translation", shift, "VEC3"), ("rotation", turn, "VEC4")):
+            channels.append({"sampler": len(samplers), "target": {"node": k, "path": channel}})
+            output = buffer.append(values, shape, None)
             samplers.append({"input": times[steps], "interpolation": "LINEAR", "output": output})
     document: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "camgeo"},
@@ -105,8 +105,8 @@ class _Buffer:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
 
-    def added(self, values: NDArray[Any], shape: str, target: int | None, *, bounds: bool = False) -> int:
-        """Append an array (n, k) of 4-byte numbers; return the number of its accessor."""
+    def append(self, values: NDArray[Any], shape: str, target: int | None, *, bounds: bool = False) -> int:
+        """Append an array (n, k) of 4-byte numbers; the number of its accessor."""
         view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes}
         if target is not None:
             view["target"] = target
@@ -126,20 +126,20 @@ class _Buffer:
 
 def _mesh(buffer: _Buffer, actor: Actor, material: int) -> dict[str, Any]:
     """Triangles of a body, put into the buffer."""
-    position = buffer.added(_turned_up(actor.mesh.points), "VEC3", _POINTS, bounds=True)
-    triangles = buffer.added(actor.mesh.triangles.astype("<u4").reshape(-1, 1), "SCALAR", _TRIANGLES)
+    position = buffer.append(_y_up(actor.mesh.points), "VEC3", _POINTS, bounds=True)
+    triangles = buffer.append(actor.mesh.triangles.astype("<u4").reshape(-1, 1), "SCALAR", _TRIANGLES)
     primitive = {"attributes": {"POSITION": position}, "indices": triangles, "material": material}
     return {"name": actor.name, "primitives": [primitive]}
 
 
-def _turned_up(points: Array) -> NDArray[np.float32]:
-    """Points (n, 3) in mm with z upward as glTF has them."""
+def _y_up(points: Array) -> NDArray[np.float32]:
+    """Points (n, 3) in m with y upward, as glTF has them, of points in mm with z upward."""
     x, y, z = _METRE * points.T
     return np.column_stack((x, z, 0.0 - y)).astype("<f4")
 
 
 def _material(actor: Actor) -> dict[str, Any]:
-    """Colours are given as screens have them; glTF counts light."""
+    """Material of an actor: its colour, `#rrggbb` of sRGB, as the linear light of glTF."""
     red, green, blue = (int(actor.colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
     light = [round(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4, 4) for c in (red, green, blue)]
     surface = {"baseColorFactor": [*light, 1.0], "metallicFactor": _METAL, "roughnessFactor": _ROUGHNESS}
@@ -162,7 +162,7 @@ STEPS = 8  # of a turn: between two a viewer turns steadily, as the shaft does
 
 
 def steady_turn(rotation: str) -> Array:
-    """Give the pose (STEPS + 1, 3) of what turns with the shaft, at equal steps of a turn."""
+    """Pose (STEPS + 1, 3) of a body on the shaft, at equal steps of a turn: x, y, mm, and angle, rad."""
     sense = 1.0 if rotation == "ccw" else -1.0
     pose = np.zeros((STEPS + 1, 3))
     pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
@@ -170,13 +170,13 @@ def steady_turn(rotation: str) -> Array:
 
 
 def make_view(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit and write the cam to look at, turning once; raises as `camgeo.output.dispatch.make` does."""
+    """Fit and write the cam, turning once, for viewers; raises as `camgeo.output.dispatch.make` does."""
     from camgeo.output.job import unjudged
     from camgeo.output.solid import cam_meshes
 
     discs, pose = cam_meshes(job, request), steady_turn(job.recipe.rotation)
     with job.clock.stage("write glb"):
-        actors = [Actor(one.name, one.standing, pose, COLOURS[k % 2]) for k, one in enumerate(discs)]
+        actors = [Actor(disc.name, disc.standing, pose, COLOURS[k % 2]) for k, disc in enumerate(discs)]
         write_glb(path, actors, title=job.recipe.name)
     return unjudged(path, request, UNIT_MM["m"])
 

@@ -25,26 +25,26 @@ OVERLAYS = {
     "pedal": "swings",
     "evolute": "",
 }
-"""What a page can show over a mechanism, and what of its cam's offers that needs; a linkage leaves the evolute."""
+"""Overlays of a page, each with the offer of the cam that it needs, empty for none; a linkage has the evolute alone."""
 
 
 def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
-    """Read the names of overlays, those that the cam's family has, each once."""
+    """Names of overlays that the cam's family has, each once; faults are noted."""
     linked = bool(reader.kinds["linkage"])
-    there = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    available = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
     names: list[str] = []
     for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
         word = item.text if isinstance(item, Scalar) else ""
         if word in names:
             reader.fault(item.mark, join(path, i), "the same overlay twice", quote(word), "leave one out")
-        elif word in there:
+        elif word in available:
             names.append(word)
         elif word in OVERLAYS:
-            of = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
-            remedy = f"give {either(tuple(there))}"
-            reader.fault(item.mark, join(path, i), f"an overlay that {of} does not have", quote(word), remedy)
+            owner = "a linkage" if linked else f"a cam of kind {reader.kinds['cam']}"
+            remedy = f"give {either(tuple(available))}"
+            reader.fault(item.mark, join(path, i), f"an overlay that {owner} does not have", quote(word), remedy)
         else:
-            remedy = suggestion(word, tuple(there)) or f"give {either(tuple(there))}"
+            remedy = suggestion(word, tuple(available)) or f"give {either(tuple(available))}"
             reader.fault(item.mark, join(path, i), "no overlay", describe(item), remedy)
     return tuple(names)
 
@@ -70,7 +70,7 @@ _OVERLAYS = Field(
 
 
 def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
-    """Write the page on everything that a run found; it is there also where no cam is made."""
+    """Write the page on a run, also on one that makes no cam."""
     from camgeo.measures.file_result import FileResult
     from camgeo.output.job import Made
     from camgeo.output.pipeline import content_of

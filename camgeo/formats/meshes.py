@@ -1,4 +1,4 @@
-"""What formats of meshes share: options, forms, and what makes their files."""
+"""Formats of meshes: their options, their form, and the functions that make their files."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def mesh_format(
     write: Callable[[Path, Sequence[Item], str, float, str], None],
     units: bool,
 ) -> Format:
-    """Make the record of a format whose files hold one mesh each.
+    """Record of a format whose files hold one mesh each.
 
-    numbers  gives the numbers that a file holds
-    write    writes one mesh, whose points are such numbers: (path, [mesh], title, mm of the unit, about)
+    numbers  precision of the numbers of a file
+    write    writes one mesh, whose points have that precision: (path, [mesh], title, mm of the unit, about)
     units    whether a file states its unit
     """
     return Format(
@@ -56,7 +56,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def foresee_mesh(job: Job, request: FileRequest) -> None:
-    """Refuse what `camgeo.output.solid.foresee` refuses, and raise as it does."""
+    """Raise the errors that are certain, as `camgeo.output.solid.foresee` does."""
     from camgeo.output.solid import foresee
 
     foresee(job, request)

@@ -27,11 +27,11 @@ def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: 
     points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # which the quotient has missed
     faces = np.empty(len(mesh.triangles), dtype=_FACE)
     faces["count"], faces["corners"] = 3, mesh.triangles
-    told = f"camgeo: in {'inches' if mm == INCH else 'mm'}, z upwards. {' '.join(title.split())}"
+    comment = f"camgeo: in {'inches' if mm == INCH else 'mm'}, z upwards. {' '.join(title.split())}"
     header = (
         "ply",
         "format binary_little_endian 1.0",
-        f"comment {told[:_COMMENT]}",
+        f"comment {comment[:_COMMENT]}",
         f"element vertex {len(points)}",
         *(f"property double {axis}" for axis in "xyz"),
         f"element face {len(faces)}",

@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from functools import reduce
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from camgeo.files.brep import Shape, need_kernel, raised, solid_shape, stack_shape
+from camgeo.files.brep import Shape, need_kernel, raise_shape, solid_shape, stack_shape
 from camgeo.files.curves import misfit
-from camgeo.files.precision import converted
+from camgeo.files.precision import conversion_error
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.options import OF_SOLID
@@ -57,21 +57,21 @@ def write_step(
     name: str = "",
     about: str = "",
 ) -> Bound:
-    """Write solids in a unit, each a product of its own; returns the contours' bound as they are written, mm.
+    """Write solids in a unit, each a product of its own; the proved bound of the written contours, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
     `solid_shape` does; OSError as the file system does.
     """
     need_kernel()
-    fitted = [one.outline for body in bodies for one in body.outlines if one.circle is None]
-    bound = reduce(Bound.wider, (outline.bound.widened(written_off(outline, units)) for outline in fitted))
+    fitted = [layered.outline for body in bodies for layered in body.outlines if layered.circle is None]
+    bound = reduce(Bound.wider, (outline.bound.widened(wall_error(outline, units)) for outline in fitted))
     if not bound.worst <= tolerance:
         raise ToleranceError(
             f"STEP: the contour would be off by {bound.worst:.6g} mm, more than {tolerance:.6g} mm: circles of nearly "
             "straight arcs are rounded",
             bound.worst,
         )
-    shapes = [raised(solid_shape(body.outlines, body.solid), body.z) for body in bodies]
+    shapes = [raise_shape(solid_shape(body.outlines, body.solid), body.z) for body in bodies]
     names = [f"{name} {body.name}".rstrip() for body in bodies]
     path.write_bytes(_text(shapes, names, units, name, about))
     return bound
@@ -86,22 +86,22 @@ def write_stack(
     name: str = "",
     about: str = "",
 ) -> float:
-    """Write outlines one above the other, each from z to z, mm; returns how far walls are off them as written, mm.
+    """Write outlines one above the other, each from z to z, mm; the greatest distance of the written walls, mm.
 
     Raises MissingExtraError without the kernel, RegionError as `stack_shape` does; OSError as the file system does.
     """
     need_kernel()
     path.write_bytes(_text([stack_shape(stretches, bore)], [name], units, name, about))
-    return max(written_off(outline, units) for outline, _, _ in stretches)
+    return max(wall_error(outline, units) for outline, _, _ in stretches)
 
 
-def written_off(outline: Outline, units: str) -> float:
-    """Farthest in mm that the walls are off an outline: by misfits of circles, and by the numbers of another unit."""
-    return misfit(outline) + (0.0 if units == "mm" else converted(outline))
+def wall_error(outline: Outline, units: str) -> float:
+    """Greatest distance of written walls from an outline, mm: misfits of circles and rounding in another unit."""
+    return misfit(outline) + (0.0 if units == "mm" else conversion_error(outline))
 
 
 def _text(shapes: Sequence[Shape], names: Sequence[str], units: str, name: str, about: str) -> bytes:
-    """Write solids out, each under its name."""
+    """Bytes of a STEP file with these solids, each under its name."""
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
     from OCP.StepData import StepData_StepWriter
@@ -111,7 +111,7 @@ def _text(shapes: Sequence[Shape], names: Sequence[str], units: str, name: str, 
         model = writer.Model(True)
         for shape in shapes:
             writer.Transfer(shape, STEPControl_StepModelType.STEPControl_ManifoldSolidBrep)
-        _named(model, names, name, about)
+        _set_names(model, names, name, about)
         out = StepData_StepWriter(model)
         out.FloatWriter().SetFormat(REAL)
         out.SendModel(writer.WS().Protocol())
@@ -139,7 +139,7 @@ def _settings(static: Any, chosen: Mapping[str, str]) -> Iterator[None]:  # noqa
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep the kernel's statistics from the standard output; what it fails in is still told."""
+    """Keep the kernel's statistics from the standard output; its failures are still written."""
     from OCP.Message import Message, Message_Gravity
 
     printers = list(Message.DefaultMessenger_s().Printers())
@@ -153,7 +153,7 @@ def _quiet() -> Iterator[None]:
             printer.SetTraceLevel(level)
 
 
-def _named(model: Any, names: Sequence[str], name: str, about: str) -> None:  # noqa: ANN401 - the kernel has no types
+def _set_names(model: Any, names: Sequence[str], name: str, about: str) -> None:  # noqa: ANN401 - the kernel has no types
     """Name each product and its solid, in the order in which they were transferred, and fill in the header."""
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.StepBasic import StepBasic_Product
@@ -163,9 +163,9 @@ def _named(model: Any, names: Sequence[str], name: str, about: str) -> None:  # 
     for number in range(1, model.NbEntities() + 1):
         entity = model.Value(number)
         if isinstance(entity, StepBasic_Product):
-            own = _string(next(products))
-            entity.SetId(own)
-            entity.SetName(own)
+            own_name = _string(next(products))
+            entity.SetId(own_name)
+            entity.SetName(own_name)
             entity.SetDescription(_string(about))
         elif isinstance(entity, StepShape_ManifoldSolidBrep):
             entity.SetName(_string(next(solids)))
@@ -180,7 +180,7 @@ def _named(model: Any, names: Sequence[str], name: str, about: str) -> None:  # 
 
 
 def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
-    """Return a text as the format has it: what is beyond ASCII in its hexadecimal form (ISO 10303-21, 6.4.3)."""
+    """Text of a STEP file: characters beyond ASCII in hexadecimal form (ISO 10303-21, 6.4.3)."""
     from OCP.TCollection import TCollection_HAsciiString
 
     parts = []
@@ -206,15 +206,21 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
         form = request.as_ or "arcs"
         discs = job.design.discs
         names = [disc.name if len(discs) > 1 else "" for disc in discs]
-        drawn = [
-            one.written_outlines(form, tolerance, lambda fit: written_off(fit, recipe.units)) for one in job.single
+        contours_of_discs = [
+            single_job.written_outlines(form, tolerance, lambda fit: wall_error(fit, recipe.units))
+            for single_job in job.single
         ]
         with job.clock.stage("write step"):
             if recipe.part.thickness is None:
                 raise recipe.error("part.thickness", "a solid needs a thickness")
             bodies = [
-                StepBody([*rim_of(one.body), *contours_of(one.design, contours)], solid_of(one.body), name, disc.z)
-                for one, contours, name, disc in zip(job.single, drawn, names, discs, strict=True)
+                StepBody(
+                    [*rim_of(single_job.body), *contours_of(single_job.design, contours)],
+                    solid_of(single_job.body),
+                    name,
+                    disc.z,
+                )
+                for single_job, contours, name, disc in zip(job.single, contours_of_discs, names, discs, strict=True)
             ]
             bound = write_step(
                 path,
@@ -225,7 +231,7 @@ def make_step(job: Job, request: FileRequest, path: Path) -> Made:
                 about=recipe.about,
             )
     judged = job.judge if len(discs) == 1 else job.judge_together
-    return judged(request, path, bound, sum(outline.count for contours in drawn for outline in contours))
+    return judged(request, path, bound, sum(outline.count for contours in contours_of_discs for outline in contours))
 
 
 def _foresee(_job: Job, _request: FileRequest) -> None:
@@ -236,8 +242,8 @@ def _foresee(_job: Job, _request: FileRequest) -> None:
 def _check(file: Values, _: Values, reader: Reader) -> None:
     if file.get("as", "arcs") != "arcs" and "part.chamfer" in reader.marks:
         remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
-        where = f"{file['path']}.step.as"
-        reader.fault_at(where, "the chamfer of a spline is not a spline", f"'{file['as']}'", remedy)
+        field_path = f"{file['path']}.step.as"
+        reader.fault_at(field_path, "the chamfer of a spline is not a spline", f"'{file['as']}'", remedy)
 
 
 FORMAT = Format(

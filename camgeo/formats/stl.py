@@ -30,15 +30,15 @@ def write_stl(path: Path, mesh: Mesh, *, mm: float = 1.0, about: str = "") -> No
     records["normal"] = normal / np.sqrt(np.sum(normal * normal, axis=1))[:, None]
     # take is four times as fast as points[triangles]
     records["vertices"] = np.take((mesh.points / mm).astype(np.float32), mesh.triangles, axis=0)
-    told = f"camgeo: binary STL in {'inches' if mm == INCH else 'mm'}, z upwards. {about}"
-    header = told.encode("ascii", "replace")[:_HEADER].ljust(_HEADER)
+    title = f"camgeo: binary STL in {'inches' if mm == INCH else 'mm'}, z upwards. {about}"
+    header = title.encode("ascii", "replace")[:_HEADER].ljust(_HEADER)
     with path.open("wb") as stream:
         stream.write(header)
         stream.write(len(records).to_bytes(4, "little"))
         stream.write(records.data)
 
 
-def _written(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
+def _write(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
     (item,) = items
     write_stl(path, item.mesh, mm=mm, about=title)
 
@@ -49,4 +49,4 @@ def _single() -> Precision:
     return SINGLE
 
 
-FORMAT = mesh_format("stl", numbers=_single, write=_written, units=False)
+FORMAT = mesh_format("stl", numbers=_single, write=_write, units=False)

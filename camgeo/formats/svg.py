@@ -63,11 +63,11 @@ def write_svg(
     if mm not in UNITS:
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
     unit = UNITS[mm][0]
-    drawn: dict[str, list[str]] = {}
-    for one in outlines:
-        text = _path(one.outline, mm) if one.circle is None else _circle(one.layer, *one.circle, mm)
-        drawn.setdefault(one.layer, []).append(text)
-    low_x, low_y, wide, high = _page([_box(one) for one in outlines], mm)
+    shapes_of_layers: dict[str, list[str]] = {}
+    for layered in outlines:
+        text = _path(layered.outline, mm) if layered.circle is None else _circle(layered.layer, *layered.circle, mm)
+        shapes_of_layers.setdefault(layered.layer, []).append(text)
+    low_x, low_y, wide, high = _page([_box(layered) for layered in outlines], mm)
     size = _PAGE_UNIT[unit]
     description = "; ".join(filter(None, (f"camgeo units: {unit}", about, *remarks)))
     lines = [
@@ -78,7 +78,7 @@ def write_svg(
         f"<desc>{one_line(description)}</desc>",
         '<g transform="scale(1 -1)">',
     ]
-    for layer, shapes in drawn.items():
+    for layer, shapes in shapes_of_layers.items():
         style = f"fill:none;stroke:{_COLOURS[layer]};stroke-width:{number(round(_HAIRLINE / mm, 4))}"
         lines += [f'<g id="{layer}" inkscape:groupmode="layer" inkscape:label="{layer}" style="{style}">', *shapes]
         lines.append("</g>")
@@ -125,16 +125,16 @@ def _path(outline: Outline, mm: float) -> str:
 
 def _arcs(chain: ArcChain) -> list[str]:
     """Lines and arcs of a chain, arcs of at most a quarter turn each."""
-    found = []
+    commands = []
     for start, end, bulge in chain.pieces():
         if bulge == 0.0:
-            found.append(f"L{_numbers(end)}")
+            commands.append(f"L{_numbers(end)}")
             continue
         radius = radius_of(math.dist(start, end), bulge)
         head = f"A{_numbers(np.array([radius, radius]))} 0 0 {int(bulge > 0.0)} "
         count = max(math.ceil(abs(4.0 * math.atan(bulge)) / _QUARTER), 1)
-        found += [head + _numbers(point) for point in (*steps_along(start, end, bulge, count)[1:], end)]
-    return found
+        commands += [head + _numbers(point) for point in (*steps_along(start, end, bulge, count)[1:], end)]
+    return commands
 
 
 def _circle(layer: str, centre: tuple[float, float], radius: float, mm: float) -> str:

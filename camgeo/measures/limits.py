@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import LIMIT, Scene, declaration
-from camgeo.checks.remedies import Missed, of_limit
+from camgeo.checks.remedies import Missed, limit_remedy
 from camgeo.measures.figures import design_figures, file_figure
 from camgeo.recipe.figures import FIGURES
 from kin.judge.check import Check
@@ -80,7 +80,7 @@ def _bound_checks(
         detail = measured.detail if value is None or math.isinf(value) else ""
         if value is not None and not ok:
             missed = Missed(value, bound, measured.unit, tolerance, measured.surface)
-            detail = f"{of_limit(recipe, limit, missed)} would satisfy it"
+            detail = f"{limit_remedy(recipe, limit, missed)} would satisfy it"
         if FIGURES[limit.figure].at_lift is not None and value is not None:
             lift = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
             detail = f"{lift}: {detail}" if detail else lift

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING
 
-from camgeo.files.precision import converted
+from camgeo.files.precision import conversion_error
 from camgeo.fit.bound import Bound
 from camgeo.output import part_geometry
 from camgeo.output.job import Made
@@ -34,7 +34,7 @@ def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> Made
     has_own_unit = request.units not in {None, job.recipe.units}
 
     def shift(outline: Outline) -> float:
-        return converted(outline) if has_own_unit else 0.0
+        return conversion_error(outline) if has_own_unit else 0.0
 
     with job.refusals(request):
         contours = job.written_outlines(request.as_ or "polyline", job.tolerance(request), shift)

@@ -71,11 +71,11 @@ def part_mesh(
 
         return extruded(outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
     if body.pocket is not None:
-        from camgeo.files.prism import pocketed
+        from camgeo.files.prism import pocketed_mesh
 
         plain = _plain(body)
         kept = outlines if plain else outlines[: len(outlines) - len(body.openings)]
-        mesh, facts = pocketed(
+        mesh, facts = pocketed_mesh(
             kept, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision
         )
         if plain:

@@ -16,7 +16,7 @@ import pytest
 
 import camgeo
 from camgeo import testing
-from camgeo.common.arguments import spelled
+from camgeo.common.arguments import short_repr
 from camgeo.common.errors import SurroundingsError
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def test_every_public_function_is_held_to_the_rule(
         for argument in given:
             for value in WRONG:
                 error = refusal(function, {**given, argument: value})
-                said = f"{name}({argument}={spelled(value)}): {type(error).__name__}: {str(error)[:200]}"
+                said = f"{name}({argument}={short_repr(value)}): {type(error).__name__}: {str(error)[:200]}"
                 if isinstance(error, TypeError):
                     assert re.match(rf"{argument}\b.* must be |value must be left out", str(error)), said
                 else:

@@ -152,7 +152,7 @@ def work(_):
     for _ in range(600):
         time.sleep(0.1)
     return "went on"
-print(workers._called(work, 0))
+print(workers._work_on(work, 0))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "None\n", "")

@@ -16,7 +16,7 @@ from support.heavy import shapely
 from camgeo.files.ears import clip_ears
 from camgeo.files.errors import RegionError
 from camgeo.files.sides import sides
-from camgeo.files.triangulate import clipped
+from camgeo.files.triangulate import clip_region
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,7 +49,7 @@ def area(loop: Array) -> float:
 
 def assert_covered(loops: list[Array]) -> None:
     """`clipped` raises where the edges of the triangles are not those of the loops; the rest is held here."""
-    triangles = clipped(loops[0], loops[1:])
+    triangles = clip_region(loops[0], loops[1:])
     points = np.concatenate(loops)
     a, b, c = (points[corner] for corner in triangles.T)
     assert (sides(a, b, c) > 0).all()
@@ -121,7 +121,7 @@ def square(x: float, y: float, side: float) -> Array:
 )
 def test_what_is_no_region_is_refused(loops: list[Array]) -> None:
     with pytest.raises(RegionError, match="touches or crosses itself"):
-        clipped(loops[0], loops[1:])
+        clip_region(loops[0], loops[1:])
 
 
 def test_an_ear_with_a_vertex_on_its_rim_is_none() -> None:

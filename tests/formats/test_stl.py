@@ -16,7 +16,7 @@ from camgeo.files.errors import RegionError
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
 from camgeo.files.sides import sides
-from camgeo.files.triangulate import clipped, disc, ring, star_shaped
+from camgeo.files.triangulate import clip_region, disc, ring, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.formats import stl
@@ -194,7 +194,7 @@ def test_any_star_shaped_contour(tmp_path_factory, corners, with_bore, data):
     assert volume(records) == 3 * (area(points) - hole)
 
 
-@pytest.mark.parametrize("triangles_of", [disc, clipped])
+@pytest.mark.parametrize("triangles_of", [disc, clip_region])
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 8, 33, 100])
 def test_disc_of_any_count(triangles_of, n):
     points = single(support_cam(n, 0.0))
@@ -207,7 +207,7 @@ def test_disc_of_any_count(triangles_of, n):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_bridge_gives_as_many_triangles_as_the_merge(shape):
     outer, inner = single(SHAPES[shape]), single(bore_polygon(8.0, 0.001)[0])
-    assert clipped(outer, [inner]).shape == ring(outer, inner).shape == (len(outer) + len(inner), 3)
+    assert clip_region(outer, [inner]).shape == ring(outer, inner).shape == (len(outer) + len(inner), 3)
 
 
 def test_star_shaped():

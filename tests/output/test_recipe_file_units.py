@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from support.kernel import kernel
 
 from camgeo.cli.main import main
-from camgeo.files.precision import DECIMALS, SINGLE, converted
+from camgeo.files.precision import DECIMALS, SINGLE, conversion_error
 from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
@@ -377,7 +377,7 @@ def test_a_fit_leaves_room_for_what_writing_moves() -> None:
     (found,) = job.written_outlines("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
     assert found.bound.worst + 0.1 * TOLERANCE <= TOLERANCE
     assert job.written_outlines("arcs", TOLERANCE, lambda _: moved)[0] is plain  # no finer fit would help
-    assert 0.0 < converted(plain) < 1e-12
+    assert 0.0 < conversion_error(plain) < 1e-12
 
 
 @given(st.floats(-500.0, 500.0), st.sampled_from([SINGLE, DECIMALS]))

@@ -13,7 +13,7 @@ from camgeo.api.design import Design
 from camgeo.api.errors import CallError
 from camgeo.api.log import staged
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
-from camgeo.common.arguments import numbers_of, spelled, whole_of
+from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
 from camgeo.report import failure
 from kin.numeric.records import dataclass, field
@@ -78,7 +78,7 @@ class CamshaftDesign:
         if not np.isfinite(angle).all():
             raise CallError("shaft angles are finite numbers, in radians")
         if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {spelled(order)}")
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
         return np.array([lobe.rows(angle.ravel(), order)[order].reshape(angle.shape) for lobe in self._placed])
 
     def __repr__(self) -> str:
@@ -96,7 +96,9 @@ class CamshaftDesign:
 
     def _repr_html_(self) -> str:
         rows = [(name, str(figure)) for name, figure in self.figures.items()]
-        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows))
+        return notebook.notebook_html(
+            self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows)
+        )
 
 
 def designed(recipe: CamshaftRecipe) -> CamshaftDesign:

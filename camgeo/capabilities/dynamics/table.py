@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import table_maker
 from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
@@ -32,4 +32,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
 
 
 # nan: a stem that jams has no force
-FORM = Form(name="forces", surfaces=2, discs=2, check=_check, make=tabled("forces", _columns, gaps=True))
+FORM = Form(name="forces", surfaces=2, discs=2, check=_check, make=table_maker("forces", _columns, gaps=True))

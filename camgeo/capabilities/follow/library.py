@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.capabilities.follow.follower import TRACKS, describe_follower
 from camgeo.capabilities.follow.outline import read_outline
-from camgeo.common.arguments import is_a, number_of, path_of, spelled, text_of, whole_of
+from camgeo.common.arguments import is_a, number_of, path_of, short_repr, text_of, whole_of
 from camgeo.common.errors import CallError, with_packages
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
@@ -212,7 +212,7 @@ class Followed:
         """
         is_a("table", table, str, "a str")
         if not table.isprintable() or not table:
-            raise CallError(f"table is the name of a file of lifts, not {spelled(table)}")
+            raise CallError(f"table is the name of a file of lifts, not {short_repr(table)}")
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
         about = f"The motion of {self.path.name} under a {self.follower.words}, within {self.reading:.6g} mm"
         cam = self._yoke_keys() if self.follower.yoke else self._disc_keys()
@@ -327,9 +327,9 @@ def follow(
         raise CallError("at is the place of the shaft in the file: two lengths in mm, x and y")
     level, count = number_of("reading", reading), whole_of("steps", steps)
     if not 0.0 < level <= MOST:
-        raise CallError(f"a reading is a length above 0, not {spelled(reading)}")
+        raise CallError(f"a reading is a length above 0, not {short_repr(reading)}")
     if not LEAST_STEPS <= count <= MOST_STEPS:
-        raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {spelled(steps)}")
+        raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {short_repr(steps)}")
     unit = None if units is None else UNIT_MM[units]
     outline = read_outline(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
     try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.made.runs import ALIGN
-from camgeo.common.arguments import spelled
+from camgeo.common.arguments import short_repr
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.schema.quantity import read_quantity
@@ -97,14 +97,15 @@ class Call:
                 number = math.nan
             if not least <= number <= MOST_LENGTH:
                 faults.append(
-                    f"--{name.replace('_', '-')}: a length such as 0.002 or 0.0001in is expected, not {spelled(value)}"
+                    f"--{name.replace('_', '-')}: a length such as 0.002 or 0.0001in is expected, "
+                    f"not {short_repr(value)}"
                 )
                 return None
             return number
 
         align = str(options.get("align", "none"))
         if align not in ALIGN:
-            faults.append(f"--align: one of {', '.join(ALIGN)}, not {spelled(align)}")
+            faults.append(f"--align: one of {', '.join(ALIGN)}, not {short_repr(align)}")
         ball = length("probe_radius", options["probe_radius"]) if "probe_radius" in options else None
         face = length("probe_face", options["probe_face"]) if "probe_face" in options else None
         if face is not None and ball is not None:
@@ -123,7 +124,7 @@ class Call:
                 axes = shift, math.radians(turn)
             else:
                 faults.append(
-                    f"--axes-error: a length and an angle in degrees, such as 0.005,0.02, not {spelled(value)}"
+                    f"--axes-error: a length and an angle in degrees, such as 0.005,0.02, not {short_repr(value)}"
                 )
         spans = None
         if "spans" in options:
@@ -131,7 +132,7 @@ class Call:
             if re.fullmatch(r"[0-9]{1,6}", text):
                 spans = int(text)
             else:
-                faults.append(f"--spans: a whole number from 12 is expected, not {spelled(text)}")
+                faults.append(f"--spans: a whole number from 12 is expected, not {short_repr(text)}")
         out = options.get("out")
         if out is not None and not str(out):
             faults.append("--out: an empty name")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.api.check import Figure, Figures
 from camgeo.api.loading import recipe_of
 from camgeo.api.log import heard
-from camgeo.common.arguments import called, is_a, path_of, spelled, whole_of
+from camgeo.common.arguments import demand_callable, is_a, path_of, short_repr, whole_of
 from camgeo.common.errors import CallError, SurroundingsError
 from kin.numeric.records import dataclass, field
 
@@ -118,12 +118,12 @@ def search(
     from camgeo.files.errors import install
 
     recipe, folder = recipe_of(recipe), path_of("out", out)
-    called("progress", progress)
+    demand_callable("progress", progress)
     is_a("fresh", fresh, bool, "a bool")
     if scheduler is not None:
         is_a("scheduler", scheduler, str, "a str")
     if jobs is not None and (jobs := whole_of("jobs", jobs)) < 1:
-        raise CallError(f"jobs is a number of processes from 1, not {spelled(jobs)}")
+        raise CallError(f"jobs is a number of processes from 1, not {short_repr(jobs)}")
 
     def listener(what: str, count: int, total: int, _seconds: float) -> None:
         if progress is not None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.valve.train import ORDER, valve_of
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import table_maker
 from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
@@ -38,4 +38,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return names, np.column_stack([degrees, 2.0 * degrees, tappet[0] / recipe.mm, *lifts])
 
 
-FORM = Form(name="valve", after="motion", check=_check, make=tabled("valve", _columns))
+FORM = Form(name="valve", after="motion", check=_check, make=table_maker("valve", _columns))

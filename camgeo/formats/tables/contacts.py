@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.formats.tables.motion import motion_columns
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import table_maker
 from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
@@ -50,18 +50,20 @@ def contact_table(
         for surface, contour in design.contours
     ]
     for name, t, surface, contour in touching:
-        at = contour.sample(t, side)
+        frame = contour.sample(t, side)
         with np.errstate(divide="ignore"):
-            radius = surface.side * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)
-        x, y = np.where(np.abs(at.point) < NOTHING * contour.size, 0.0, at.point).T / recipe.mm
-        own = {
+            radius = surface.side * frame.speed / np.where(frame.turn == 0.0, np.nan, frame.turn)
+        x, y = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point).T / recipe.mm
+        own_columns = {
             f"{name}radius_of_curvature_{unit}": radius / recipe.mm,
             f"{name}pressure_angle_deg": np.degrees(surface.pressure(t)),
             f"{name}x_{unit}": x,
             f"{name}y_{unit}": sense * y,
         }
         away = ~touched(contour, t)
-        columns |= {key: np.where(away, np.nan, column) for key, column in own.items()} if away.any() else own
+        columns |= (
+            {key: np.where(away, np.nan, column) for key, column in own_columns.items()} if away.any() else own_columns
+        )
     return tuple(columns), np.column_stack(list(columns.values()))
 
 
@@ -69,4 +71,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return contact_table(job.recipe.in_units_of(request), job.design, motion_columns(job, request))
 
 
-FORM = Form(name="contacts", surfaces=2, discs=2, make=tabled("contacts", _columns, gaps=True))  # nan: not touched
+FORM = Form(name="contacts", surfaces=2, discs=2, make=table_maker("contacts", _columns, gaps=True))  # nan: not touched

@@ -1,7 +1,7 @@
-"""Tables for electronic cams: rows of a master and a slave for the controller of a drive, which joins them.
+"""Tables for electronic cams: rows of a master and a slave for the controller of a drive, which interpolates them.
 
-What a controller makes of the rows between them is held against the motion, at every place: the joined rows are read
-back from the file and judged as a drive would run them.
+The interpolated rows are judged against the motion at every place: they are read back from the file and joined as the
+controller joins them.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ def _write(path: Path, columns: Sequence[str], rows: Array, head: Sequence[str])
 
 
 class Controller(NamedTuple):
-    """How a controller joins the rows of its table, what it is called there, and on whose word it does so.
+    """Interpolation of a controller between the rows of its table, the name of the layout, and the source of both.
 
-    `finest` are the degrees that its rows are apart at least, so many does it take. `number` writes a position or a
-    rate, `write` the table with the names of its columns and the lines of its head.
+    `finest` is the least step between rows, degrees, as the controller takes no more rows. `number` writes a position
+    or a rate, `write` the table with the names of its columns and the lines of its head.
     """
 
     join: Join
@@ -86,7 +86,7 @@ CONTROLLERS = {
 
 
 def check(file: Values, values: Values, reader: Reader) -> None:
-    """Note what has no table for a drive."""
+    """Note faults of a request: no controller, a linkage, a step that the controller does not take."""
     path = f"{file['path']}.csv"
     if f"{path}.for" not in reader.marks:
         remedy = f"give one of {', '.join(CONTROLLERS)} beside it"
@@ -108,11 +108,11 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)
     gauge = job.design.exact.gauge
     limits = permitted(recipe, tolerance)
-    own = math.radians(1.0) if gauge.unit == "deg" else 1.0
+    scale = math.radians(1.0) if gauge.unit == "deg" else 1.0
     with job.clock.stage("controller"):
         rows = _Rows(job, request)
-        most = own * (gauge.direct_limit(tolerance) if limits.motion is None else limits.motion)
-        joined, error = _joined(job, request, rows, most)
+        most = scale * (gauge.direct_limit(tolerance) if limits.motion is None else limits.motion)
+        joined, error = _join_rows(job, request, rows, most)
         columns, table = rows.table(joined)
         controller = CONTROLLERS[str(request.own["for"])]
         unit = rows.unit
@@ -132,7 +132,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 class _Rows:
-    """The motion as a controller is given it: from its lowest place, in the unit of the file, as it is written."""
+    """Rows of the motion for a controller: from its lowest place, in the unit of the file, rounded as written."""
 
     def __init__(self, job: Job, request: FileRequest) -> None:
         recipe, exact = job.recipe.in_units_of(request), job.design.exact
@@ -141,7 +141,7 @@ class _Rows:
         swings = recipe.cam.arrangement.unit == "deg"
         self.unit = "deg" if swings else "in" if recipe.units == "inch" else "mm"
         self.scale = math.radians(1.0) if swings else recipe.mm
-        self.breaks = [math.radians(exact.motion.shaft_deg(at)) for at in exact.breaks.tolist()]
+        self.breaks = [math.radians(exact.motion.shaft_deg(place)) for place in exact.breaks.tolist()]
         followed = cells(lambda t: self.motion.rows(t, 0), between(0.0, TURN, sorted(self.breaks)), share=SHARE)
         self.lowest = pieces(followed).least()[0]
 
@@ -151,17 +151,17 @@ class _Rows:
         return above
 
     def joined(self, count: int) -> JoinedRows:
-        """Rows as they will stand in the file, with the digits that it has."""
+        """Rows of a turn, `count` + 1 of them, rounded to the digits of the file; mm or rad."""
         angle = np.linspace(0.0, TURN, count + 1)
         order = 2 if self.controller.join == "quintic" else 0
         rows = self.motion.turn(angle, order)
         rows[0] -= self.lowest
         degree = math.radians(1.0)
         powers = np.array([1.0, degree, degree**2])[: order + 1, None]
-        shown = rows * powers / self.scale
-        shown[np.abs(shown) < NOTHING * np.abs(shown).max(axis=1, keepdims=True)] = 0.0
-        written = np.array([[float(self.controller.number(value)) for value in row] for row in shown.tolist()])
-        return JoinedRows(angle, written * self.scale / powers, self.controller.join)
+        values = rows * powers / self.scale
+        values[np.abs(values) < NOTHING * np.abs(values).max(axis=1, keepdims=True)] = 0.0
+        rounded = np.array([[float(self.controller.number(value)) for value in row] for row in values.tolist()])
+        return JoinedRows(angle, rounded * self.scale / powers, self.controller.join)
 
     def off(self, joined: JoinedRows) -> float:
         """Greatest distance of joined rows from the motion, mm or rad."""
@@ -180,8 +180,8 @@ class _Rows:
         return names, np.column_stack([degrees, *(joined.slave * powers / self.scale)])
 
 
-def _joined(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[JoinedRows, float]:
-    """Rows by the request's step, or the fewest that hold the tolerance, mm or rad, and their greatest error."""
+def _join_rows(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[JoinedRows, float]:
+    """Rows by the request's step, or the fewest within `most`, mm or rad, and their greatest error; RecipeErrors."""
     recipe, field = job.recipe, job.field(request)
     step = request.own.get("step")
     if step is not None:
@@ -190,19 +190,19 @@ def _joined(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[J
         error = rows.off(joined)
         if error <= most:
             return joined, error
-        what = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
+        problem = f"joined as the controller joins them rows so far apart leave {error / rows.scale:.4g} {rows.unit}"
         fewest = fewest_rows(rows.error, most, rows.controller.finest)
         remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
         remedy += f"a tolerance of {upward(error / rows.scale)} {rows.unit}"
-        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+        raise recipe.error(f"{field}.csv.step", problem, f"{360.0 / count:.9g} degrees", remedy)
     finest = rows.controller.finest
     fewest = fewest_rows(rows.error, most, finest)
     if fewest is None:
         error = rows.error(round(360.0 / finest))
-        left = f"{error / rows.scale:.4g} {rows.unit}"
-        what = f"joined as the controller joins them rows {finest:g} degrees apart leave {left}"
+        error_text = f"{error / rows.scale:.4g} {rows.unit}"
+        problem = f"joined as the controller joins them rows {finest:g} degrees apart leave {error_text}"
         remedy = f"give at least {upward(error / rows.scale)} {rows.unit}"
-        raise recipe.error(job.tolerance_field(request), what, None, remedy)
+        raise recipe.error(job.tolerance_field(request), problem, None, remedy)
     joined = rows.joined(fewest)
     return joined, rows.off(joined)
 

@@ -42,6 +42,6 @@ def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
 
     recipe = job.recipe.in_units_of(request)
     with job.clock.stage("grinding"), job.refusals(request):
-        made = grinding_table(recipe, job.design, request, job.tolerance(request), job.field(request))
-        write_table(path, made.columns, made.rows, head=made.head)
-    return job.judge(request, path, Bound(made.error, made.error), len(made.rows) - 1)
+        table = grinding_table(recipe, job.design, request, job.tolerance(request), job.field(request))
+        write_table(path, table.columns, table.rows, head=table.head)
+    return job.judge(request, path, Bound(table.error, table.error), len(table.rows) - 1)

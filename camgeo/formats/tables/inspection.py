@@ -1,4 +1,4 @@
-"""The inspection table: where the follower touches the exact cam, which way the surface faces, where a cutter stands.
+"""The inspection table: points of contact on the exact cam, normals of the surface, centres of a cutter.
 
 Places and directions are those of the drawing, mirrored where the drawing is; the motion is not. Where a trimmed cam
 is not touched the cells stay empty. Where the recipe gives the zone of the contour, its limits stand behind.
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.formats.tables.tabled import check_step, tabled
+from camgeo.formats.tables.tabled import check_step, table_maker
 from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
@@ -72,7 +72,7 @@ def _contact(
     normal = np.where(np.abs(outward) < NOTHING, 0.0, outward)
     point = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point)
     columns = _place(recipe, point, name, unit)
-    x, y = _drawn(recipe, normal).T
+    x, y = _mirror(recipe, normal).T
     columns |= {f"{name}nx": x, f"{name}ny": y, f"{name}normal_deg": _degrees(x, y)}
     if recipe.manufacture is not None:
         columns |= _cartesian(recipe, point + recipe.manufacture.radius * normal, f"{name}cutter_", unit)
@@ -83,20 +83,20 @@ def _contact(
 
 
 def _place(recipe: Recipe, point: Array, name: str, unit: str) -> dict[str, Array]:
-    x, y = (_drawn(recipe, point) / recipe.mm).T
+    x, y = (_mirror(recipe, point) / recipe.mm).T
     polar = {f"{name}radius_{unit}": np.hypot(x, y), f"{name}polar_deg": _degrees(x, y)}
     return _cartesian(recipe, point, name, unit) | polar
 
 
 def _cartesian(recipe: Recipe, point: Array, name: str, unit: str) -> dict[str, Array]:
-    x, y = (_drawn(recipe, point) / recipe.mm).T
+    x, y = (_mirror(recipe, point) / recipe.mm).T
     return {f"{name}x_{unit}": x, f"{name}y_{unit}": y}
 
 
-def _drawn(recipe: Recipe, vectors: Array) -> Array:
-    """Places or directions (n, 2) as the drawing has them."""
-    drawn: Array = vectors * np.array([1.0, -1.0]) if recipe.rotation == "ccw" else vectors
-    return drawn
+def _mirror(recipe: Recipe, vectors: Array) -> Array:
+    """Places or directions (n, 2), mirrored for a counter-clockwise shaft."""
+    mirrored: Array = vectors * np.array([1.0, -1.0]) if recipe.rotation == "ccw" else vectors
+    return mirrored
 
 
 def _degrees(x: Array, y: Array) -> Array:
@@ -115,5 +115,5 @@ FORM = Form(
     discs=2,
     takes=("step",),
     check=_check,
-    make=tabled("inspection", _columns, gaps=True),  # nan: not touched
+    make=table_maker("inspection", _columns, gaps=True),  # nan: not touched
 )

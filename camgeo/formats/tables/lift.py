@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
     if "roller" not in file:
-        where = f"{file['path']}.csv.as"
-        reader.fault_at(where, "the lift of a roller needs its diameter", "'lift'", "give roller beside it")
+        field_path = f"{file['path']}.csv.as"
+        reader.fault_at(field_path, "the lift of a roller needs its diameter", "'lift'", "give roller beside it")
 
 
 FORM = ground_form("lift", _check, "roller")

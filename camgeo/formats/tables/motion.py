@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import table_maker
 from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 def motion_columns(job: Job, request: FileRequest) -> Columns:
-    """Give column names and rows (angles + 1, k) over equal steps of the shaft, in the unit of the file."""
-    told = job.recipe.in_units_of(request)
+    """Column names and rows (angles + 1, k) over equal steps of the shaft, in the unit of the file."""
+    recipe = job.recipe.in_units_of(request)
     if job.design.driven is not None:
         from camgeo.synthesis import linkage
 
-        return linkage.motion_table(told, job.design.driven.mechanism)
+        return linkage.motion_table(recipe, job.design.driven.mechanism)
     from camgeo.synthesis.motion_table import motion_table
 
-    return motion_table(told, job.design.motion)
+    return motion_table(recipe, job.design.motion)
 
 
-FORM = Form(name="motion", surfaces=2, discs=2, make=tabled("table", motion_columns))
+FORM = Form(name="motion", surfaces=2, discs=2, make=table_maker("table", motion_columns))

@@ -1,7 +1,7 @@
 """A list of points that CAD systems import as a curve: x, y, z on each line, the first point again at the end.
 
-What a CAD system draws through them is the closed cubic spline over the lengths of their chords, as is assumed here. It
-is read back from the file and judged as any contour is. Without a step the points are as far apart as it allows.
+It is assumed that a CAD system draws the closed cubic spline over the lengths of their chords. That spline is read back
+from the file and judged as a contour. Without a step the points are as far apart as the tolerance allows.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) -> int:
-    """How many points there are, by the request's step or the tolerance, mm."""
+    """Number of points by the request's step, or the fewest within the tolerance, mm; raises RecipeErrors."""
     recipe, field = job.recipe, job.field(request)
     fewest = fewest_rows(points.error, MARGIN * tolerance)
     step = request.own.get("step")
@@ -107,15 +107,15 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
         error = points.error(count)
         if error <= tolerance:
             return count
-        what = f"a spline through points so far apart is off by {error / recipe.mm:.4g} {recipe.units}"
+        problem = f"a spline through points so far apart is off by {error / recipe.mm:.4g} {recipe.units}"
         remedy = "" if fewest is None else f"give {360.0 / fewest:g} or less, or "
         remedy += f"a tolerance of {upward(error / MARGIN / recipe.mm)} {recipe.units}"
-        raise recipe.error(f"{field}.csv.step", what, f"{360.0 / count:.9g} degrees", remedy)
+        raise recipe.error(f"{field}.csv.step", problem, f"{360.0 / count:.9g} degrees", remedy)
     if fewest is None:
         error = points.error(round(360.0 / FINEST))
-        what = f"a spline through points {FINEST:g} degrees apart is off by {error / recipe.mm:.4g} {recipe.units}"
+        problem = f"a spline through points {FINEST:g} degrees apart is off by {error / recipe.mm:.4g} {recipe.units}"
         remedy = f"give at least {upward(error / MARGIN / recipe.mm)} {recipe.units}"
-        raise recipe.error(job.tolerance_field(request), what, None, remedy)
+        raise recipe.error(job.tolerance_field(request), problem, None, remedy)
     return fewest
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.formats.tables.tabled import tabled
+from camgeo.formats.tables.tabled import table_maker
 from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
@@ -44,8 +44,8 @@ def _columns(job: Job, request: FileRequest) -> Columns:
         (fit,) = job.fits
         return polar_table(job.recipe.in_units_of(request), fit.contour)
     except StarError as error:
-        where, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
-        raise job.recipe.error(where, str(error), "'polar'", remedy) from error
+        field_path, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
+        raise job.recipe.error(field_path, str(error), "'polar'", remedy) from error
 
 
-FORM = Form(name="polar", make=tabled("polar", _columns))
+FORM = Form(name="polar", make=table_maker("polar", _columns))

@@ -1,4 +1,4 @@
-"""Tables over the shaft angle, or of the contour: written as they are, which nothing judges."""
+"""Tables over the shaft angle or of the contour, which nothing judges."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def check_step(file: Values, reader: Reader) -> None:
 
 
 def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINEST) -> int | None:
-    """The fewest rows of a turn, a whole number of ticks apart, whose error is at most so great; None where none is.
+    """Fewest rows of a turn whose `error` is at most `most`, in its unit; None where no number of rows is enough.
 
-    They are at least `finest` degrees apart.
+    Rows are a whole number of ticks and at least `finest` degrees apart.
     """
     whole = 360 * TICKS
     ticks = [tick for tick in range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1) if whole % tick == 0]
@@ -52,10 +52,10 @@ def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINE
     return None
 
 
-def tabled(
+def table_maker(
     stage: str, columns: Callable[[Job, FileRequest], Columns], *, gaps: bool = False
 ) -> Callable[[Job, FileRequest, Path], Made]:
-    """Make the function that writes a table of these columns in a stage of the run; `gaps` as of `write_table`."""
+    """Function that writes a table of these columns in a stage of the run; `gaps` as of `write_table`."""
 
     def make(job: Job, request: FileRequest, path: Path) -> Made:
         from camgeo.output.job import unjudged
