@@ -168,7 +168,7 @@ def test_a_fit_counts_as_bore_and_angle() -> None:
 def test_a_bore_with_a_class_is_round_as_any() -> None:
     plain = load_text(CAM.replace("{diameter: 20, fit: H7}", "20"), "c.yaml").part
     fitted = load_text(CAM, "c.yaml").part
-    assert (fitted.bore, fitted.sides, fitted.keyway, fitted.fit) == (plain.bore, 0, plain.keyway, "H7")
+    assert (fitted.bore, fitted.sides, fitted.features, fitted.fit) == (plain.bore, 0, plain.features, "H7")
     assert load_text(CAM.replace("din6885", "jis-b1301"), "c.yaml").part == fitted
     with pytest.raises(RecipeErrors, match="a round bore has no flats"):
         load_text(CAM.replace("fit: H7", "fit: H7, at: 10"), "c.yaml")
