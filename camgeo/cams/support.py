@@ -12,6 +12,7 @@ from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.surface import Surface
 from camgeo.common.rounding import NOISE, upward
+from camgeo.motions.motion import ByMotion
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, field, replace
@@ -348,4 +349,12 @@ def _shape(cam: Values, mm: float) -> Shape:
     return FormulaShape(cam["p"], mm)
 
 
-FAMILY = Family(SupportCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check)
+BY_MOTION = ByMotion(
+    motion="fourier",
+    base="fourier.mean",
+    instead=("p", "reuleaux", "hypocycloid"),
+    still=("fourier", {"mean": 40.0}),
+    opposed=True,
+    series=True,
+)
+FAMILY = Family(SupportCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, by_motion=BY_MOTION)

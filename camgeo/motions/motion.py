@@ -325,6 +325,8 @@ class ByMotion:
     instead   keys that give the motion otherwise
     still     an entry that gives hardly any motion
     opposed   whether size and motion fix how far two opposite contacts are apart
+    lag       share of a swing by which the middle of its contacts lags the shaft: of what its symmetry is told over
+    series    whether the motion is a Fourier series of the support function, of which `base` is the mean
     """
 
     motion: str
@@ -332,6 +334,8 @@ class ByMotion:
     instead: tuple[str, ...] = ()
     still: tuple[str, Value]
     opposed: bool = False
+    lag: float = 0.5
+    series: bool = False
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------

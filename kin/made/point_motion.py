@@ -2,9 +2,9 @@
 
 Each contact runs on its own surface, against a follower that is meant to hardly move. Where two hold the follower the
 motion is the one midway, and what they leave is play. What a cam's symmetry says of the rest of the turn is used:
-two opposite contacts of a frame, S(phi + pi) = S(0) + S(pi) - S(phi) (Shu and Wu 2012); two rollers on one arm, psi
-changes its sign as phi - psi/2 grows by pi/lambda (Wunderlich 1984, 4.9). So all round the turn tells of the part of it
-by which a recipe gives the motion, and what keeps from that symmetry is form.
+two opposite contacts of a frame, S(phi + pi) = S(0) + S(pi) - S(phi) (Shu and Wu 2012); two rollers or faces on one
+arm, psi changes its sign as phi - psi/2 grows by pi/lambda (Wunderlich 1984, 4.9), and faces swing psi/2. So all round
+the turn tells of the part of it by which a recipe gives the motion, and what keeps from that symmetry is form.
 """
 
 from __future__ import annotations
@@ -118,11 +118,13 @@ def measured_motion(
     span: float = TURN,
     *,
     opposed: bool = False,
+    lag: float = 0.5,
     spans: int | None = None,
 ) -> PointMotion:
     """Let a follower run on the metal of each of its surfaces, and give its motion over a span from angle 0.
 
-    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by.
+    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by. A swing over a
+    section of the turn changes its sign from one to the next over the shaft angle less `lag` times the swing.
 
     Raises ContactError where a contact finds no metal, GapError for a gap, ValueError as `fit` does.
     """
@@ -149,7 +151,7 @@ def measured_motion(
             uneven = 0.5 * max(-play[0], play[2])
     sections = span != TURN and not opposed
     if sections:
-        (position, uneven), last = _sections(turn, span), 0.0
+        (position, uneven), last = _sections(turn, span, lag), 0.0
     else:
         count = round(len(turn) * span / TURN)
         position, last = turn[:count], float(turn[count % len(turn)])
@@ -159,18 +161,17 @@ def measured_motion(
     )
 
 
-def _sections(psi: Array, span: float) -> tuple[Array, float]:
+def _sections(swing: Array, span: float, lag: float) -> tuple[Array, float]:
     """Swing over equal shaft angles of the first of equal sections, as all of them tell it; how far one is off that."""
-    phi = equal_steps(FINER * len(psi))
-    fine = _finer(psi)
+    phi = equal_steps(FINER * len(swing))
+    fine = _finer(swing)
     count = round(TURN / span)
-    lead = phi - 0.5 * fine
     u = np.linspace(-BESIDE * span, (1.0 + BESIDE) * span, len(phi) // count)
-    each = np.stack([(-1) ** k * np.interp(u + k * span, lead, fine, period=TURN) for k in range(count)])
+    each = np.stack([(-1) ** k * np.interp(u + k * span, phi - lag * fine, fine, period=TURN) for k in range(count)])
     mean = each.mean(axis=0)
-    shaft = span / (len(psi) // 2) * np.arange(len(psi) // 2)
-    swing: Array = np.interp(shaft, u + 0.5 * mean, mean)
-    return swing, float(np.abs(each - mean).max())
+    shaft = span / (len(swing) // 2) * np.arange(len(swing) // 2)
+    first: Array = np.interp(shaft, u + lag * mean, mean)
+    return first, float(np.abs(each - mean).max())
 
 
 def _finer(rows: Array) -> Array:

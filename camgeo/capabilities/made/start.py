@@ -33,9 +33,10 @@ from kin.law.programme import IntentError
 from kin.made.motion import COVERAGE
 from kin.made.point_motion import SurfaceRun, measured_motion
 from kin.made.recognised import recognised
+from kin.made.series import STANDS_OUT, support_series
 from kin.made.smooth import GapError
 from kin.numeric.errors import UnsettledError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     import collections.abc
@@ -98,7 +99,14 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
         raise CallError(f"{names}: {error}") from error
     except IntentError as error:
         raise CallError(f"{names}: these points give the follower no motion: {error.message}") from error
-    keys, made, lines = measured.keys, source, [*rough.remarks]
+    made, beside, lines = (_by_series if measured.keys.series else _by_strokes)(measured, source, name)
+    lines = [*rough.remarks, *lines, *_play(measured), *_verified(made.text, beside, name, paths)]
+    return Started(made.text, beside, tuple(lines))
+
+
+def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Source, dict[str, str], list[str]]:
+    """The recipe with base radius and motion by strokes or a table, files beside it, and what there is to say."""
+    keys, made, lines = measured.keys, source, []
     if measured.base is not None:
         mm, unit = measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
         base = _number(measured.base / mm, measured.unsure / mm)
@@ -120,9 +128,36 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
     else:
         made = _with_motion(made, keys, keys.motion, segments)
         lines += _told(measured, measured.programme)
-    lines += _play(measured)
-    lines += _verified(made.text, beside, name, paths)
-    return Started(made.text, beside, tuple(lines))
+    return made, beside, lines
+
+
+def _by_series(measured: _MeasuredCam, source: Source, _: str) -> tuple[Source, dict[str, str], list[str]]:
+    """The same with the support function as a series, about the place of the shaft that the recipe gives.
+
+    Raises CallError where the harmonics that stand out of the noise leave more than the reading.
+    """
+    motion, mm, unit = measured.motion, measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
+    p = motion.turn + motion.gauge.intended(np.zeros(1))
+    series = support_series(p, motion.sd, motion.spans)
+    left, unsure = series.left(p), series.unsure / mm
+    if left > measured.reading:
+        what = f"the harmonics that stand out of the noise leave {left / mm:.3g} {unit} of the support function"
+        raise CallError(f"{what}, more than {measured.reading / mm:.3g}: give points closer together")
+    linear = measured.recipe.cam.linear
+    shaft = (0.0, 0.0) if linear is None else linear.shaft
+    fourier: dict[str, Value] = {"mean": _rounded(series.mean / mm, unsure)}
+    for key, coefficients, place in (("cos", series.cos, shaft[0]), ("sin", series.sin, shaft[1])):
+        about = {1: 0.0, **coefficients}
+        about[1] += place  # the series is about the origin of p, the points are about the shaft
+        sizes = {str(k): _rounded(about[k] / mm, unsure) for k in sorted(about)}
+        if any(sizes.values()):
+            fourier[key] = {k: size for k, size in sizes.items() if size}
+    orders = ", ".join(map(str, series.cos)) or "none"
+    lines = [
+        f"support function of mean {series.mean / mm:.6g} {unit} and harmonics {orders}, each +- {unsure:.2g}",
+        f"the harmonics leave {left / mm:.2g} {unit} at most; a deviation of form of as many waves is taken for them",
+    ]
+    return _with_motion(source, measured.keys, measured.keys.motion, fourier), {}, lines
 
 
 def _with(source: Source, path: str, value: Value) -> Source:
@@ -160,12 +195,10 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
     """Give the recipe what it need not say, by the size of the points."""
     source = Source.of(path.read_text("utf-8"), str(path))
     keys = _keys(source)
-    if keys.base:
+    if keys.base and not keys.series:
         source = _with(source, f"cam.{keys.base}", 40.0)
     source = _with_motion(source, keys, *keys.still)
     rough = load_text(source.text, path)
-    if rough.linkage is not None:
-        raise CallError(f"{escaped(str(path))}: a recipe is made of points of a cam without a linkage: leave it out")
     tables = tables_of(paths)
     if any(table.measured == "lift" for table in tables):
         raise CallError("lifts tell no base radius: a recipe is made of points x,y")
@@ -240,24 +273,25 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     """Base radius, motion, and its programme if there is one."""
     recipe, keys = rough.recipe, rough.keys
     exact = recipe.cam.exact()
-    runs = [
-        SurfaceRun(exact.gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces
-    ]
-    motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed)
+    gauges = exact.gauges
+    if keys.series and recipe.linkage is None:  # one face tells it all, of constant breadth or not; a frame needs that
+        gauges = {name: replace(gauge, contacts=gauge.contacts[:1]) for name, gauge in gauges.items()}
+    runs = [SurfaceRun(gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces]
+    motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed, lag=keys.lag)
     _demand_symmetry(recipe, motion)
     made = recipe.of(Made)
     zone = None if made is None else made.profile
     reading = READING if zone is None else 0.5 * zone
     unit = motion.gauge.unit
     reading = motion.gauge.moved_by(reading) if unit == "deg" else reading
-    programme = recognised(motion, reading, unit)
+    programme = None if keys.series else recognised(motion, reading, unit)
     lowest = float(motion.position.min() if motion.closed else motion.position[0])
     unsure, wave = COVERAGE * motion.sd, 1.0
     if programme is not None:
         at = int(np.argmin(programme.levels)) if motion.closed else 0
         lowest, unsure = float(programme.levels[at]), float(programme.uncertainty[1][at])
         wave = float(programme.hidden.levels[at])
-    if not keys.base:
+    if keys.series or not keys.base:
         return _MeasuredCam(recipe, keys, motion, None, 0.0, 0.0, reading, programme)
     circle, more, high = (motion.lifted_circle(level) for level in (lowest, lowest + unsure, lowest + wave * reading))
     return _MeasuredCam(
@@ -298,6 +332,14 @@ def _number(value: float, uncertainty: float) -> float:
         if abs(near - value) <= max(uncertainty, 0.5 * ROUND[-1]):
             return float(f"{near:.9g}")
     return float(f"{value:.9g}")
+
+
+def _rounded(value: float, unsure: float) -> float:
+    """The roundest number within an uncertainty of a value, with six digits where there is none; 0 of noise."""
+    if abs(value) <= STANDS_OUT * unsure:
+        return 0.0
+    rounded = _number(value, unsure)
+    return rounded if abs(rounded - value) <= unsure else float(f"{value:.6g}")
 
 
 def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value] | None, str]:

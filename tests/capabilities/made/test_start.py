@@ -54,6 +54,56 @@ TWO_CONTACTS = {
 }
 
 
+def flat_pair(ratio, arm, law):
+    cam = f"kind: flat-pair, ratio: {ratio}, arm: {arm}, law: {law}"
+    return f"part: {{bore: 12}}\nverify: {{angles: 360}}\ncam: {{{cam}}}"
+
+
+TWO_CONTACTS["flat pair"] = flat_pair(
+    2, 40, "[{rise: 2, over: 40, law: cycloidal}, {dwell: 10}, {return: 2, over: 40, law: cycloidal}]"
+)
+TWO_CONTACTS["flat pair of ratio 3"] = flat_pair(
+    3, 60, "[{rise: 1, over: 30, law: cycloidal}, {return: 1, over: 30, law: cycloidal}]"
+)
+SUPPORT = "part: {bore: 6}\nverify: {angles: 360}\ncam: {kind: support"
+LINKAGE = "\nlinkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}"
+THIRD_AND_FIFTH = (25.0, {3: 1.5}, {5: 0.3})
+SERIES = {  # a cam, what the recipe says of it beside the points, the series that is expected, what it leaves at most
+    "odd": (", fourier: {mean: 25, cos: {3: 1.5}, sin: {5: 0.3}}}", "}", THIRD_AND_FIFTH, 0.001),
+    "even": (
+        ", fourier: {mean: 25, cos: {2: 1.5}, sin: {5: 0.3}}}",
+        "}",
+        (25.0, {2: 1.5}, {5: 0.3}),
+        0.001,
+    ),
+    "a shaft that is known": (
+        ", fourier: {mean: 25, cos: {3: 1.5}, sin: {5: 0.3}}, shaft: [8, -3]}",
+        ", shaft: [8, -3]}",
+        THIRD_AND_FIFTH,
+        0.001,
+    ),
+    "a shaft that is not": (
+        ", fourier: {mean: 25, cos: {3: 1.5}, sin: {5: 0.3}}, shaft: [8, -3]}",
+        "}",
+        (25.0, {1: -8.0, 3: 1.5}, {1: 3.0, 5: 0.3}),
+        0.001,
+    ),
+    "other keys give way": (
+        ", hypocycloid: {cusps: 3, size: 2, breadth: 50}}",
+        ", reuleaux: {sides: 5, breadth: 40, rounding: 5}}",
+        (25.0, {3: 2.0}, {}),
+        0.001,
+    ),
+    "jumps of curvature": (", reuleaux: {sides: 3, breadth: 50, rounding: 5}}", "}", (25.0, None, None), 0.01),
+    "in a linkage": (
+        f", fourier: {{mean: 25, cos: {{3: 2}}}}, shaft: [18, 8.5]}}{LINKAGE}",
+        f", shaft: [18, 8.5]}}{LINKAGE}",
+        (25.0, {3: 2.0}, {}),
+        0.001,
+    ),
+}
+
+
 def bare(text):
     """A recipe that says neither base radius nor motion."""
     return re.sub(r", (motion|law): \[.*\]", "", text.replace("base_radius: 40, ", ""))
@@ -112,6 +162,47 @@ def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, 
     t = np.linspace(0.0, 2.0 * np.pi, 500)
     for (_, _, meant), (_, _, surface) in zip(surfaces(text), surfaces(new), strict=True):
         assert surface.gauge.envelope.points(t) == pytest.approx(meant.gauge.envelope.points(t), abs=0.002)
+    assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("name", SERIES)
+def test_a_support_function_comes_back_as_its_series(name, tmp_path, capsys):
+    """Harmonics within 0.2 um, and none besides; of jumps of curvature the low ones, by what they leave."""
+    cam, said, series, most = SERIES[name]
+    _, files = measured(tmp_path, SUPPORT + cam, nothing, 0.0005)
+    (tmp_path / "bare.yaml").write_text(SUPPORT + said, "utf-8")
+    assert new_from(tmp_path, files) == 0
+    told = capsys.readouterr().out
+    (left,) = re.findall(r"the harmonics leave ([0-9.e-]+) mm at most", told)
+    assert float(left) < most
+    assert "verified against the points: profile 0.00" in told
+    shape = camgeo.load(tmp_path / "new.yaml").cam.shape
+    mean, *parts = series
+    assert shape.mean == pytest.approx(mean, abs=0.0005)
+    for coefficients, expected in zip((shape.cos, shape.sin), parts, strict=True):
+        assert expected is None or dict(coefficients) == pytest.approx(expected, abs=0.0002)
+    assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
+
+
+def test_a_support_function_that_its_harmonics_miss_is_refused(tmp_path, capsys):
+    """Sharp corners call for more harmonics than points of a half degree tell of a zone of 2 um."""
+    text = f"made: {{profile: 0.002}}\n{SUPPORT}, reuleaux: {{sides: 3, breadth: 50, rounding: 5}}}}"
+    _, files = measured(tmp_path, text, nothing, 0.0005)
+    (tmp_path / "bare.yaml").write_text(text, "utf-8")
+    assert new_from(tmp_path, files) == 2
+    error = capsys.readouterr().err
+    assert "the harmonics that stand out of the noise leave 0.00" in error
+    assert "more than 0.001: " in error
+    assert not (tmp_path / "new.yaml").exists()
+
+
+def test_a_frame_under_a_linkage_comes_back(tmp_path):
+    linkage = "\nlinkage: {kind: inverted-slider-crank, ground: 90, rocker: 0}"
+    assert start_all(tmp_path, framed("constant-breadth") + linkage) == 0
+    new = (tmp_path / "new.yaml").read_text("utf-8")
+    assert "{rise: 8, over: 120, law: cycloidal}, {dwell: 60}" in new
+    assert "base_radius: 40," in new
     assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
 
 
@@ -270,16 +361,6 @@ def test_points_that_keep_from_the_symmetry_of_a_kind_are_refused(name, tmp_path
 
 
 BAD = {
-    "a support function": (
-        RECIPES["yoke"],
-        None,
-        "given by a motion: kind constant-breadth, constant-diameter, disc, double-roller; not support",
-    ),
-    "a linkage": (
-        framed("constant-breadth") + "\nlinkage: {kind: inverted-slider-crank, ground: 90, rocker: 0}",
-        None,
-        "of a cam without a linkage",
-    ),
     "one of two discs": (RECIPES["conjugate discs"], None, "points of disc 2 are missing: give a file for each disc"),
     "an unknown kind": (bare(RECIPES["flat"]).replace("kind: disc", "kind: dics"), None, "cam.kind: "),
     "lifts": (
