@@ -98,7 +98,7 @@ TABLE = Table(
         MOTION,
         UNDERCUT,
         PRELOAD,
-    ),
+    )
 )
 
 

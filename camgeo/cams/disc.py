@@ -72,12 +72,7 @@ FOLLOWERS: dict[str, Table] = {
     "flat": Table(
         (
             Field(
-                "tilt",
-                Kind.ANGLE,
-                "turn of the face's normal ahead of travel",
-                default="0",
-                at_least=-80,
-                at_most=80,
+                "tilt", Kind.ANGLE, "turn of the face's normal ahead of travel", default="0", at_least=-80, at_most=80
             ),
             _OFFSET,
             length("width", "width of the face, centred on the stem's axis"),

@@ -99,7 +99,8 @@ def stem_needs(motion: Displacement, rising: float, falling: float) -> tuple[flo
 def least_stem(motion: Displacement, rising: float, falling: float, offset: float | None = None) -> Translating:
     """Stem with the least prime circle that keeps the pressure angle (rad) on the rise and on the return.
 
-    The best offset is found, or the given one kept. The foot d is positive whatever the motion.
+    An `offset`, mm, is kept where it is given; else the best is found. Raises IntentError for a motion that stands
+    still.
     """
     up, down = stem_needs(motion, rising, falling)
     a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)

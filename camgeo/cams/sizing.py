@@ -326,7 +326,6 @@ def _base(cam: DiscCam, prime: float) -> float:
     base = prime - cam.side * cam.touch.radius
     if not base > 0.0:
         raise IntentError(
-            f"the least prime circle, {prime:.6g} mm, lies within the roller: a smaller one would do",
-            "sizing",
+            f"the least prime circle, {prime:.6g} mm, lies within the roller: a smaller one would do", "sizing"
         )
     return base

@@ -289,12 +289,7 @@ TABLE = Table(
         _FOURIER,
         _REULEAUX,
         _HYPOCYCLOID,
-        Field(
-            "shaft",
-            Kind.POINT,
-            "place [x, y] of the shaft in the axes in which p is written",
-            default="[0, 0]",
-        ),
+        Field("shaft", Kind.POINT, "place [x, y] of the shaft in the axes in which p is written", default="[0, 0]"),
         UNDERCUT,
         PRELOAD,
     ),

@@ -130,12 +130,12 @@ class AlongNormals(Moved):
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        at = self.base.sample(t, side)
+        frame = self.base.sample(t, side)
         off, slope = self.by.on(Jet.variable(t, 1), side).c
-        along = at.speed + off * at.turn
-        tangent = along[:, None] * at.tangent + slope[:, None] * at.normal
+        along = frame.speed + off * frame.turn
+        tangent = along[:, None] * frame.tangent + slope[:, None] * frame.normal
         speed, turn = self.series(t, 1, side)
-        point = at.point + off[:, None] * at.normal
+        point = frame.point + off[:, None] * frame.normal
         return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
@@ -155,11 +155,11 @@ class BySupport(Moved):
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
-        at = self.base.sample(t, side)
+        frame = self.base.sample(t, side)
         off, slope = self.by.on(Jet.variable(t, 1), side).c
         speed, turn = self.series(t, 1, side)
-        point = at.point + off[:, None] * at.normal + (slope / at.turn)[:, None] * at.tangent
-        return Frame(point, at.tangent, speed[0], turn[0], speed[1], turn[1])
+        point = frame.point + off[:, None] * frame.normal + (slope / frame.turn)[:, None] * frame.tangent
+        return Frame(point, frame.tangent, speed[0], turn[0], speed[1], turn[1])
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         speed, turn, off = figures

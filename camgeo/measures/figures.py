@@ -9,46 +9,8 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import CHECKS, LAW, PRESSURE, RATIO, STANDS, TRAVEL, WALL
 from camgeo.measures.measured import ABRUPT, Measured
-from camgeo.recipe.figures import (
-    BACKLASH,
-    BASE_RADIUS,
-    CONTOUR_ERROR,
-    DURATION,
-    DWELL,
-    DWELL_ERROR,
-    DWELL_RELATIVE,
-    ECCENTRICITY,
-    FACE_WIDTH,
-    FIGURES,
-    FORCE_ANGLE,
-    HOLLOW_RADIUS,
-    INERTIA,
-    LIFT_AREA,
-    LOBE_CENTRE,
-    MARGIN,
-    MASS,
-    NOTHING,
-    OF_DWELL,
-    OF_LINKAGE,
-    OFFSET,
-    ON_RETURN,
-    ON_RISE,
-    OUTPUT_ERROR,
-    PEAKS,
-    PIECES,
-    PITCH_RADIUS,
-    PIVOT,
-    PIVOT_CLEARANCE,
-    PRELOAD_GREATEST,
-    PRELOAD_LEAST,
-    RADIUS,
-    RAMP_VELOCITY,
-    ROLLER_SPEED,
-    SHAFT_RATE,
-    SIZE,
-    TRANSMISSION_ANGLE,
-    UNBALANCE,
-)
+from camgeo.recipe import figures
+from camgeo.recipe.figures import FIGURES
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius, needed_width
 from kin.judge.verdict import UNREAD
@@ -70,19 +32,19 @@ if TYPE_CHECKING:
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
-ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
+ORDERS = {"swing": 0, **{name: k for k, name in enumerate(figures.PEAKS, 1)}}
 _OF_CHECKS = {check.name for check in (PRESSURE, RATIO, LAW, TRAVEL, WALL)}
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
 
 
-def _least(figures: Iterable[Measured]) -> Measured:
+def _least(values: Iterable[Measured]) -> Measured:
     """The least figure of several surfaces, `NO_CONTOUR` of none; one without a value comes first."""
-    return min(figures, key=lambda figure: -math.inf if figure.value is None else figure.value, default=NO_CONTOUR)
+    return min(values, key=lambda figure: -math.inf if figure.value is None else figure.value, default=NO_CONTOUR)
 
 
-def _greatest(figures: Iterable[Measured]) -> Measured:
+def _greatest(values: Iterable[Measured]) -> Measured:
     """The greatest figure of several surfaces, `NO_CONTOUR` of none; one without a value comes first."""
-    return max(figures, key=lambda figure: math.inf if figure.value is None else figure.value, default=NO_CONTOUR)
+    return max(values, key=lambda figure: math.inf if figure.value is None else figure.value, default=NO_CONTOUR)
 
 
 def design_figures(
@@ -253,25 +215,28 @@ def _lobe_figure(name: str, recipe: Recipe, design: Design) -> Measured:
 
 
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
-    RADIUS: _radius,
-    PITCH_RADIUS: _pitch_radius,
-    HOLLOW_RADIUS: _hollow_radius,
-    SIZE: _size,
-    BASE_RADIUS: lambda recipe, _: Measured(recipe.cam.circles()[0].radius, "mm"),
-    OFFSET: lambda _, design: Measured(design.follower.offset, "mm"),
-    PIVOT: lambda _, design: Measured(design.follower.pivot, "mm"),
-    ON_RISE: partial(_flank_pressure, 0),
-    ON_RETURN: partial(_flank_pressure, 1),
-    PIVOT_CLEARANCE: _pivot_clearance,
-    ROLLER_SPEED: _roller_speed,
-    FACE_WIDTH: _face_width,
-    PRELOAD_LEAST: partial(_preload_force, 0),
-    PRELOAD_GREATEST: partial(_preload_force, 1),
-    MASS: partial(_mass_property, lambda disc: disc.mass, "kg"),
-    ECCENTRICITY: partial(_mass_property, lambda disc: disc.eccentricity, "mm"),
-    INERTIA: partial(_mass_property, lambda disc: disc.inertia, "kg mm^2"),
-    UNBALANCE: partial(_mass_property, lambda disc: disc.unbalance, "kg mm"),
-    **{name: partial(_lobe_figure, name) for name in (DURATION, LOBE_CENTRE, RAMP_VELOCITY, LIFT_AREA)},
+    figures.RADIUS: _radius,
+    figures.PITCH_RADIUS: _pitch_radius,
+    figures.HOLLOW_RADIUS: _hollow_radius,
+    figures.SIZE: _size,
+    figures.BASE_RADIUS: lambda recipe, _: Measured(recipe.cam.circles()[0].radius, "mm"),
+    figures.OFFSET: lambda _, design: Measured(design.follower.offset, "mm"),
+    figures.PIVOT: lambda _, design: Measured(design.follower.pivot, "mm"),
+    figures.ON_RISE: partial(_flank_pressure, 0),
+    figures.ON_RETURN: partial(_flank_pressure, 1),
+    figures.PIVOT_CLEARANCE: _pivot_clearance,
+    figures.ROLLER_SPEED: _roller_speed,
+    figures.FACE_WIDTH: _face_width,
+    figures.PRELOAD_LEAST: partial(_preload_force, 0),
+    figures.PRELOAD_GREATEST: partial(_preload_force, 1),
+    figures.MASS: partial(_mass_property, lambda disc: disc.mass, "kg"),
+    figures.ECCENTRICITY: partial(_mass_property, lambda disc: disc.eccentricity, "mm"),
+    figures.INERTIA: partial(_mass_property, lambda disc: disc.inertia, "kg mm^2"),
+    figures.UNBALANCE: partial(_mass_property, lambda disc: disc.unbalance, "kg mm"),
+    **{
+        name: partial(_lobe_figure, name)
+        for name in (figures.DURATION, figures.LOBE_CENTRE, figures.RAMP_VELOCITY, figures.LIFT_AREA)
+    },
 }
 
 
@@ -311,11 +276,13 @@ def _linkage_figures(driven: Driven, names: Iterable[str]) -> dict[str, Measured
     mobility, unit = driven.mechanism.mobility(), driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
     measured = {
-        MARGIN: Measured(mobility.margin, "mm"),
-        SHAFT_RATE: Measured(None if math.isnan(mobility.least_rate) else mobility.least_rate, "", detail=STANDS),
+        figures.MARGIN: Measured(mobility.margin, "mm"),
+        figures.SHAFT_RATE: Measured(
+            None if math.isnan(mobility.least_rate) else mobility.least_rate, "", detail=STANDS
+        ),
     }
     if driven.figures is None:
-        needs = (NOTHING, OF_DWELL, OF_LINKAGE)
+        needs = (figures.NOTHING, figures.OF_DWELL, figures.OF_LINKAGE)
         standing = (name for name in names if FIGURES[name].needs in needs and name not in {*measured, *_OF_CURVE})
         return measured | {name: Measured(None, "", detail=STANDS) for name in standing}
 
@@ -325,12 +292,12 @@ def _linkage_figures(driven: Driven, names: Iterable[str]) -> dict[str, Measured
     motion, turn = driven.figures, math.degrees(1.0)
     measured |= {
         "swing": Measured(motion.swing * scale, unit),
-        PEAKS[0]: placed(motion.velocity, scale, f"{unit}/rad"),
-        PEAKS[1]: placed(motion.acceleration, scale, f"{unit}/rad^2"),
-        TRANSMISSION_ANGLE: placed(motion.transmission_least, turn, "deg"),
-        FORCE_ANGLE: placed(motion.force_least, turn, "deg"),
+        figures.PEAKS[0]: placed(motion.velocity, scale, f"{unit}/rad"),
+        figures.PEAKS[1]: placed(motion.acceleration, scale, f"{unit}/rad^2"),
+        figures.TRANSMISSION_ANGLE: placed(motion.transmission_least, turn, "deg"),
+        figures.FORCE_ANGLE: placed(motion.force_least, turn, "deg"),
     }
-    for name, over in ((DWELL, "shaft"), (DWELL_RELATIVE, "relative")):
+    for name, over in ((figures.DWELL, "shaft"), (figures.DWELL_RELATIVE, "relative")):
         longest = [dwell for key, dwells in driven.dwells.items() if key == over for dwell in dwells[:1]]
         for dwell in longest:
             at_deg = math.degrees(dwell.start) % 360.0 if over == "shaft" else None
@@ -344,20 +311,20 @@ def _linkage_figures(driven: Driven, names: Iterable[str]) -> dict[str, Measured
 def file_figure(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     """Measure a figure of a file that has a contour; `checks` are all checks of the run."""
     unread, surfaces = "the file could not be judged", file.surfaces or (UNREAD,)
-    if name == CONTOUR_ERROR:
+    if name == figures.CONTOUR_ERROR:
         return _greatest(
             Measured(verdict.measured_error, "mm", detail=unread, surface=verdict.name) for verdict in surfaces
         )
-    if name == PIECES:
+    if name == figures.PIECES:
         return Measured(None if file.pieces is None else float(file.pieces), "", detail=unread)
-    if name == OUTPUT_ERROR:
+    if name == figures.OUTPUT_ERROR:
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
-    if name == BACKLASH and file.closures:
+    if name == figures.BACKLASH and file.closures:
         return _greatest(_play(closure.play) for closure in file.closures)
-    if name == BACKLASH and not file.surfaces:
+    if name == figures.BACKLASH and not file.surfaces:
         return Measured(None, "mm", detail=unread)
-    if name == BACKLASH:
+    if name == figures.BACKLASH:
         held = [
             check
             for check in checks
@@ -365,7 +332,7 @@ def file_figure(name: str, file: FileResult, checks: Sequence[Check]) -> Measure
         ]
         missing = "a single flat face has no backlash, and of a trimmed contour it is not judged"
         return figure_of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=missing)
-    return _greatest(_motion_error(verdict, dwell=name == DWELL_ERROR) for verdict in surfaces)
+    return _greatest(_motion_error(verdict, dwell=name == figures.DWELL_ERROR) for verdict in surfaces)
 
 
 def _play(play: Play) -> Measured:

@@ -172,10 +172,7 @@ def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
     preload = design.exact.preload
     if preload is None:
         return None
-    section: dict[str, object] = {
-        "interference": preload.interference / recipe.mm,
-        "unit": UNIT_NAMES[recipe.units],
-    }
+    section: dict[str, object] = {"interference": preload.interference / recipe.mm, "unit": UNIT_NAMES[recipe.units]}
     if preload.stiffness is None:
         return section
     turn = FollowerTurn(design)

@@ -304,8 +304,10 @@ def _openings(recipe: Recipe, files: Sequence[FileResult]) -> Remark | None:
     names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
     if recipe.verify.openings == "judge" or not names:
         return None
-    told = f"openings of {' and '.join(names)} that the part does not name are not judged, as verify.openings has it"
-    return Remark("openings", None, None, "", told)
+    sentence = (
+        f"openings of {' and '.join(names)} that the part does not name are not judged, as verify.openings has it"
+    )
+    return Remark("openings", None, None, "", sentence)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:

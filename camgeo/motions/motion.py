@@ -502,11 +502,7 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableMoti
     """Read the rows of a table now, so that the recipe needs no file any more."""
     angular = stroke in reader.angular
     table = read_rows(
-        reader,
-        values,
-        path,
-        quantity="angle" if angular else "length",
-        instead="degrees" if angular else reader.units,
+        reader, values, path, quantity="angle" if angular else "length", instead="degrees" if angular else reader.units
     )
     if table is None:
         return None

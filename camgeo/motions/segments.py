@@ -413,13 +413,7 @@ def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Table
             ),
             dwell,
             angle,
-            Field(
-                "law",
-                Kind.OWN,
-                "motion law by name, match, or one of its own",
-                table=_LAW,
-                form=LAW,
-            ),
+            Field("law", Kind.OWN, "motion law by name, match, or one of its own", table=_LAW, form=LAW),
             Field(
                 "split",
                 Kind.NUMBER,

@@ -91,7 +91,7 @@ CORE = Table(
         LIMITS,
         mapping("dwell", "dwells of the linkage's output", *DWELL),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
-    ),
+    )
 )
 
 

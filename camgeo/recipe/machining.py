@@ -135,7 +135,7 @@ MANUFACTURE = Table(
         length("unreached", "greatest depth of metal that may be left where the cutter does not reach", default="none"),
         Field("layer", Kind.TRUTH, "whether a DXF shows the path of the cutter's centre, on TOOLPATH", default="false"),
         length("wheel", "diameter of the grinding wheel that finishes the contour, which its hollows must take"),
-    ),
+    )
 )
 
 

@@ -317,12 +317,7 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
             reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
     if reader.errors:
         raise RecipeErrors(reader.errors)
-    document = Document(
-        path=Path(path),
-        text=source.text,
-        marks=reader.marks,
-        kinds=reader.kinds,
-    )
+    document = Document(path=Path(path), text=source.text, marks=reader.marks, kinds=reader.kinds)
     recipe = _build(values, document, words_of(source.root))
     return recipe if recipe.cam.open is None else roots.settle(recipe)
 

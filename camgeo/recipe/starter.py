@@ -88,10 +88,7 @@ _CORE = {
     "constant-breadth": Starter(
         "A cam between two parallel faces, from its motion over one half turn.",
         "constant-breadth",
-        {
-            "base_radius": "40",
-            "motion": "\n    - {rise: 20, over: 120, law: modified-sine}\n    - {dwell: 60}",
-        },
+        {"base_radius": "40", "motion": "\n    - {rise: 20, over: 120, law: modified-sine}\n    - {dwell: 60}"},
     ),
     "disc-roller": _disc(
         "a roller on a stem, the stem's line beside the shaft",
