@@ -103,12 +103,12 @@ class Conjugate(Holding):
         if isinstance(guide, Translating):
             # where the roller's centre passes the shaft nearer than its radius no contour is left
             nearest = 0.0 if isinstance(self.touch, Flat) else math.sqrt(max(radius**2 - guide.offset**2, 0.0))
-            shown, unit = 1.0, "mm"
+            factor, unit = 1.0, "mm"
         else:
-            nearest, shown, unit = _swing(guide.pivot, guide.arm, radius), math.degrees(1.0), "degrees"
+            nearest, factor, unit = _swing(guide.pivot, guide.arm, radius), math.degrees(1.0), "degrees"
         if second.datum - greatest > nearest:
             return
-        least = upward(shown * (first.datum + greatest + nearest))
+        least = upward(factor * (first.datum + greatest + nearest))
         article = "an" if self.length is not None else "a"
         word = self.key.rpartition(".")[2]
         raise IntentError(
@@ -184,8 +184,8 @@ class Conjugate(Holding):
         prime = least_round_prime(exact.law.scaled(-1.0), guide, roller)
         if prime is None:
             return ""
-        shown = 1.0 / mm if self.length is None else math.degrees(1.0)
-        apart = upward(shown * (first.datum + guide.resized(prime).datum))
+        factor = 1.0 / mm if self.length is None else math.degrees(1.0)
+        apart = upward(factor * (first.datum + guide.resized(prime).datum))
         return f"a {self.key} of {apart}"
 
 

@@ -296,7 +296,7 @@ class Cells:
 
     @staticmethod
     def of(curve: Curve) -> Cells:
-        """Partition a curve, halving cells whose bounds are far from what the curve does in them.
+        """Cells of a curve, halved where their bounds are far above the changes between their ends.
 
         Raises CurveError where no finite bound is found after `HALVINGS` halvings, or with about `MOST_CELLS` cells.
         """
@@ -308,9 +308,9 @@ class Cells:
                 stretches = list(pairwise(knots))
             if len(stretches) % repeats == 0:
                 part = stretches[: len(stretches) // repeats]
-                first = _sharpened(curve, part, 2 * CELLS_PER_TURN / period, MOST_CELLS // repeats)
-                return _repeated(first, np.array(stretches).reshape(repeats, -1, 2))
-        return _sharpened(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
+                first = _sharp_cells(curve, part, 2 * CELLS_PER_TURN / period, MOST_CELLS // repeats)
+                return _repeat_cells(first, np.array(stretches).reshape(repeats, -1, 2))
+        return _sharp_cells(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
 
     def backwards(self) -> Cells:
         """Bounds of the curve run through the other way, with its parameter and its turn negated."""
@@ -331,7 +331,7 @@ class Cells:
         return Bounds(*worst)
 
 
-def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
+def _sharp_cells(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
     """Cells of some stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
 
     A bound that is loose at the end is still a bound: it costs sharpness. One that is not finite is refused.
@@ -369,7 +369,7 @@ def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], d
     return Cells(low, high, rows)
 
 
-def _repeated(part: Cells, stretches: Array) -> Cells:
+def _repeat_cells(part: Cells, stretches: Array) -> Cells:
     """Cells of the whole turn from those of its first part, and the stretches (parts, m, 2) of all parts."""
     owner = np.searchsorted(stretches[0, :, 0], part.low, side="right") - 1
     low = part.low + (stretches[:, owner, 0] - stretches[0, owner, 0])

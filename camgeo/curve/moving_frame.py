@@ -79,13 +79,13 @@ class Displacement:
         over = self.over
         knots = [over.knots[:1], *(over.knots[1:] + i * TURN / self.repeats for i in range(self.repeats))]
         functions = [
-            _moved(f, offset, scale, i * TURN / self.repeats) for i in range(self.repeats) for f in over.functions
+            _transform(f, offset, scale, i * TURN / self.repeats) for i in range(self.repeats) for f in over.functions
         ]
         return Piecewise(np.concatenate(knots), tuple(functions), TURN, over.smooth_seam and self.repeats == 1)
 
     def scaled(self, scale: float) -> Displacement:
         """The motion with S multiplied by `scale`."""
-        functions = tuple(_moved(f, 0.0, scale, 0.0) for f in self.over.functions)
+        functions = tuple(_transform(f, 0.0, scale, 0.0) for f in self.over.functions)
         over = Piecewise(self.over.knots, functions, self.over.period, self.over.smooth_seam)
         low, high = sorted(scale * end for end in self.range)
         return Displacement(over, self.repeats, (low, high))
@@ -111,7 +111,7 @@ class Displacement:
         return self.over.derivatives(theta, order, side)
 
 
-def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stretch:
+def _transform(function: Stretch, offset: float, scale: float, start: float) -> Stretch:
     if isinstance(function, Constant):
         return Constant(offset + scale * function.value)
     return Affine.of(function, offset=offset, scale=scale, start=start)
