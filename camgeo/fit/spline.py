@@ -136,13 +136,13 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
 
     Errors are seen up to `tolerance` and proved up to `limit`.
     """
-    density = span_density(curve, stretches)
-    out = _joint_offset(curve, density.side, tolerance)
+    along = span_density(curve, stretches)
+    out = _joint_offset(curve, along.side, tolerance)
     # deviation permitted from the joints' parallel, over that from the curve
     allowance = 1.0 + abs(out) / tolerance
-    counts = density.totals * (tolerance * (0.5 * allowance if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
+    counts = along.totals * (tolerance * (0.5 * allowance if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
     check_count(float(counts.sum()), "spline spans", tolerance, ORDER)
-    nodes = [density.nodes(max(1, math.ceil(count))) for density, count in zip(density.densities, counts, strict=True)]
+    nodes = [density.nodes(max(1, math.ceil(count))) for density, count in zip(along.densities, counts, strict=True)]
     done: dict[int, tuple[Array, float, float]] = {}
     states = [_State()] * len(nodes)
     spans, best = _Spans.none(), math.inf

@@ -96,7 +96,7 @@ def _with_body(disc: Disc, body: Body | None) -> Disc:
 
 
 def _part(part: Part, growth: float, scale: float) -> Part:
-    """Lengths of the part that the files are given directly."""
+    """The part with its edges moved outward by `growth`, mm, then scaled."""
     return replace(
         part,
         bore=None if part.bore is None else narrowed(part.bore, growth, scale),

@@ -325,13 +325,13 @@ def file_figure(name: str, file: FileResult, checks: Sequence[Check]) -> Measure
     if name == figures.BACKLASH and not file.surfaces:
         return Measured(None, "mm", detail=unread)
     if name == figures.BACKLASH:
-        held = [
+        backlashes = [
             check
             for check in checks
             if check.file == file.path.name and check.name in CHECKS and CHECKS[check.name].backlash
         ]
         missing = "a single flat face has no backlash, and of a trimmed contour it is not judged"
-        return figure_of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=missing)
+        return figure_of_check(max(backlashes, key=_nearness)) if backlashes else Measured(None, "mm", detail=missing)
     return _greatest(_motion_error(verdict, dwell=name == figures.DWELL_ERROR) for verdict in surfaces)
 
 

@@ -426,9 +426,11 @@ def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
         ("wide-dwell-band", "dwell.band", band),
     )
     remarks: list[Remark | None] = []
-    for name, what, value in limits:
+    for name, field, value in limits:
         if value is not None and value > SHARE * swing:
-            sentence = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
+            sentence = (
+                f"{field} is {value / swing:.3g} times the swing of the output" if swing else f"{field}: no swing"
+            )
             remarks.append(Remark(name, value * scale, SHARE * swing * scale, unit, sentence))
     return remarks
 
