@@ -32,7 +32,9 @@ from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.root import CAM, root
+from camgeo.report.page import page as pages
 from camgeo.report.page import tables
+from camgeo.report.page.content import mechanism
 from camgeo.schema.change import set_value
 from camgeo.schema.edit import number_text
 from camgeo.schema.errors import RecipeError, RecipeErrors
@@ -42,6 +44,7 @@ from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, join, keys, scalars
+from camgeo.synthesis.design import sketched
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -91,6 +94,15 @@ def _fault(error: RecipeError) -> dict[str, Any]:
 
 
 # --- design -----------------------------------------------------------------------------------------------------------
+
+
+def picture(name: str, text: str) -> dict[str, Any]:
+    """What the page draws of a recipe before its cam is checked; empty for a linkage, which takes the checks."""
+    recipe = _recipe(name, text)
+    if recipe.linkage is not None:
+        return {}
+    drawn, _, relative = mechanism(recipe, sketched(recipe))
+    return pages.picture(recipe, drawn, relative)
 
 
 def design(name: str, text: str) -> dict[str, Any]:
@@ -272,7 +284,7 @@ def more(name: str, text: str) -> dict[str, Any]:
         return {"more": []}
     table = recipe_table()
     reader = Reader(source, READERS, table)
-    read_values(reader, registry.names_with_record())
+    read_values(reader, registry.recorded())
     return {"more": list(_absent(reader, source.root, table))}
 
 
@@ -476,6 +488,7 @@ def _length(name: str, text: str) -> float:
 
 
 CALLS: dict[str, Callable[..., dict[str, Any]]] = {
+    "picture": picture,
     "design": design,
     "more": more,
     "added": added,

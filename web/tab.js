@@ -6,7 +6,8 @@ const tab = byId("tab");
 
 // --- the worker -----------------------------------------------------------------------------------------------------
 
-// one call is under way; of designs that wait the newest is kept, other calls wait their turn before it
+// one call is under way; of pictures and designs that wait the newest is kept, other calls wait their turn before it
+const OF_NEWEST = ["picture", "design"];
 class Work {
   constructor() {
     this.number = 0;
@@ -42,11 +43,11 @@ class Work {
     this.next();
   }
 
-  // a promise of the answer; of a design that a newer one replaces it is null
+  // a promise of the answer; of a picture or a design that a newer one replaces it is null
   ask(call, input, files = {}) {
     return new Promise((done) => {
-      const same = this.waiting.findIndex((one) => one.call === "design");
-      if (call === "design" && same >= 0) this.waiting.splice(same, 1)[0].done(null);
+      const older = this.waiting.findIndex((one) => OF_NEWEST.includes(one.call));
+      if (OF_NEWEST.includes(call) && older >= 0) this.waiting.splice(older, 1)[0].done(null);
       this.waiting.push({ call, input, files, done });
       this.next();
     });
@@ -131,6 +132,7 @@ function encodedTables() {
   return Object.fromEntries(Object.entries(recipe.tables).map(([name, text]) => [name, encoder.encode(text)]));
 }
 
+const RESTING = 120; // ms that a slider that is held rests before its cam is checked
 let judgedText = ""; // of the recipe that was made or judged last
 
 async function changed() {
@@ -144,9 +146,15 @@ async function designed(name, text) {
   byId("name").textContent = name;
   numberLines([]);
   remember();
-  const begun = performance.now();
+  if (work.ready) showUnjudged();
+  const picture = await work.ask("picture", { name, text }, encodedTables());
+  if (!picture || recipe.text !== text) return;
+  if (picture.drawing) showPicture(picture);
+  if (step?.startsWith("slide")) await new Promise((done) => setTimeout(done, RESTING));
+  if (recipe.text !== text) return;
   const answer = await work.ask("design", { name, text }, encodedTables());
   if (!answer || recipe.text !== text) return;
+  tab.classList.remove("unjudged");
   showFaults(answer.faults, answer.trace);
   if (answer.fields.length || !answer.faults.length) {
     recipe.fields = answer.fields.filter(({ path }) => path !== "units"); // the unit is changed with all lengths
@@ -163,11 +171,33 @@ async function designed(name, text) {
   byId("checks").innerHTML = answer.checks;
   showFailed(answer.failed);
   play(answer.scene);
-  tab.dataset.shown = String(Number(tab.dataset.shown || 0) + 1);
-  tab.dataset.took = (performance.now() - begun).toFixed(1);
+  if (!picture.drawing) countShown();
 }
 
+// what was said and plotted of the recipe before is no longer held to be right
+function showUnjudged() {
+  tab.classList.add("unjudged");
+  const verdict = byId("verdict");
+  verdict.textContent = "judging…";
+  verdict.className = "verdict";
+  byId("why").hidden = true;
+}
+
+// the mechanism before its checks
+function showPicture(picture) {
+  tab.classList.remove("stale");
+  const same = shown.name === picture.name && !shown.linked;
+  play({ ...shown, ...picture, marks: [], ...(same ? {} : { plots: [], rests: [], linked: false }) });
+  countShown();
+}
+
+function countShown() {
+  tab.dataset.shown = String(Number(tab.dataset.shown || 0) + 1);
+}
+
+let shown = null; // the scene that stands there
 function play(scene) {
+  shown = scene;
   const root = document.documentElement;
   const begin = endPlayer
     ? { degrees: Number(root.dataset.degrees), playing: root.dataset.playing === "true" }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -123,6 +124,24 @@ def test_a_check_that_fails_comes_with_its_remedy_and_the_line_of_its_field() ->
     assert failed["path"] == "limits.pressure-angle.at_most"
     assert "a larger base radius" in failed["text"]
     assert 'data-deg="226.42' in failed["place"]
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("name", OF_CAMS)
+def test_the_picture_before_the_checks_is_that_of_the_design(name: str) -> None:
+    picture, scene = live.picture("x", TEXTS[name]), live.design("x", TEXTS[name])["scene"]
+    if "linkage:" in re.sub("#.*", "", TEXTS[name]):
+        assert picture == {}
+        return
+    assert {key for key in picture if picture[key] != scene[key]} <= {"drawing"}
+    first, second = (Counter(re.findall(r"-?\d+(?:\.\d+)?", one["drawing"])) for one in (picture, scene))
+    assert (first - second).total() + (second - first).total() <= 4  # a bore begins on its other side
+
+
+def test_a_cam_that_undercuts_has_a_picture_before_its_checks() -> None:
+    text = TEXTS["disc-roller"].replace("base_radius: 36 ", "base_radius: 1 ")
+    assert not live.design("x", text)["ok"]
+    assert live.picture("x", text)["drawing"].startswith("<svg")
 
 
 def test_fields_that_are_not_there_are_offered_and_added() -> None:

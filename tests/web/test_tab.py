@@ -302,7 +302,9 @@ def test_of_designs_that_wait_the_newest_is_made(page: tab.Tab) -> None:
       slider.dispatchEvent(new Event("change"));
     })()""")
     page.settle()
-    assert page.ask("work.number") - before == 2  # the first, which was under way, and the last
+    assert (
+        page.ask("work.number") - before == 3
+    )  # the first picture, which was under way; picture and checks of the last
     assert "base_radius: 56" in page.text
     page.press("undo")  # one movement is one step
     assert page.text == TEXTS["disc-roller"]

@@ -82,8 +82,8 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     per = outline.Exact.looks(files)
     exacts = {profile.surface.name: outline.Exact.of(design, profile, per) for profile in design.surfaces}
     groups = outline.group_files(files, len(design.discs))
-    drawn = [_drawing_of(group) for group in groups] or [(EXACT, _exact_rings(recipe, design))]
-    scene, plots, relative = _mechanism(recipe, design, drawn)
+    drawn = [_drawing_of(group) for group in groups]
+    scene, plots, relative = mechanism(recipe, design, drawn)
     plots += curves.preload(recipe, design)
     for capability in registry.in_order(recipe.uses):
         plots += capability.plots(recipe, design)
@@ -98,9 +98,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         replace(alike[0], name=", ".join(error.name for error in alike))
         for alike in curves.group_alike(errors, FileError.like)
     )
-    scene, flip = scene.scaled(1.0 / recipe.mm), np.array([1.0, 1.0])
-    if recipe.rotation == "ccw":
-        scene, flip = scene.mirrored(), np.array([1.0, -1.0])
+    flip = np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
     middle = slice(per // 2, None, per)
     contours = {
         name: Traced(exact.point[middle] * flip / recipe.mm, exact.normal[middle] * flip)
@@ -108,6 +106,18 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     }
     rests = tuple(curves.rests(recipe, design))
     return Content(scene, tuple(curves.merge_alike(plots)), rests, relative, contours, merged)
+
+
+def mechanism(
+    recipe: Recipe, design: Design, drawn: list[Drawn] | None = None
+) -> tuple[Scene, list[curves.Plot], Array]:
+    """Return what moves, in the recipe's unit and as the shaft turns, plots, and the relative angle (STEPS + 1,), rad.
+
+    Without what is `drawn` the cam has the exact contours.
+    """
+    scene, plots, relative = _mechanism(recipe, design, drawn or [(EXACT, _exact_rings(recipe, design))])
+    scene = scene.scaled(1.0 / recipe.mm)
+    return scene.mirrored() if recipe.rotation == "ccw" else scene, plots, relative
 
 
 Drawn: TypeAlias = "tuple[str, tuple[tuple[Ring, ...], ...]]"

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.report.page.content import Content
     from camgeo.report.page.curves import Plot
-    from camgeo.report.page.scene import Body
+    from camgeo.report.page.scene import Body, Scene
+    from kin.numeric.arrays import Array
 
 RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that reloads it
 LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watched to where it came from
@@ -83,21 +84,11 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
     motion of each: rows of x, y and angle at equal steps of a turn, packed (`camgeo.report.page.pack`). `marks` are the
     places on the contour, in the axes of the cam, of failed checks and remarks of `report`.
     """
-    view = svg.View.of(content.scene)
-    extent = max(view.width, view.height) / view.scale
     return {
-        "name": recipe.name,
-        "note": content.scene.note,
-        "drawing": svg.moving(content.scene),
+        **picture(recipe, content.scene, content.relative),
         "marks": _marks(content, report),
-        "unit": "in" if recipe.units == "inch" else "mm",
-        "sense": -1 if recipe.rotation == "cw" else 1,
-        "steps": STEPS,
-        "view": [view.scale, view.x, view.y, svg.BESIDE],
-        "bodies": [_pose(body, extent) for body in content.scene.bodies],
         "plots": [_plot(plot) for plot in content.plots],
         "rests": [[rest.start, rest.length, rest.name] for rest in content.rests],
-        "relative": pack_numbers(np.degrees(content.relative)),
         "linked": any(plot.over == "relative" for plot in content.plots),
         "contours": {
             name: [pack_numbers(row) for row in (*traced.point.T, *traced.normal.T)]
@@ -113,6 +104,23 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
             }
             for error in content.errors
         ],
+    }
+
+
+def picture(recipe: Recipe, drawn: Scene, relative: Array) -> dict[str, Any]:
+    """Return the part of `scene` that moves; `relative` (STEPS + 1,) is the angle between cam and frame, rad."""
+    view = svg.View.of(drawn)
+    extent = max(view.width, view.height) / view.scale
+    return {
+        "name": recipe.name,
+        "note": drawn.note,
+        "drawing": svg.moving(drawn),
+        "unit": "in" if recipe.units == "inch" else "mm",
+        "sense": -1 if recipe.rotation == "cw" else 1,
+        "steps": STEPS,
+        "relative": pack_numbers(np.degrees(relative)),
+        "view": [view.scale, view.x, view.y, svg.BESIDE],
+        "bodies": [_pose(body, extent) for body in drawn.bodies],
     }
 
 

@@ -56,6 +56,8 @@ DEEPEST = 16  # of blocks within blocks
 EXTERNAL = 4 | 32  # flags of a block that another file has
 NO_LAYER = "0"  # what is drawn without choosing a layer stands there
 BINARY_MARK = b"AutoCAD Binary DXF"
+BY_LAYER = "BYLAYER"
+DASH = 49  # group code of a dash, a dot or a space in a line type
 # What wrong text causes in code that expects numbers, names and references.
 DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
 
@@ -74,8 +76,9 @@ def read_dxf(
 
     gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
     layer   the one to cut. Default: CUT, also BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is
-            something on CUT; else all layers but those of reference geometry. The outermost closed chain is the
-            contour, those inside it are holes.
+            something on CUT; else all layers but those of reference geometry, without what has a line type with
+            dashes, as centre lines and hidden edges have: outlines are continuous (ISO 128). The outermost closed
+            chain is the contour, those inside it are holes.
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
     bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
@@ -261,15 +264,34 @@ def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, p
     chosen = layer if layer is not None else (CUT if CUT in there else None)
     beside = BESIDE if layer is None else {BORE}
     wanted = there - REFERENCE if chosen is None else {chosen.upper(), *beside}
+    dashed = Counter[tuple[str, str]]()
+    if chosen is None:
+        types = [_dashes(document, entity) for entity in drawn]
+        dashed.update(
+            (one.layer, f"{one.kind} of line type {name}") for one, name in zip(drawn, types, strict=True) if name
+        )
+        drawn = [one for one, name in zip(drawn, types, strict=True) if not name]
     # what is drawn with no thought for layers goes to the machine too
     entities = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
     entities.aside.update(on_paper(document))
+    entities.aside.update(dashed)
     if not entities.shapes:
         others = (
             ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(entities.aside.items())) or "nothing at all"
         )
         raise ReadError("empty", f"nothing to cut in the model space; the file holds {others}", path)
     return entities
+
+
+def _dashes(document: Document, drawn: Drawn) -> str:
+    """Name of the line type of a curve, its own or that of its layer, if it has dashes; else empty."""
+    name = str(drawn.entity.dxf.get("linetype", BY_LAYER))
+    if name.upper() == BY_LAYER and drawn.layer in document.layers:
+        name = str(document.layers.get(drawn.layer).dxf.linetype)
+    if drawn.kind not in CURVES or name not in document.linetypes:
+        return ""
+    tags = document.linetypes.get(name).pattern_tags.tags
+    return name if any(tag.code == DASH for tag in tags) else ""
 
 
 def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:

@@ -130,7 +130,10 @@ def spline(entity: Any) -> Shape:  # noqa: ANN401
     knots, count, degree = np.array(entity.knots, dtype=np.float64), len(control), int(entity.dxf.degree)
     weight = np.array(entity.weights, dtype=np.float64) if len(entity.weights) else np.ones(count)
     if not count:
-        raise UnfitError("unsupported", "a spline of fit points alone has no definite shape; it needs control points")
+        raise UnfitError(
+            "unsupported",
+            "a spline of fit points alone has no definite shape; save it with control points, or as a polyline",
+        )
     check(control, knots, weight)
     if not 1 <= degree <= HIGHEST_DEGREE:
         raise UnfitError("unsupported", f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
