@@ -284,7 +284,7 @@ def more(name: str, text: str) -> dict[str, Any]:
         return {"more": []}
     table = recipe_table()
     reader = Reader(source, READERS, table)
-    read_values(reader, registry.recorded())
+    read_values(reader, registry.names_with_record())
     return {"more": list(_absent(reader, source.root, table))}
 
 

@@ -225,7 +225,11 @@ class Followed:
             *(f"  {key}: {value}" for key, value in cam.items()),
             f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}, suspect: keep}}",
             *([f"part: {{{keys}}}"] if keys else []),
-            *(["verify: {openings: ignore}"] if self.openings else []),
+            *(
+                ["verify: {openings: ignore}  # those of the file are not made: name in part what is wanted of them"]
+                if self.openings
+                else []
+            ),
             "export:",
             f"  tolerance: {self.reading:.6g}",
             "  files: [dxf, csv, html]",
