@@ -34,6 +34,7 @@ pytest_plugins = ["pytester"]
 
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+gc.disable()  # until all tests are collected
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # nothing has imported numpy yet
 
 # A run in the background of a shell is born deaf to interrupts, and so would be the processes that tests interrupt.
@@ -78,6 +79,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFil
 
 
 def pytest_collection_finish() -> None:
+    gc.enable()
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 20)

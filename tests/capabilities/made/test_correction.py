@@ -134,7 +134,7 @@ def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_p
     assert camgeo.verify(tmp_path / "part.yaml", *(report.path / file["path"] for file in report["files"])).ok
 
 
-@pytest.mark.parametrize("kind", ["roller on a stem", "flat"])
+@pytest.mark.parametrize("kind", ["roller on a stem", pytest.param("flat", marks=pytest.mark.slow)])
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
     text = plain(RECIPES[kind]) + "\nmanufacture: {wheel: 200}"

@@ -83,7 +83,7 @@ def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
         camgeo.verify(recipe, file, align="best-fit")
 
 
-@pytest.mark.parametrize("rotation", ["cw", "ccw"])
+@pytest.mark.parametrize("rotation", [pytest.param("cw", marks=pytest.mark.slow), "ccw"])
 def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
     """Its table of lifts over the shaft's angle is made without points, angles and metal: followers stand anywhere."""
     recipe = camshaft(tmp_path, more=f"rotation: {rotation}\n", files="[{csv: {as: motion}}]")
@@ -319,7 +319,7 @@ def test_the_phase_scatters_as_its_uncertainty_says(tmp_path, monkeypatch):
     assert (np.abs(ratio - 1.0) < 0.4).all()
 
 
-@pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
+@pytest.mark.parametrize("more", [pytest.param("", marks=pytest.mark.slow), "rotation: ccw\n"])
 def test_what_is_to_be_measured_is_judged_at_its_digits(more, tmp_path):
     """Inspection table and DMIS, measured without error: places, heights, normals, zones of the lobes that have one."""
     files = "[{csv: {as: inspection, step: 3}}, {dmis: {step: 3}}, {dmis: {step: 5, units: inch}}]"
