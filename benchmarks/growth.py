@@ -1,10 +1,11 @@
-"""Where cost might outgrow the work, and warm exact designs: `python benchmarks/growth.py [growth] [warm] [--small]`.
+"""Where cost might outgrow the work, and warm runs: `python benchmarks/growth.py [growth] [warm] [unseen] [--small]`.
 
 `growth` prints milliseconds over the size of the work, and the exponent of one by the other, by least squares over the
 last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `warm` prints milliseconds
 from a recipe object to its exact design without part and limits, as shipped, and with every figure that may be asked;
 then with arcs at 0.001 mm and their verdict at 3600 angles in memory, of a whole export of a DXF, and of the scene of a
-finished design, which is all that a page draws.
+finished design, which is all that a page draws. `unseen` prints those of a whole export of a DXF of recipes that the
+process has not seen, one number changed each time; with `--docs` it writes them into docs/performance.md.
 
 All of it is processor time with one BLAS thread, the least of several repeats. `--small` takes little of everything, to
 see that it works: its figures say nothing. `--only REGEX` takes the rows whose names match.
@@ -17,8 +18,10 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
 
 import argparse
+import gc
 import math
 import re
+import sys
 import tempfile
 import time
 from dataclasses import replace
@@ -26,6 +29,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import yaml
+from pages import rewrite
+from peer import COLLECT_AFTER
+from speed import compiled, spent
 
 from camgeo.api.design import Design
 from camgeo.api.loading import load
@@ -302,14 +309,59 @@ def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:
     return found
 
 
+UNSEEN = (  # recipe, form of its DXF, the number that is changed, aim in ms or none
+    ("shu-wu", "arcs", "cam.base_radius", "50"),
+    ("disc-flat", "arcs", "cam.base_radius", "50"),
+    ("disc-roller", "arcs", "cam.base_radius", "50"),
+    ("disc-roller", "spline", "cam.base_radius", ""),
+    ("as-figure-2a", "arcs", "part.bore", ""),
+    ("w-ellipse", "arcs", "part.bore", ""),
+    ("groove-stem", "arcs", "cam.base_radius", ""),
+    ("conjugate-arm", "arcs", "cam.base_radius", ""),
+    ("w-figure-9", "arcs", "cam.arm", ""),
+    ("w-figure-9", "spline", "cam.arm", "120"),
+    ("valve-lobe", "arcs", "cam.base_radius", "120"),
+    ("six-bar", "arcs", "linkage.ground", "150"),
+    ("yoke-swing", "arcs", "linkage.ground", "150"),
+)
+UNSEEN_HEADING = "| recipe | DXF as | aim, ms | ms | times `import numpy` |\n| --- | --- | --- | --- | --- |\n"
+
+
+def unseen(*, small: bool, docs: bool) -> None:
+    """Print a line for each row of `UNSEEN`, the least of nine exports after one that is not counted."""
+    gc.set_threshold(COLLECT_AFTER)
+    command = [sys.executable, "-c", f"import gc; gc.set_threshold({COLLECT_AFTER}); import numpy"]
+    with tempfile.TemporaryDirectory() as folder:
+        base = 1e3 * min(spent(command, compiled(Path(folder))) for _ in range(2 if small else 10))
+    print(UNSEEN_HEADING, end="")
+    rows = []
+    for name, form, key, aim in UNSEEN:
+        recipe = load(RECIPES / f"{name}.yaml").replace("export.files", [{"dxf": {"as": form}}])
+        *within, last = key.split(".")
+        number = yaml.safe_load(recipe.text)[within[0]][last]
+        each = [recipe.replace(key, number * (1.0 + 1e-6 * k)) for k in range(2 if small else 10)]
+        ms = []
+        for changed in each:
+            start = time.process_time()
+            exported(changed)
+            ms.append(1e3 * (time.process_time() - start))
+        rows.append(f"| {name} | {form} | {aim} | {min(ms[1:]):.0f} | {min(ms[1:]) / base:.1f} |")
+        print(rows[-1], flush=True)
+    if docs and not small:
+        rewrite(UNSEEN_HEADING, rows)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", nargs="*", choices=["growth", "warm", []], help="default: both")
+    parser.add_argument("part", nargs="*", choices=["growth", "warm", "unseen", []], help="default: all")
     parser.add_argument("--only", default="", metavar="REGEX", help="the rows whose names match")
     parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    parser.add_argument("--docs", action="store_true", help="write the table of unseen recipes in docs/performance.md")
     arguments = parser.parse_args()
     if not arguments.part or "growth" in arguments.part:
         rows = [row for row in growing() if re.search(arguments.only, row.name)]
         growth(rows[:: 12 if arguments.small else 1], small=arguments.small)
     if not arguments.part or "warm" in arguments.part:
         warm(arguments.only, small=arguments.small)
+    if not arguments.part or "unseen" in arguments.part:
+        unseen(small=arguments.small, docs=arguments.docs)

@@ -1,14 +1,16 @@
 # needs: study
 """Error over run time and size against what a user would pick instead: `python benchmarks/peers.py [--python PYTHON]`.
 
-`--targets` prints one table of all aims of speed instead, and what is reached (`benchmarks/targets.py`).
+`--docs` is the one command for a quiet machine: it measures both cams of docs/performance.md at every point count and
+writes its table and its picture anew, and the table of warm exports (`benchmarks/growth.py unseen`). `--targets` prints
+one table of all aims of speed instead, and what is reached (`benchmarks/targets.py`).
 
 Every peer (`benchmarks/peer.py`) and camgeo make the same cams at a ladder of point counts or tolerances, and every
 file is judged by the same judge, `kin.judge.verify`, in the same run. All is processor time. Warm seconds are the least
 of repeats within one process, cold seconds those of the whole process, with compiled modules and the garbage
 collector's threshold of camgeo's command on either side; install camgeo, and not as `-e`, for what a user sees. PYTHON
 runs the peers, and may have CadQuery; a peer that cannot run is reported. Writes docs/pictures/peers.png (matplotlib)
-and prints the table of docs/performance.md.
+and prints the table.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import yaml
+from pages import rewrite
 from peer import COLLECT_AFTER, PEERS
 from speed import compiled, spent
 
@@ -51,6 +54,7 @@ DISCS = {
     "disc-flat": ("30", "12", "{kind: flat}"),
 }  # base radius, stroke and follower
 CAMS = (*SHIPPED, *DISCS)
+DOCUMENTED = ("yoke", "disc-roller")
 COUNTS = [round(32 * 2 ** (k / 2)) for k in range(25)]  # of which a small run takes the first
 PATIENCE = 3.0  # seconds for one file
 SMALL = "--small" in sys.argv
@@ -175,6 +179,12 @@ def rows(cam: str, points: list[Point]) -> str:
     return "\n".join(lines)
 
 
+def heading() -> str:
+    """First two lines of the table."""
+    levels = "".join(f" {level:.0e} mm |".replace("e-0", "e-") for level in LEVELS)
+    return f"| cam | tool |{levels}\n| --- | --- |{' --- |' * len(LEVELS)}\n"
+
+
 def picture(found: dict[str, list[Point]], path: Path) -> None:
     """Error over warm time and over that of the whole process, ours drawn solid."""
     import matplotlib as mpl
@@ -238,17 +248,18 @@ def main() -> None:
     )
     parser.add_argument("--peer", action="append", choices=tuple(PEERS), help="only this one; repeatable")
     parser.add_argument("--thin", type=int, default=1, help="only every so many point counts")
+    parser.add_argument("--docs", action="store_true", help="write the table of docs/performance.md and its picture")
     parser.add_argument("--targets", action="store_true", help="the table of aims, with the first cam of these alone")
     parser.add_argument("--tests", action="store_true", help="the quick suite's row in it too, which takes minutes")
     arguments = parser.parse_args()
     gc.set_threshold(COLLECT_AFTER)
     print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
     print("\nms warm, ms of the whole process, pieces, KB")
-    print(f"| cam | tool |{''.join(f' {level:.0e} mm |' for level in LEVELS)}\n| --- | --- |{' --- |' * len(LEVELS)}")
+    print(heading(), end="")
     found = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for cam in arguments.cam or CAMS:
+        for cam in arguments.cam or (DOCUMENTED if arguments.docs else CAMS):
             points = of_ours(cam, folder)
             for peer in arguments.peer or PEERS:
                 if peer == "OpenSCAD" and shutil.which("openscad") is None:
@@ -266,6 +277,9 @@ def main() -> None:
             table(lambda tool, level: (at_level(points, tool, level) or {}).get("cold"), line)
             return
         picture(found, folder / "peers.png" if SMALL else arguments.picture)
+        if arguments.docs and not SMALL:
+            rewrite(heading(), [rows(cam, points) for cam, points in found.items()])
+            subprocess.run([sys.executable, str(ROOT / "benchmarks" / "growth.py"), "unseen", "--docs"], check=True)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _NEAR = 0.03  # of the range: samples a quarter of a radian apart miss less of a peak
 _MOST_NEAR = 256
 _GRID, _ROUNDS = 17, 4  # places between two neighbours, of which each round keeps an eighth; then a parabola is good
+_FOR_VALUE = 2  # rounds after which its height is good to rounding, if not its place
 _AT_ONCE = 400_000  # samples, which bounds the memory
 
 
@@ -77,9 +78,11 @@ class ResponseFigure:
 
     def least(self, starts: Array, samples: Samples) -> float:
         """Least value at samples (n,) in time order that show every swing, and between neighbours."""
-        return self._highest(starts, [(samples, self.at(starts, samples))], -1.0)[0]
+        return self._highest(starts, [(samples, self.at(starts, samples))], -1.0, _FOR_VALUE)[0]
 
-    def _highest(self, starts: Array, parts: list[tuple[Samples, Array]], sign: float) -> tuple[float, float]:
+    def _highest(
+        self, starts: Array, parts: list[tuple[Samples, Array]], sign: float, rounds: int = _ROUNDS
+    ) -> tuple[float, float]:
         """Greatest value times sign, and where."""
         best = max(float((sign * values).max()) for _, values in parts)
         spread = best + max(float((-sign * values).max()) for _, values in parts)
@@ -99,7 +102,7 @@ class ResponseFigure:
             brackets += zip(*(column[highest].tolist() for column in columns), strict=True)
         if brackets:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
-            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign)
+            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign, rounds)
             peaks += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
         value, which, time = max(peaks, key=lambda candidate: sign * candidate[0])
         return value, float(self.response.drive.knots[which]) + time
@@ -110,12 +113,13 @@ def narrowed(
     stretch: Indices,
     between: tuple[Array, Array],
     sign: float,
+    rounds: int = _ROUNDS,
 ) -> tuple[Array, Array]:
     """Greatest value times sign between two times in each stretch (n,), and its time: (n,), (n,)."""
     low, high = between
     grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
     best, where = np.empty(len(stretch)), low
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         time = low[:, None] + (high - low)[:, None] * grid
         values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
         top = np.argmax(sign * values, axis=1)

@@ -27,6 +27,7 @@ MOST_WORK = 6_000_000  # places that a search looks at, which bounds it to some 
 
 
 _LADDER = 1.08  # ratio of the speeds of the widest range
+_SURE_LADDER = 1.3  # the same up to a speed at which contact holds whatever the phases, as it does below it then
 _WIDE = 1.0  # in turns of the shaft: ranges wider are tried by the bound that knows no phase
 _DAMPED = 0.25  # of the decay in a radian, which may be wider
 _CLOSE = 0.25  # in turns of the shaft: narrower ranges are cut as their ends' forces suggest
@@ -95,7 +96,9 @@ class _Search:
         last = _last(self.train)
         low = self._look(self.holds)
         while low.rpm < last:
-            high = self._look(min(low.rpm * _LADDER, last))
+            high = self._look(min(low.rpm * (_SURE_LADDER if low.surely > 0.0 else _LADDER), last))
+            if low.surely > 0.0 and not high.surely > 0.0:
+                high = self._look(min(low.rpm * _LADDER, last))
             begins = self._first(Range(low, high))
             if begins is not None:
                 return begins
@@ -142,8 +145,8 @@ class _Search:
                 room = 0.5 * _RESOLUTION
                 speeds = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, room=room)
                 return [rpm for rpm in (speeds * (1.0 - _RESOLUTION), speeds) if low.rpm < rpm < high.rpm] or [middle]
-            share = 0.9 * math.sqrt(high.least / part.between)
-            return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.least < low.least else middle]
+            share = 0.9 * math.sqrt(high.reached / part.between)
+            return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.reached < low.reached else middle]
         if part.width > 0.5 and high.swings:
             share = high.oscillator.split / high.b
             b = 0.5 * round(2.0 * share * self.train.ratio(middle)) / share

@@ -187,20 +187,27 @@ class Look:
         return float(self.floor(sizes, self.driven).min())
 
     @cached_property
+    def lowest(self) -> Array:
+        """What the force cannot fall below (m, 32) on the windows of each stretch, at this speed."""
+        return self.floor(self.rung, self.driven)
+
+    @cached_property
     def least(self) -> float:
         """The least force, or where that is above 0 what it cannot fall below; where it is below 0 what it reaches."""
-        floor = self.floor(self.rung, self.driven)
-        if floor.min() > 0.0:
-            return float(floor.min())
-        best = np.array([int(np.argmin(floor))])
-        reached = self._in(best)
-        if reached < 0.0:
-            return reached
-        others = np.flatnonzero(floor.ravel() < reached)
-        return min(reached, self._in(others)) if len(others) else reached
+        lowest = float(self.lowest.min())
+        return lowest if lowest > 0.0 else self.reached
 
-    def _in(self, windows: Indices) -> float:
-        """Least force on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
+    @cached_property
+    def reached(self) -> float:
+        """The least force; where it is below 0 one that it reaches."""
+        first = self._samples(np.array([int(np.argmin(self.lowest))]))
+        seen = float(self._figure.at(self.states, first).min())
+        if seen < 0.0:
+            return self._figure.least(self.states, first)
+        return self._figure.least(self.states, self._samples(np.flatnonzero(self.lowest.ravel() <= seen)))
+
+    def _samples(self, windows: Indices) -> Samples:
+        """Places on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
         stretch, part = np.divmod(windows, PARTS)
         begins = np.flatnonzero(np.diff(windows, prepend=-2) != 1)
         begins = np.union1d(begins, np.flatnonzero(np.diff(stretch, prepend=-1)))
@@ -215,7 +222,7 @@ class Look:
         each = np.repeat(np.arange(len(owner)), count)
         number = np.arange(len(each)) - np.repeat(np.cumsum(count) - count, count)
         time = low[each] + (high - low)[each] * number / (count[each] - 1)
-        return self._figure.least(self.states, Samples(owner[each], time))
+        return Samples(owner[each], time)
 
 
 @dataclass(frozen=True)
@@ -238,7 +245,9 @@ class Range:
     @property
     def holds(self) -> bool:
         """Whether contact holds at all speeds between, by what is known at both ends."""
-        return self.by_size > 0.0 or min(self.low.least, self.high.least) > self.between
+        if self.by_size > 0.0 or min(self.low.least, self.high.least) > self.between:
+            return True
+        return min(self.low.reached, self.high.reached) > self.between
 
     @cached_property
     def detuning(self) -> float:

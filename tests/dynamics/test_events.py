@@ -406,7 +406,9 @@ def test_what_is_said_of_a_range_holds_inside_it():
         found = [steady(train, drive, speed).force for speed in inside]
         least = min(force.least for force in found)
         size = max(force.greatest for force in found)
-        bound = max(part.by_size, min(part.low.least, part.high.least) - part.between, part.high.surely)
+        at_ends = min(part.low.reached, part.high.reached)
+        assert at_ends >= min(part.low.least, part.high.least) - 1e-9 * size
+        bound = max(part.by_size, at_ends - part.between, part.high.surely)
         if part.low.least > 0.0 and part.high.least > 0.0:
             assert least >= bound - 1e-9 * size
             tight = max(tight, bound / least) if least > 0.0 else tight
