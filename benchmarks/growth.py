@@ -38,7 +38,7 @@ from camgeo.api.design import Design
 from camgeo.api.loading import load
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
-from camgeo.files.prism import extruded
+from camgeo.files.prism import extruded_mesh
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.formats.stl import write_stl
@@ -134,7 +134,7 @@ def solids(count: float) -> Callable[[], object]:
 
     def work() -> None:
         with tempfile.TemporaryDirectory() as folder:
-            mesh, _ = extruded(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+            mesh, _ = extruded_mesh(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
             write_stl(Path(folder) / "ring.stl", mesh)
 
     return work

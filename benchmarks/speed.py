@@ -23,7 +23,7 @@ from peer import COLLECT_AFTER
 
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
-from camgeo.files.prism import bore_polygon, extruded
+from camgeo.files.prism import bore_polygon, extruded_mesh
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
@@ -105,7 +105,7 @@ def stl() -> None:
             path, other = Path(folder) / "ours.stl", Path(folder) / "numpy.stl"
 
             def ours(outlines: list[LayerOutline] = outlines, path: Path = path) -> None:
-                mesh, _ = extruded(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+                mesh, _ = extruded_mesh(outlines, thickness=8.0, tolerance=1e-3, precision=SINGLE)
                 write_stl(path, mesh)
 
             ours()

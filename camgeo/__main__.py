@@ -27,7 +27,7 @@ _IMPATIENT = 1.0  # seconds from which a second interrupt is a person's: one may
 
 
 class _Interrupts:
-    """Interrupts of this process: the first is raised as KeyboardInterrupt, and none is forgotten.
+    """Interrupts of this process: the first raises KeyboardInterrupt, and later ones are kept.
 
     A library's callback may swallow one, or print it; it is raised again until it ends the run. While that clears up,
     others are ignored; an impatient one ends it at once, which loses nothing: the next run clears up.

@@ -55,7 +55,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Go to work in projects that ask for it."""
+    """Register the plugin in projects that name recipes; raises UsageError for options without recipes."""
     patterns: list[str] = config.getini(INI)
     out: str | None = config.getoption("camgeo_out")
     if out == "":
@@ -82,7 +82,7 @@ class Recipes:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionstart(self) -> None:
-        """Find the recipes; have them collected with the rest where the command line names nothing to collect."""
+        """Find the recipes, and add them to pytest's arguments where the command line has none; raises UsageError."""
         dist = self.config.getoption("dist", "no")
         if self.out is not None and dist not in TOGETHER and self.config.getoption("numprocesses", None):
             raise pytest.UsageError(
@@ -101,7 +101,7 @@ class Recipes:
             self.config.args += [run.shown for run in self.runs.values() if self._can_be_named(run)]
 
     def pytest_report_header(self) -> str:
-        """Tell how many recipes there are."""
+        """Line with the number of recipes."""
         return f"camgeo: {len(self.runs)} recipe{'s' * (len(self.runs) != 1)}"
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> RecipeFile | None:
@@ -114,7 +114,7 @@ class Recipes:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Keep one of each item: a recipe may have been found both by itself and on the way through its folder."""
+        """Remove duplicate items: a recipe may be collected both by itself and with its folder."""
         names: set[str] = set()
         for item in [item for item in items if isinstance(item, RecipeItem)]:
             if item.nodeid in names:
@@ -122,7 +122,7 @@ class Recipes:
             names.add(item.nodeid)
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
-        """Note which items are left of each recipe once -k, -m and the like have had their say."""
+        """Note the items of each recipe that remain after -k, -m and other filters."""
         for item in session.items:
             if isinstance(item, CheckItem):
                 item.run.selected.add(item.name)
@@ -206,7 +206,7 @@ class RecipeRun:
 
     def _run(self) -> None:
         from camgeo import check, export
-        from camgeo.api.log import unsaid
+        from camgeo.api.log import without_log
         from camgeo.common.errors import SurroundingsError
         from camgeo.schema.errors import RecipeErrors
 
@@ -216,7 +216,7 @@ class RecipeRun:
             f"{self.shown}: the run broke off with an error of camgeo's own, reported by the first item that ran"
         )
         try:
-            with unsaid():  # each item reports its own check
+            with without_log():  # each item reports its own check
                 if self.out is None:
                     report = check(self.recipe, **self.options)
                 else:
@@ -265,7 +265,7 @@ class RecipeFile(pytest.File):
 
 
 def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
-    """Tell the checks to come; the item of the recipe itself has those that are not foreseen."""
+    """Expected checks of a recipe with these options; the item of the recipe itself has all others."""
     from camgeo.common.errors import CallError
     from camgeo.registry.root import root_of
 
@@ -276,7 +276,7 @@ def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, .
 
 
 def _value(text: str) -> float | str:
-    """A number, or the text that is none."""
+    """Value of an option: a number, or the text where it is none."""
     try:
         return float(text)
     except ValueError:
@@ -381,7 +381,7 @@ class CheckItem(RecipeItem):
         self._missing(foreseen, report)
 
     def _missing(self, foreseen: Foreseen, report: Entry) -> None:
-        """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
+        """Fail with the reason why an expected check was not made."""
         from camgeo.checks.declared import CHECKS, MOTION
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
@@ -424,7 +424,7 @@ def _fail(text: str) -> None:
 
 
 def _relative(path: Path, folder: Path) -> str:
-    """Name a path as seen from a folder; another drive has no such name."""
+    """Path relative to a folder; absolute on another drive."""
     try:
         return os.path.relpath(path, folder)
     except ValueError:

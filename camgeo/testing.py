@@ -97,8 +97,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def _ending_here(assertion: Callable[P, R]) -> Callable[P, R]:
-    """Have the traceback of a failure end at the line of the test: what lies below is the library's own."""
+def _ends_traceback(assertion: Callable[P, R]) -> Callable[P, R]:
+    """Decorator by which the traceback of a failure ends at the line of the test."""
 
     @wraps(assertion)
     def asserted(*arguments: P.args, **named: P.kwargs) -> R:
@@ -114,7 +114,7 @@ def _ending_here(assertion: Callable[P, R]) -> Callable[P, R]:
 # --- any file ---------------------------------------------------------------------------------------------------------
 
 
-@_ending_here
+@_ends_traceback
 def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
 
@@ -131,7 +131,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     return drawing.widest_gap
 
 
-@_ending_here
+@_ends_traceback
 def assert_watertight(path: AnyPath) -> float:
     """Assert that a solid is closed, its faces looking outward, none of them without area or there twice.
 
@@ -148,7 +148,7 @@ def assert_watertight(path: AnyPath) -> float:
     return solid.volume
 
 
-@_ending_here
+@_ends_traceback
 def assert_constant_breadth(
     path: AnyPath, breadth: float | None = None, tolerance: float = 1e-3, *, mm: float | None = None
 ) -> Breadth:
@@ -195,7 +195,7 @@ def _breadth(contour: Contour) -> Breadth:
 # --- a file against a recipe ------------------------------------------------------------------------------------------
 
 
-@_ending_here
+@_ends_traceback
 def assert_motion(
     recipe: RecipeSource,
     path: AnyPath,
@@ -222,7 +222,7 @@ def assert_motion(
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
-@_ending_here
+@_ends_traceback
 def assert_contour(
     recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, gap: float | None = None, **options: bool
 ) -> float:
@@ -246,7 +246,7 @@ def _judge(
     gap: float | None,
     angles: int | None = None,
 ) -> list[Entry]:
-    """Judge a file and assert the checks of those names; what the report says of each of its surfaces."""
+    """Judge a file and assert the checks of those names; the report's entries of its surfaces."""
     from camgeo import verify as judged
 
     path, recipe = path_of("path", path), recipe_of(recipe)
@@ -278,7 +278,7 @@ def _judge(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-@_ending_here
+@_ends_traceback
 def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN401 - bool, as those of camgeo.check
     """Assert that a recipe has no faults, and that every check of its exact curves and of its files holds.
 
@@ -298,7 +298,7 @@ def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN40
     return report
 
 
-@_ending_here
+@_ends_traceback
 def assert_verified(
     recipe: OrderSource,
     path: AnyPath,
@@ -318,7 +318,7 @@ def assert_verified(
     return report
 
 
-@_ending_here
+@_ends_traceback
 def assert_no_undercut(recipe: RecipeSource) -> float:
     """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
 
@@ -340,7 +340,7 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
 
 
 def _length(name: str, value: float) -> float:
-    """Give an argument that is 0 or above and finite, as a breadth, a tolerance and the like are."""
+    """Argument that is a length of 0 or above, mm; raises CallError."""
     length = number_of(name, value)
     if not 0.0 <= length < math.inf:
         raise CallError(f"{name} is a number of 0 or above, not {length!r}")

@@ -1,4 +1,4 @@
-"""Recipes of one cam, as commands and the library ask for them."""
+"""Functions of recipes of one cam, for commands and the library."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def _settle(recipe: Recipe) -> Recipe:
 
 def _design(recipe: Recipe) -> Design:
     from camgeo.api.design import Design
-    from camgeo.api.log import staged
+    from camgeo.api.log import stage_reporter
     from camgeo.common.clock import Clock
     from camgeo.synthesis.design import designed
 
-    return Design(recipe, designed(recipe, Clock(staged(recipe))))
+    return Design(recipe, designed(recipe, Clock(stage_reporter(recipe))))
 
 
 def _export(recipe: Recipe, out: Path, only: tuple[str, ...], progress: Callable[[str], None]) -> Outcome:
@@ -49,7 +49,7 @@ def _judge(
     return pipeline.judge_files(recipe, paths, tolerance=tolerance, units=units, gap=gap)
 
 
-def _claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
+def _judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
     return pipeline.judge_claimed(recipe, name, call)
 
 
@@ -66,7 +66,7 @@ def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, file
 
 
 def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:
-    """Checks to come; none where there is no such motion."""
+    """Expected checks; none where the recipe's motion does not exist."""
     from camgeo.synthesis.expected_checks import foreseen
     from kin.law.programme import IntentError
 
@@ -83,7 +83,7 @@ ROOT = Root(
     export=_export,
     check=_check,
     judge=_judge,
-    claimed=_claimed,
+    claimed=_judge_claimed,
     show=_show,
     settle=_settle,
     explain=_explain,

@@ -1,4 +1,4 @@
-"""A check and a figure as the library hands them out: in the recipe's units, and able to show themselves."""
+"""Checks and figures of the library, in the recipe's units, as objects, text and HTML."""
 
 from __future__ import annotations
 
@@ -21,39 +21,39 @@ if TYPE_CHECKING:
 class Check(judge.Check):
     """A figure held against its limit, both in `unit`: a length in the recipe's own, an angle in degrees.
 
-    `value` is None where there was nothing to measure, which `detail` explains; such a check does not hold. `at_deg` is
-    the shaft angle of the worst place, None where there is no such place; `file` the name of the file that it is about.
+    `value` is None where nothing could be measured, as `detail` explains; such a check does not hold. `at_deg` is the
+    shaft angle of the worst place, None where there is none; `file` is the name of the checked file, None without one.
     """
 
     @staticmethod
     def of(recipe: Order, check: judge.Check) -> Check:
-        """Give a check of the judge's, which is in mm, in the recipe's units."""
+        """Check in the recipe's units, of a check of the judge in mm."""
         value, unit = in_units(recipe, check.value, check.unit)
         limit, _ = in_units(recipe, check.limit, check.unit)
         return Check(**vars(check) | {"value": value, "limit": limit, "unit": unit})
 
     @property
     def title(self) -> str:
-        """The name, with the surface that it is of where a cam has several."""
+        """Name of the check, with its surface where a cam has several."""
         return title(self._entry())
 
     @property
     def bound(self) -> str:
-        """The limit with its side, such as `<= 0.001`; empty where there is none."""
+        """Limit with its sign, such as `<= 0.001`; empty where there is none."""
         return "" if self.limit is None else f"{sign(self._entry())} {self.limit:.6g}"
 
     @property
     def figure(self) -> str:
-        """The value with its unit, as text: an error that only rounding made is called that; empty without a value."""
+        """Text of the value with its unit, `below rounding` for an error of rounding alone; empty without a value."""
         text = value_text(self._entry())
         return text if text in {"", BELOW} else f"{text} {self.unit}".rstrip()
 
     def _entry(self) -> dict[str, Any]:
-        """What a report says of the check."""
+        """Entry of the check in a report."""
         return {key: value for key, value in asdict(self).items() if key != "file" or value is not None}
 
     def __str__(self) -> str:
-        """Write the check on one line."""
+        """Text of the check on one line."""
         text = f"{self.title} of {self.file}" if self.file else self.title
         text += ": ok" if self.ok else ": FAILED"
         if self.value is not None:
@@ -72,7 +72,7 @@ class Check(judge.Check):
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a design in `unit`, and the shaft angle of its place; None where there is none, as `detail` says."""
+    """A figure of a design in `unit`, None where it has none, as `detail` explains; the shaft angle of its place."""
 
     value: float | None
     unit: str
@@ -81,12 +81,12 @@ class Figure:
 
     @staticmethod
     def of(recipe: Recipe, measured: Measured) -> Figure:
-        """Give a figure in the recipe's units."""
+        """Figure in the recipe's units, of a figure in mm."""
         value, unit = in_units(recipe, measured.value, measured.unit)
         return Figure(value, unit, measured.at_deg, measured.detail)
 
     def __str__(self) -> str:
-        """Write the figure with its unit, and its place."""
+        """Text of the figure with its unit and its place."""
         if self.value is None:
             return f"none: {self.detail}" if self.detail else "none"
         place = "" if self.at_deg is None else f" at {self.at_deg:.2f} deg"
@@ -95,7 +95,7 @@ class Figure:
 
 @dataclass(frozen=True, eq=False)
 class Figures(Mapping[str, Figure]):
-    """The figures of a design by name: a mapping that cannot be written to, and can be pickled alone."""
+    """Figures of a design by name: a read-only mapping that can be pickled."""
 
     _by_name: dict[str, Figure]
 
@@ -112,5 +112,5 @@ class Figures(Mapping[str, Figure]):
         return f"{type(self).__name__}({', '.join(self)})"
 
     def __str__(self) -> str:
-        """Write a figure a line."""
+        """Text with a line for each figure."""
         return "\n".join(f"{name}: {figure}" for name, figure in self.items())

@@ -1,4 +1,4 @@
-"""A cam designed and not made: its motion, its contour, its figures, and the checks that need no file."""
+"""The design of a cam without files: its motion, its contour, its figures, and the checks that need no file."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in p
 class Design:
     """The exact cam of a recipe.
 
-    What it is made of is in mm and radians, whatever the recipe's unit is: `motion`, `contour`, `edges`. What a recipe
-    can limit is in the recipe's own units, each with its unit beside it: `checks`, `figures`.
+    `motion`, `contour` and `edges` are in mm and radians, whatever the recipe's unit is. `checks` and `figures` are in
+    the recipe's own units, each with its unit beside it.
     """
 
     recipe: Recipe
     exact: Exact = field(repr=False)
 
     def __getstate__(self) -> dict[str, object]:
-        """Leave out of a pickle what can be measured again."""
+        """Fields for a pickle, without cached values."""
         return {"recipe": self.recipe, "exact": self.exact}
 
     # --- verdict ------------------------------------------------------------------------------------------------------
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file: curvature, undercut, walls, and the recipe's limits of figures."""
+        """Checks that need no file: curvature, undercut, walls, and the recipe's limits of figures."""
         return tuple(Check.of(self.recipe, check) for check in self._checks)
 
     @cached_property
@@ -69,7 +69,7 @@ class Design:
 
     @cached_property
     def figures(self) -> Figures:
-        """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
+        """Figures of the design that a recipe can limit, by name, such as `radius-of-curvature`."""
         from camgeo.measures.figures import design_figures
         from camgeo.recipe.figures import FIGURES
 
@@ -83,7 +83,7 @@ class Design:
 
     @property
     def sized(self) -> Recipe:
-        """The recipe with what `sizing` found in the place of it, the recipe itself where nothing was found.
+        """Recipe with the sizes that `sizing` found in the place of that key; the recipe itself without `sizing`.
 
         Comments within `sizing` go with it, all other text stays.
         """
@@ -107,8 +107,8 @@ class Design:
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> float | Array:
         """Position of the follower at shaft angles theta, rad, any real numbers, or a derivative by the shaft angle.
 
-        `theta` may have any shape, which the answer has too; a number gives a number. The position is in `unit`, as the
-        motion table has it: a lift from its datum, a swing of the arm; with a linkage the output of its last link.
+        The result has the shape of `theta`; a number gives a number. The position is in `unit`, as in the motion table:
+        a lift from its datum, a swing of the arm; with a linkage the output of its last link.
         Derivatives are by radian of shaft angle, up to the sixth; where one jumps it is the limit from above. Raises
         CallError for another order, angles that are not finite, and a linkage that does not turn.
         """
@@ -134,10 +134,10 @@ class Design:
     # --- contour ------------------------------------------------------------------------------------------------------
 
     def contour(self, n: int = 720) -> Array:
-        """Give n points of the exact contour, (n, 2) in mm: counter-clockwise about the shaft at (0, 0), as drawn.
+        """Points (n, 2) of the exact contour, mm: counter-clockwise about the shaft at (0, 0), in the drawing's axes.
 
         They stand at equal steps of the curve's own parameter, the first not repeated at the end. Raises CallError
-        where a check forbids to make the contour, for fewer than 3 points and for more than a million.
+        where a failed check prevents the contour, for fewer than 3 points and for more than a million.
         """
         n = whole_of("n", n)
         if not 3 <= n <= MOST_POINTS:
@@ -154,11 +154,11 @@ class Design:
         return points
 
     def edges(self, tolerance: float, form: Form = "arcs") -> Edges:
-        """Fit the contour within a tolerance, mm, by arcs and lines, one spline or the lines of a polyline.
+        """Edges of the contour within a tolerance, mm: arcs and lines, one spline, or the lines of a polyline.
 
-        These are the edges of the files that camgeo writes, in plain numbers and with the bound that was proved of
-        them; as drawn, like `contour`. Raises ToleranceError where the tolerance cannot be held, CallError where a
-        check forbids to make the contour, and for a form or a tolerance that is none.
+        They are the edges of the files that camgeo writes, with their proved bound, in the axes of `contour`. Raises
+        ToleranceError where the tolerance cannot be held, CallError where a failed check prevents the contour, and for
+        an unknown form or a tolerance that is no length.
         """
         from camgeo.output.job import Job
 
@@ -182,13 +182,13 @@ class Design:
     # --- to look at ---------------------------------------------------------------------------------------------------
 
     def scene(self) -> Mapping[str, JSON]:
-        """Everything that a page draws of the design, as plain data, without any file; lengths in the recipe's unit.
+        """Data of a page on the design without files, plain; lengths in the recipe's unit.
 
         `drawing` is the mechanism at shaft angle 0 as SVG, in which the group of body k has the id `body-k`; `bodies`
-        has the rows of x, y and angle of each over a turn, `plots` the curves, `marks` the places on the contour where
-        checks fail and remarks are made, `checks` and `remarks` what a report has of them. The script of the report's
-        page plays it (docs/page.md). Angles are degrees. Rows of numbers are packed: `{"c": value}` is constant,
-        `{"n": [...]}` are plain, `{"d": digits, "v": [...]}` differences in units of the last digit.
+        has the rows of x, y and angle of each over a turn, `plots` the curves, `marks` the places on the contour of
+        failed checks and remarks, `checks` and `remarks` the entries of a report. The script of the report's page plays
+        it (docs/page.md). Angles are degrees. Rows of numbers are packed: `{"c": value}` is constant, `{"n": [...]}`
+        are plain, `{"d": digits, "v": [...]}` differences in units of the last digit.
         """
         from camgeo.measures.remarks import remarks_of
         from camgeo.report.document import Findings, document, finite
@@ -205,7 +205,7 @@ class Design:
         return f"{type(self).__name__}({self.recipe.name!r}, {self.exact.follower.name})"
 
     def __str__(self) -> str:
-        """Write the verdict on one line, and each check that fails on one more."""
+        """Line of the verdict, and a line for each failed check."""
         failed = [f"\n  {check}" for check in self.checks if not check.ok]
         return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}  {self.exact.follower.name}{''.join(failed)}"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 from camgeo.api.loading import order_of
-from camgeo.api.log import tell_checks
+from camgeo.api.log import log_failures
 from camgeo.common.errors import with_packages
 from camgeo.registry.root import root_of
 
@@ -36,5 +36,5 @@ def design(recipe: OrderSource) -> Designed:
     """
     recipe = order_of(recipe)
     result = root_of(recipe).design(recipe)
-    tell_checks(recipe.name, result.checks)
+    log_failures(recipe.name, result.checks)
     return result

@@ -1,4 +1,4 @@
-"""What the library reports by `logging`: stages at debug, files and verdicts at info, checks that fail at warning."""
+"""Log of the library by `logging`: stages at debug, files and verdicts at info, failed checks at warning."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
 
 
-def heard() -> logging.Logger | None:
-    """Logger of the library; None where `logging` was never imported, and nobody can have set it up."""
+def library_log() -> logging.Logger | None:
+    """Logger of the library; None where `logging` was never imported, and so was not set up."""
     if "logging" not in sys.modules:
         return None
     import logging
@@ -27,9 +27,9 @@ def heard() -> logging.Logger | None:
 
 
 @contextmanager
-def unsaid() -> Iterator[None]:
-    """Tell nothing meanwhile, where all of it is reported in another way."""
-    if (log := heard()) is None:
+def without_log() -> Iterator[None]:
+    """Log nothing within the context, whose results are reported in another way."""
+    if (log := library_log()) is None:
         yield
         return
     before, log.disabled = log.disabled, True
@@ -39,11 +39,11 @@ def unsaid() -> Iterator[None]:
         log.disabled = before
 
 
-def staged(recipe: Order, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
-    """Give what a clock reports of each stage as it begins: the log hears of it, and who wants to know."""
+def stage_reporter(recipe: Order, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
+    """Function for a clock that passes the name of each stage to the log and to `progress`."""
 
     def tell(stage: str) -> None:
-        if log := heard():
+        if log := library_log():
             log.debug("%s: %s", recipe.name, stage)
         if progress is not None:
             progress(stage)
@@ -51,9 +51,9 @@ def staged(recipe: Order, progress: Callable[[str], None] | None = None) -> Call
     return tell
 
 
-def tell_checks(name: str, checks: Iterable[Check]) -> None:
-    """Tell of the checks that fail."""
-    if log := heard():
+def log_failures(name: str, checks: Iterable[Check]) -> None:
+    """Log the failed checks as warnings."""
+    if log := library_log():
         for check in checks:
             if not check.ok:
                 log.warning("%s: %s", name, check)

@@ -1,4 +1,4 @@
-"""What came of a cam's files: a verdict, checks, files, remarks; report.json as an object with types."""
+"""The report on a cam's files as an object with types: verdict, checks, files, remarks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Remark:
-    """A figure past what is usual, `rule`, which no check holds it against: `sentence` says it in words."""
+    """A figure beyond a rule of thumb, which no check limits: value and `rule` in `unit`, and a sentence on it."""
 
     name: str
     value: float | None
@@ -36,7 +36,7 @@ class Remark:
 
 @dataclass(frozen=True)
 class Motion:
-    """A follower's motion error over one turn, measured less intended, in `unit`: its greatest value and its mean."""
+    """A follower's motion error over one turn, measured less intended, in `unit`: greatest and rms."""
 
     max: float | None
     rms: float | None
@@ -49,9 +49,8 @@ class Motion:
 class File:
     """One file of a report, lengths in the recipe's unit; None where a figure does not apply to its kind.
 
-    `tolerance` is what was asked, `geometry_error` what was proved of the fit, `measured_error` what was measured in
-    the file as it lies there, `perimeter` and `area` are those of its outer contour. `path` leads to it, where it was
-    kept.
+    `geometry_error` is the proved error of the fit, `measured_error` the error measured in the written file;
+    `perimeter` and `area` are those of its outer contour. `path` leads to the file, None where it was not kept.
     """
 
     name: str
@@ -68,10 +67,10 @@ class File:
 
 @dataclass(frozen=True, eq=False)
 class Report(Mapping[str, JSON]):
-    """The report on a recipe and its files; as a mapping it is what report.json holds: `dict(report)`, `report["ok"]`.
+    """The report on a recipe and its files; as a mapping it has the keys of report.json: `report["ok"]`.
 
     Values are in the recipe's units. `path` is the folder of the files, `<name>.rejected` where a check failed; None
-    where files were judged and none kept. `page` is the HTML page of files that `verify` was asked to show.
+    where files were judged and none kept. `page` is the HTML of `verify(..., page=True)`, else None.
     """
 
     recipe: Order
@@ -81,7 +80,7 @@ class Report(Mapping[str, JSON]):
     page: str | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, object]:
-        """Leave out of a pickle what can be made again."""
+        """Fields for a pickle, without cached values."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     @property
@@ -92,22 +91,22 @@ class Report(Mapping[str, JSON]):
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """Every check, of the design and of the files."""
-        return tuple(Check(**_known(Check, check)) for check in self._document["checks"])
+        return tuple(Check(**_fields_of(Check, check)) for check in self._document["checks"])
 
     @cached_property
     def remarks(self) -> tuple[Remark, ...]:
-        """Figures beyond a rule of thumb, which is no check."""
-        return tuple(Remark(**_known(Remark, remark)) for remark in self._document["remarks"])
+        """Figures beyond a rule of thumb, which no check limits."""
+        return tuple(Remark(**_fields_of(Remark, remark)) for remark in self._document["remarks"])
 
     @cached_property
     def files(self) -> tuple[File, ...]:
-        """The files that were judged, in the recipe's order or that of the call; without those left as they were."""
+        """Judged files, in the order of the recipe or the call; without those that the run left as they were."""
         entries = [entry for entry in self._document["files"] if not entry.get("stale")]
         return tuple(self._file(entry, i) for i, entry in enumerate(entries))
 
     @property
     def missing(self) -> Mapping[str, str]:
-        """Why each file that a missing package would make was left out, by its name."""
+        """Reason why a file was left out for want of a package, by the file's name."""
         return {entry["what"]: entry["why"] for entry in self._document["skipped"] if entry.get("missing")}
 
     def _file(self, entry: dict[str, Any], index: int) -> File:
@@ -120,7 +119,7 @@ class Report(Mapping[str, JSON]):
 
     @cached_property
     def design(self) -> Designed:
-        """The design, made anew from the recipe, as `camgeo.design` gives it."""
+        """Design of the recipe, computed at first use, as of `camgeo.design`."""
         from camgeo.api.designing import design
 
         return design(self.recipe)
@@ -132,14 +131,14 @@ class Report(Mapping[str, JSON]):
         return figures
 
     def explain(self, check: Check) -> str:
-        """Tell of a check that fails over several lines: figure, limit, place, the recipe's field, what would do."""
+        """Text of several lines on a failed check: figure, limit, place, field, remedy; raises CallError for others."""
         is_a("check", check, Check, "a Check")
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
         return explanation(self._document["checks"][self.checks.index(check)], self._document, self.recipe)
 
     def to_json(self) -> str:
-        """Write the report as report.json has it."""
+        """JSON text of the report, as in report.json."""
         from camgeo.report.document import as_json
 
         return as_json(self._document)
@@ -169,7 +168,7 @@ class Report(Mapping[str, JSON]):
         return f"{type(self).__name__}({self.recipe.name!r}, {'ok' if self.ok else 'FAILED'}{folder})"
 
     def __str__(self) -> str:
-        """Write the verdict's line, and each check that fails on one more."""
+        """Line of the verdict, and a line for each failed check."""
         from camgeo.report.document import summary
 
         return summary(self._document)
@@ -197,13 +196,13 @@ class Report(Mapping[str, JSON]):
         )
 
 
-def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what an entry of the report has beyond the fields of its class."""
+def _fields_of(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
+    """Values of an entry of the report for the fields of its class."""
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
 
 
 def explanation(check: dict[str, Any], report: dict[str, Any], recipe: Order, file_name: str | None = None) -> str:
-    """Tell of a check that fails over several lines; `shown` names the recipe's file in place of its path."""
+    """Text of several lines on a failed check; `file_name` stands for the path of the recipe's file."""
     from camgeo.registry.root import root_of
 
     return root_of(recipe).explain(check, report, recipe, file_name)

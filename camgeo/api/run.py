@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
 from camgeo.api.loading import order_of
-from camgeo.api.log import heard, staged, tell_checks
+from camgeo.api.log import library_log, log_failures, stage_reporter
 from camgeo.api.report import Report
 from camgeo.common.arguments import demand_callable, is_a, number_of, path_of, short_repr, texts_of
 from camgeo.common.errors import with_packages
@@ -53,7 +53,7 @@ def export(
     faults = [_fault_of_kind(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
-    progress_log = staged(recipe, progress)
+    progress_log = stage_reporter(recipe, progress)
     outcome = root_of(used).export(used, folder, only, progress_log)
     return _log(Report(recipe, outcome.report, outcome.folder))
 
@@ -64,7 +64,7 @@ def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None,
     recipe = order_of(recipe)
     demand_callable("progress", progress)
     used = _with_options("check", recipe, options)
-    progress_log = staged(recipe, progress)
+    progress_log = stage_reporter(recipe, progress)
     outcome = root_of(used).check(used, progress_log)
     return _log(Report(recipe, outcome.report))
 
@@ -192,10 +192,10 @@ def _with_options(function: str, recipe: Order, options: Mapping[str, object]) -
 def _log(report: Report) -> Report:
     """The report itself, after its files and checks were logged."""
     name = report.recipe.name
-    if log := heard():
+    if log := library_log():
         for file in report.files if report.path is not None else ():
             log.info("%s: wrote %s", name, file.path)
-        tell_checks(name, report.checks)
+        log_failures(name, report.checks)
         log.info("%s: %s", name, "ok" if report.ok else "FAILED")
     return report
 

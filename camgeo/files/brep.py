@@ -40,7 +40,7 @@ class Wire(NamedTuple):
 
 
 def need_kernel() -> None:
-    """Raise MissingExtraError where Open CASCADE is not installed, or is of a version that names things otherwise."""
+    """Raise MissingExtraError where Open CASCADE is not installed, or in a version with other names."""
     try:
         import OCP
         import OCP.STEPControl
@@ -107,7 +107,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     stack.lid(0.0, first.wire, under)
     stack.lid(top, last.wire, above)
     shape = stack.solid()
-    return shape if solid.drill is None else _drilled(shape, solid.drill)
+    return shape if solid.drill is None else _drill(shape, solid.drill)
 
 
 def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline | None) -> Shape:
@@ -148,7 +148,7 @@ def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]
         raise TypeError("the chamfer of a spline is not a spline")
     c = solid.chamfer
     if (circle := outline.circle) is not None:
-        outline = _quartered(*circle)  # a whole circle's cone would have a seam, and no edge to be laid along it
+        outline = _circle_of_arcs(*circle)  # a whole circle's cone would have a seam, and no edge to be laid along it
     foot, head = stack.wall(outline, c, solid.thickness - c)
     inner = inset(outline, c)
     lowest, highest = stack.loop(inner, 0.0), stack.loop(inner, solid.thickness)
@@ -211,7 +211,7 @@ class _Stack:
                 maker.Add(_cast(edge, "edge"))
             face = TopoDS_Face()
             builder = BRep_Builder()
-            builder.MakeFace(face, _sloping(k, (small, z), (large, z_far)), CONFUSION)
+            builder.MakeFace(face, _chamfer_surface(k, (small, z), (large, z_far)), CONFUSION)
             builder.Add(face, maker.Wire())
             for edge in _parts(face, "edge"):
                 ShapeFix_Edge().FixAddPCurve(edge, face, False, CONFUSION)
@@ -249,7 +249,7 @@ class _Stack:
         return _sound(solid)
 
 
-def _drilled(shape: Shape, drill: Drill) -> Shape:
+def _drill(shape: Shape, drill: Drill) -> Shape:
     """Cut a radial hole, from the shaft outward."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
@@ -272,7 +272,7 @@ def _sound(solid: Shape) -> Shape:
     return solid
 
 
-def _sloping(k: int, inner: tuple[ArcSpline, float], outer: tuple[ArcSpline, float]) -> Shape:
+def _chamfer_surface(k: int, inner: tuple[ArcSpline, float], outer: tuple[ArcSpline, float]) -> Shape:
     """Surface of the chamfer of piece k: a plane, or the cone whose radius grows along its axis."""
     from OCP.Geom import Geom_ConicalSurface, Geom_Plane
     from OCP.gp import gp_Ax3, gp_Dir
@@ -301,7 +301,7 @@ def _disc(radius: float) -> ArcSpline:
     return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), EXACT)
 
 
-def _quartered(centre: tuple[float, float], radius: float) -> ArcSpline:
+def _circle_of_arcs(centre: tuple[float, float], radius: float) -> ArcSpline:
     """A circle as four arcs."""
     across = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
     return ArcSpline(np.array(centre) + radius * across, np.full(4, math.tan(math.pi / 8.0)), EXACT)
@@ -326,7 +326,7 @@ def _parts(shape: Shape, kind: str) -> list[Shape]:
 
 
 def _cast(shape: Shape, kind: str) -> Shape:
-    """Return a shape as what it is known to be."""
+    """Return a shape as the kernel's class for its kind."""
     from OCP.TopoDS import TopoDS
 
     return getattr(TopoDS, f"{kind.capitalize()}_s")(shape)

@@ -30,7 +30,7 @@ def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
     A loop is the indices of its points in their order. Where loops cross or touch, what comes back may be no cover of
     the region: whoever calls holds its edges against the loops.
     """
-    way = _bridged(points, loops)
+    way = _bridge_holes(points, loops)
     place = points[way]
     turn = np.zeros(len(way), dtype=np.intp)
     blocker = np.full(len(way), UNKNOWN)
@@ -99,7 +99,7 @@ def _blockers(way: Indices, place: Array, ears: Indices, others: Indices) -> Ind
     return blocker
 
 
-def _bridged(points: Array, loops: Sequence[Indices]) -> Indices:
+def _bridge_holes(points: Array, loops: Sequence[Indices]) -> Indices:
     """One way along the outermost loop, to each hole, along it, and back; a hole that no bridge reaches is left out."""
     way, *holes = loops
     for hole in sorted(holes, key=lambda hole: -points[hole, 0].max()):
@@ -120,7 +120,9 @@ def _visible(points: Array, way: Indices, start: int) -> int | None:
         end = places[place]
         left_of = _side(before[place], end, begin), _side(end, after[place], begin)
         inside = (min if _side(before[place], end, after[place]) > 0 else max)(left_of) > 0
-        if inside and not _crossed(begin, end, places, after, (way != way[place]) & (np.roll(way, -1) != way[place])):
+        if inside and not _is_crossed(
+            begin, end, places, after, (way != way[place]) & (np.roll(way, -1) != way[place])
+        ):
             return place
     return None
 
@@ -129,7 +131,7 @@ def _side(a: Array, b: Array, c: Array) -> int:
     return int(sides(a[None], b[None], c[None])[0])
 
 
-def _crossed(begin: Array, end: Array, a: Array, b: Array, among: Mask) -> bool:
+def _is_crossed(begin: Array, end: Array, a: Array, b: Array, among: Mask) -> bool:
     """Whether a segment meets one of the segments from a to b (n, 2), those among them that count (n,)."""
     low, high = np.minimum(begin, end), np.maximum(begin, end)
     near = among & (np.maximum(a, b) >= low).all(axis=1) & (np.minimum(a, b) <= high).all(axis=1)

@@ -1,4 +1,4 @@
-"""The numbers a format holds: how far a vertex moves when it is written, and what that leaves to the fit.
+"""Precision of the numbers of a format: distance that writing moves a vertex, and the tolerance left to the fit.
 
 An STL holds single-precision numbers, so that at 50 mm a vertex moves by up to 2.7e-6 mm. A 3MF holds decimals, of
 which nine are written: 7.1e-10 mm. A PLY holds doubles. Programs that save a file again mostly do so in single
@@ -30,7 +30,7 @@ _LEAST = 1.25
 
 @dataclass(frozen=True)
 class Precision:
-    """What coordinates a file holds.
+    """Precision of the coordinates of a file.
 
     file, name   as messages have them: "an STL", "single precision"
     nearest      the number that is written for each of any array
@@ -45,7 +45,7 @@ class Precision:
     again: Precision | None = None
 
     def in_units(self, mm: float) -> Precision:
-        """The same numbers of a file whose unit is `mm` mm long: in mm, what a reader makes of them."""
+        """Precision in mm of a file whose unit is `mm` mm long and whose numbers have this precision."""
         if mm == 1.0:
             return self
 
@@ -56,7 +56,7 @@ class Precision:
         return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing, again=again)
 
     def rounded(self, points: Array) -> tuple[Array, float]:
-        """Points (n, d) as written, without negative zeros, and the farthest that one moved."""
+        """Points (n, d) as written, mm, without negative zeros, and the greatest distance that one moved, mm."""
         nearest: Array = self.nearest(points) + 0.0
         return nearest, float(np.sqrt(np.sum((nearest - points) ** 2, axis=1)).max())
 
@@ -69,7 +69,7 @@ class Precision:
         return math.sqrt(0.5) * self.spacing(abs(size))
 
     def fit_tolerance(self, tolerance: float, size: float) -> float:
-        """Return what a file's tolerance leaves to the fit of a polygon with coordinates up to `size` mm.
+        """Tolerance, mm, that is left to the fit of a polygon with coordinates up to `size` mm.
 
         What saving it again in coarser numbers may take is kept back where as much is left.
 
@@ -97,7 +97,7 @@ class Precision:
 
 
 def conversion_error(outline: Outline) -> float:
-    """Farthest in mm that writing an outline in another unit, and reading it back, moves one of its points.
+    """Greatest distance, mm, that writing an outline in another unit and reading it back moves one of its points.
 
     A quotient and a product of each coordinate, each of which rounds by half a unit in the last place, and a factor
     that is no double itself: two and a half in all, sqrt(2) times as much in the plane, and twice that for the control

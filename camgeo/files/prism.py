@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _WORDS = {"BORE": "the bore", "CUT": "the outline"}  # what outlines on layers are called in errors
 
 
-def extruded(
+def extruded_mesh(
     outlines: Sequence[LayerOutline], *, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
     """Closed solid over the region within the first outline, which holds all others, and outside of these; in mm.
@@ -136,7 +136,7 @@ def _round_all(
 
 
 def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:
-    """Vertices (n, 2) of a polygon as written, each unlike the one before, how far one moved, how many fell away."""
+    """Vertices (n, 2) of a polygon as written, without repetitions; greatest shift, mm; number of dropped vertices."""
     outer, moved = precision.rounded(polygon.vertices)
     is_kept = np.any(outer != np.roll(outer, 1, axis=0), axis=1)
     return outer[is_kept], moved, int(np.count_nonzero(~is_kept))

@@ -72,7 +72,7 @@ class Solid:
     floor: float | None = None
 
 
-def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
+def joined_mesh(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
     """Closed, oriented mesh of the solid over a polygon; see the module.
 
     With a chamfer the polygon is taken to be fitted finely enough that its parallel inside is within the tolerance too.
@@ -84,10 +84,10 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
     precision.within("the contour", bound.worst, tolerance)
     part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
     facts = MeshFacts(0, len(outer), 0, dropped, moved, bound, None)
-    return hubbed(part, facts, solid, tolerance=tolerance, precision=precision)
+    return hubbed_mesh(part, facts, solid, tolerance=tolerance, precision=precision)
 
 
-def hubbed(
+def hubbed_mesh(
     part: Any,  # noqa: ANN401 - manifold3d has no types
     facts: MeshFacts,
     solid: Solid,
@@ -120,7 +120,7 @@ def hubbed(
         part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
     if solid.drill is not None:
         part -= manifold(*_drill(solid.drill, fine, precision))
-    mesh, merged = meshed(part, precision)
+    mesh, merged = mesh_of_body(part, precision)
     bound, off, moved = bound.widened(merged), off + merged, moved + merged
     precision.within("the contour", bound.worst, tolerance)
     besides = Bound(off, off)
@@ -143,7 +143,7 @@ def manifold(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - mani
     return body
 
 
-def meshed(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN401 - manifold3d has no types
+def mesh_of_body(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN401 - manifold3d has no types
     """Mesh of a manifold3d body, and by how much its walls were moved to close it, mm: 0 but for slivers.
 
     Where walls cross at a slant, corners may lie so close that they are one once rounded, and what lay between them is

@@ -67,9 +67,9 @@ def part_mesh(
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")
     if body.prism:
-        from camgeo.files.prism import extruded
+        from camgeo.files.prism import extruded_mesh
 
-        return extruded(outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
+        return extruded_mesh(outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
     if body.pocket is not None:
         from camgeo.files.prism import pocketed_mesh
 
@@ -80,16 +80,16 @@ def part_mesh(
         )
         if plain:
             return mesh, facts
-        from camgeo.files.solid import hubbed, manifold
+        from camgeo.files.solid import hubbed_mesh, manifold
 
         disc = manifold(mesh.points, mesh.triangles)
-        return hubbed(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
-    from camgeo.files.solid import joined
+        return hubbed_mesh(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
+    from camgeo.files.solid import joined_mesh
 
     polygon = outlines[0].outline
     if not isinstance(polygon, Polygon):
         raise TypeError("a solid is made of a polygon")
-    return joined(polygon, solid_of(body), tolerance=tolerance, precision=precision)
+    return joined_mesh(polygon, solid_of(body), tolerance=tolerance, precision=precision)
 
 
 def solid_of(body: Body) -> Solid:

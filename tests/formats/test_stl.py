@@ -14,7 +14,7 @@ from support.outlines import bored
 
 from camgeo.files.errors import RegionError
 from camgeo.files.precision import SINGLE
-from camgeo.files.prism import bore_polygon, extruded
+from camgeo.files.prism import bore_polygon, extruded_mesh
 from camgeo.files.sides import sides
 from camgeo.files.triangulate import clip_region, disc, ring, star_shaped
 from camgeo.fit.nodes import ToleranceError
@@ -27,7 +27,7 @@ RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribut
 
 
 def write_stl(path, polygon, *, bore=None, about="", **shape):
-    mesh, facts = extruded(bored(polygon, bore), **shape, precision=SINGLE)
+    mesh, facts = extruded_mesh(bored(polygon, bore), **shape, precision=SINGLE)
     stl.write_stl(path, mesh, about=about)
     return facts
 

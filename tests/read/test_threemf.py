@@ -18,7 +18,7 @@ from camgeo import testing
 from camgeo.cli.main import main
 from camgeo.files.mesh import Item, Mesh
 from camgeo.files.precision import DECIMALS
-from camgeo.files.prism import extruded
+from camgeo.files.prism import extruded_mesh
 from camgeo.files.sides import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
@@ -187,7 +187,7 @@ def test_prisms_of_doubles_close_and_have_their_polygons_volume(n, hollow, size)
     t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
     r = size * (1.0 + 0.3 * hollow * np.cos(5.0 * t))
     polygon = Polygon(np.column_stack((r * np.cos(t), r * np.sin(t))), Bound(0.0, 0.0))
-    mesh, facts = extruded(bored(polygon), thickness=7.3, tolerance=1e-8, precision=DECIMALS)
+    mesh, facts = extruded_mesh(bored(polygon), thickness=7.3, tolerance=1e-8, precision=DECIMALS)
     assert facts.displacement <= DECIMALS.bound(1.3 * size)
     assert mesh.volume == pytest.approx(7.3 * polygon.area, rel=1e-9)
     edges = {

@@ -47,7 +47,7 @@ def camshaft_mesh(
     Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where it does not close.
     """
     from camgeo.files.prism import bore_polygon, rounded_contour
-    from camgeo.files.solid import manifold, meshed, prism
+    from camgeo.files.solid import manifold, mesh_of_body, prism
 
     size = max(
         [lobe.contour.size for lobe in lobes if lobe.contour is not None] + [bar.diameter for bar in recipe.bars]
@@ -74,7 +74,7 @@ def camshaft_mesh(
         body += manifold(*prism(loop, lobe.lobe.low, lobe.lobe.high, precision))
     if recipe.bore is not None:
         body -= cylinder(recipe.bore, shaft.low - BEYOND, shaft.high + BEYOND)
-    mesh, merged = meshed(body, precision)
+    mesh, merged = mesh_of_body(body, precision)
     bound = bound.widened(merged)
     precision.within("the contour", bound.worst, tolerance)
     return mesh, bound, edges

@@ -11,7 +11,7 @@ from camgeo.api import notebook
 from camgeo.api.check import Check, Figures
 from camgeo.api.design import Design
 from camgeo.api.errors import CallError
-from camgeo.api.log import staged
+from camgeo.api.log import stage_reporter
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
@@ -103,7 +103,7 @@ class CamshaftDesign:
 
 def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
     """Design the cams of a camshaft; raises RecipeErrors where there is no such motion or curve."""
-    return CamshaftDesign(recipe, placed(recipe, Clock(staged(recipe))))
+    return CamshaftDesign(recipe, placed(recipe, Clock(stage_reporter(recipe))))
 
 
 def failed(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:

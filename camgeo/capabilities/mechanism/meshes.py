@@ -10,7 +10,7 @@ import numpy as np
 
 from camgeo.files.errors import RegionError
 from camgeo.files.prism import rounded_contour, rounded_loop
-from camgeo.files.solid import BEYOND, manifold, meshed, prism
+from camgeo.files.solid import BEYOND, manifold, mesh_of_body, prism
 from camgeo.fit.pieces import Polygon
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh
     pieces = len(joined.decompose())
     if pieces != 1:
         raise RegionError(f"its plates make {pieces} separate bodies, where one is expected")
-    mesh, merged = meshed(joined, precision)
+    mesh, merged = mesh_of_body(joined, precision)
     precision.within(f"{body.name}: an outline", worst + merged, tolerance)
     return mesh, worst + merged
 

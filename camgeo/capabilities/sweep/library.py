@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.api.check import Figure, Figures
 from camgeo.api.loading import recipe_of
-from camgeo.api.log import heard
+from camgeo.api.log import library_log
 from camgeo.common.arguments import demand_callable, is_a, path_of, short_repr, whole_of
 from camgeo.common.errors import CallError, SurroundingsError
 from kin.numeric.records import dataclass, field
@@ -141,6 +141,6 @@ def search(
     except OSError as error:
         raise SurroundingsError(f"cannot be written: {error.strerror or error}", folder) from error
     result = Search(recipe, outcome.folder, outcome.report)
-    if log := heard():
+    if log := library_log():
         log.info("%s", result)
     return result
