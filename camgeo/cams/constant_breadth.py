@@ -142,4 +142,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     return ConstantBreadthCam(cam["base_radius"], motion, undercut, "swing" in cam, preload=build_preload(cam))
 
 
-FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, by_motion=BY_MOTION)
+FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, BY_MOTION)

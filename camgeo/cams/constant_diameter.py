@@ -113,4 +113,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 
 
-FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check, by_motion=BY_MOTION)
+FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check, BY_MOTION)

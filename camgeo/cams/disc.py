@@ -11,7 +11,8 @@ from camgeo.cams.groove import TRACK, Groove
 from camgeo.cams.guided import Holding
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, find_size
-from camgeo.motions.motion import ByMotion, check_whole_turn, motion_field
+from camgeo.motions.by_motion import ByMotion
+from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.motions.segments import LEAST
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
 from camgeo.schema.reader import kind_of
@@ -242,4 +243,4 @@ def _touch(follower: Values, arm: Values) -> Touch:
 
 _STILL: list[Value] = [{kind: 0.01, "over": 180.0, "law": "cycloidal"} for kind in ("rise", "return")]
 BY_MOTION = ByMotion(motion="motion", base="base_radius", still=("motion", _STILL))
-FAMILY = Family(DiscCam.kind, Arrangement(Translating, Roller), TABLE, build, check, variant, BY_MOTION)
+FAMILY = Family(DiscCam.kind, Arrangement(Translating, Roller), TABLE, build, check, BY_MOTION, variant)

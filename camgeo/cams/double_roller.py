@@ -15,7 +15,7 @@ from camgeo.cams.surface import Surface
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.motions.motion import ByMotion
+from camgeo.motions.by_motion import ByMotion
 from camgeo.schema.fields import length
 from kin.law.contacts import Arrangement, Oscillating, Roller, on_one_arm
 from kin.numeric.records import dataclass, replace
@@ -125,4 +125,4 @@ def build(cam: Values, mm: float) -> Cam:
 
 
 BY_MOTION = ByMotion(motion="law", instead=("delta", "arc", "rosette"), still=("delta", {"cos": {"1": 0.001}}))
-FAMILY = Family(DoubleRollerCam.kind, ARRANGEMENT, TABLE, build, check, by_motion=BY_MOTION)
+FAMILY = Family(DoubleRollerCam.kind, ARRANGEMENT, TABLE, build, check, BY_MOTION)

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.curve.extremes import Extreme
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.motion import ByMotion, MotionSource, Open
+    from camgeo.motions.by_motion import ByMotion
+    from camgeo.motions.motion import MotionSource, Open
     from camgeo.motions.position import Position
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
@@ -409,7 +410,7 @@ class Family:
 
     `table` has its keys; `check` notes the faults between them, `build` makes the cam of values without fault and the
     unit of length in mm. `variant` gives the arrangement of a cam as written, where that decides. `by_motion` has the
-    keys of a cam by its motion, None for a family without one.
+    keys by which a recipe gives size and motion.
     """
 
     kind: str
@@ -417,8 +418,8 @@ class Family:
     table: Table
     build: Callable[[Values, float], Cam]
     check: Callable[[Values, Reader], None]
+    by_motion: ByMotion
     variant: Callable[[Node], Arrangement] | None = None
-    by_motion: ByMotion | None = None
 
     def of(self, node: Node | None) -> Arrangement:
         """Arrangement of a cam as written, None for the usual one; it decides units and figures."""

@@ -12,7 +12,7 @@ from camgeo.cams.preload import build_preload
 from camgeo.cams.surface import Surface
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.motions.motion import ByMotion
+from camgeo.motions.by_motion import ByMotion
 from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
 from kin.numeric.records import dataclass, replace
 
@@ -92,4 +92,4 @@ def build(cam: Values, mm: float) -> Cam:
 
 
 BY_MOTION = ByMotion(motion="law", instead=("delta", "arc", "rosette"), still=("delta", {"cos": {"1": 0.001}}), lag=1.0)
-FAMILY = Family(FlatPairCam.kind, ARRANGEMENT, TABLE, build, check, by_motion=BY_MOTION)
+FAMILY = Family(FlatPairCam.kind, ARRANGEMENT, TABLE, build, check, BY_MOTION)

@@ -12,7 +12,7 @@ from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.surface import Surface
 from camgeo.common.rounding import NOISE, upward
-from camgeo.motions.motion import ByMotion
+from camgeo.motions.by_motion import ByMotion
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, field, replace
@@ -352,4 +352,4 @@ BY_MOTION = ByMotion(
     opposed=True,
     series=True,
 )
-FAMILY = Family(SupportCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, by_motion=BY_MOTION)
+FAMILY = Family(SupportCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check, BY_MOTION)

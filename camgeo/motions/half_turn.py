@@ -9,7 +9,8 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from camgeo.motions.motion import ByMotion, MotionSource, check_filled, motion_field
+from camgeo.motions.by_motion import ByMotion
+from camgeo.motions.motion import MotionSource, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:

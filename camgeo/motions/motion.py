@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from camgeo.motions.contour_motion import CamDrawing
     from camgeo.motions.lobes import SideShape
     from camgeo.motions.segments import MotionSegment
-    from camgeo.schema.change import Value
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -314,28 +313,6 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
         raise IntentError(
             f"{where}the motion begins at {value / scale:.9g}; S(0) must be 0: make every displacement {less}", field
         )
-
-
-@dataclass(frozen=True, kw_only=True)
-class ByMotion:
-    """Keys below `cam` by which recipes of a family give a cam by its motion.
-
-    motion    key of the motion
-    base      key of the base circle's radius, where displacements are 0; empty where other lengths fix the size
-    instead   keys that give the motion otherwise
-    still     an entry that gives hardly any motion
-    opposed   whether size and motion fix how far two opposite contacts are apart
-    lag       share of a swing by which the middle of its contacts lags the shaft: of what its symmetry is told over
-    series    whether the motion is a Fourier series of the support function, of which `base` is the mean
-    """
-
-    motion: str
-    base: str = ""
-    instead: tuple[str, ...] = ()
-    still: tuple[str, Value]
-    opposed: bool = False
-    lag: float = 0.5
-    series: bool = False
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
 """A recipe of a cam that was measured: its base radius and its motion, as its points have them.
 
 The recipe that is given says follower, guide, units and part; what it says of base radius and motion gives way. Strokes
-are told by the law that fits them best; where none does, or the turn begins within one, the motion is a table. By which
-keys a kind of cam has size and motion, and over which part of the turn, its family says (`ByMotion`).
+have the law that fits them best; where none does, or the turn begins within one, the motion is a table. A support
+function is a Fourier series. The keys of size and motion are those of the cam's family (`ByMotion`).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import ExactCam
-    from camgeo.motions.motion import ByMotion
+    from camgeo.motions.by_motion import ByMotion
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.change import Value
     from camgeo.schema.yaml_source import Node
@@ -57,7 +57,6 @@ MOST_LEFT = 2.0  # readings that laws may leave: beyond, the motion is a table
 ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # what numbers are written to
 MOST_UNEVEN = 0.02  # of the motion: what is off the symmetry of its kind by more is of another kind
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
-NO_MOTION = "a recipe is made of points of a cam that is given by a motion: kind "
 BESIDE = 8  # points about one by their polar angle, among which the flanks of a groove are told apart
 
 
@@ -215,14 +214,10 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
 
 
 def _keys(source: Source) -> ByMotion:
-    """Keys by which a recipe's kind of cam has its motion; raises CallError for a kind that has none."""
+    """Keys by which a recipe's kind of cam has size and motion."""
     kind = _cam_keys(source).get("kind")
     word = kind.text if isinstance(kind, Scalar) else ""
-    family = FAMILIES[word if word in FAMILIES else "disc"]  # of a faulty kind it is said as the recipe is read
-    if family.by_motion is None:
-        kinds = [name for name in FAMILIES if FAMILIES[name].by_motion is not None]
-        raise CallError(f"{escaped(source.file)}: {NO_MOTION}{', '.join(kinds)}; not {word}")
-    return family.by_motion
+    return FAMILIES[word if word in FAMILIES else "disc"].by_motion  # a faulty kind is refused as the recipe is read
 
 
 def _by_surface(
