@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from camgeo.api.design import Design
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import FileCall
     from camgeo.synthesis.expected_checks import Foreseen
 
 
@@ -43,22 +42,6 @@ def _check(recipe: Recipe, progress: Callable[[str], None]) -> Outcome:
     return pipeline.check(recipe, progress=progress)
 
 
-def _judge(
-    recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
-) -> dict[str, Any]:
-    return pipeline.judge_files(recipe, paths, tolerance=tolerance, units=units, gap=gap)
-
-
-def _judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
-    return pipeline.judge_claimed(recipe, name, call)
-
-
-def _show(
-    recipe: Recipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
-) -> tuple[dict[str, Any], str]:
-    return pipeline.judge_and_show(recipe, paths, tolerance=tolerance, units=units, gap=gap)
-
-
 def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, file_name: str | None) -> str:
     from camgeo.report.failure import failure
 
@@ -82,9 +65,9 @@ ROOT = Root(
     design=_design,
     export=_export,
     check=_check,
-    judge=_judge,
-    claimed=_judge_claimed,
-    show=_show,
+    judge=pipeline.judge_files,
+    claimed=pipeline.judge_claimed,
+    show=pipeline.judge_and_show,
     settle=_settle,
     explain=_explain,
     foresee=_foresee,

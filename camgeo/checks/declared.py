@@ -26,6 +26,7 @@ from camgeo.recipe.figures import (
 )
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_WIDTH as WIDTH
+from camgeo.registry.capability import always
 from camgeo.registry.gathered import Gathered
 from kin.numeric.records import dataclass
 
@@ -122,10 +123,6 @@ class Declared:
 # --- conditions -------------------------------------------------------------------------------------------------------
 
 
-def _always(_: Scene) -> bool:
-    return True
-
-
 def _named(name: str) -> Exact:
     """Whether the follower names a check of its intended motion."""
     return lambda scene: name in scene.follower.checks
@@ -136,24 +133,12 @@ def _dwells(scene: Scene) -> bool:
     return scene.linked and dwell is not None and dwell.at_least is not None
 
 
-def _ground(scene: Scene) -> bool:
-    return scene.recipe.wheel is not None
-
-
-def _walled(scene: Scene) -> bool:
-    return scene.recipe.part.walled
-
-
 def _contour(_: Scene, file: FileRequest) -> bool:
     return file.format.contour
 
 
 def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
     return file.form.ground or file.form.curve or _contour(scene, file)
-
-
-def _of_a_wheel(_: Scene, file: FileRequest) -> bool:
-    return file.form.ground and "roller" not in file.own
 
 
 def _of_a_drive(_: Scene, file: FileRequest) -> bool:
@@ -236,21 +221,9 @@ def _no_roller(scene: Scene) -> str:
     return "" if scene.roller else "a flat face is pushed along its normal"
 
 
-def _convex(scene: Scene) -> str:
-    return "" if scene.roller else "a convex profile does not intersect itself"
-
-
 def _one_face(scene: Scene) -> str:
     single = not (scene.yoke or scene.swings or scene.follower.closure)  # of others that one tells what is left
     return "the breadth is not constant: a single flat face follows" if single else ""
-
-
-def _no_plate(scene: Scene) -> str:
-    return "the follower has no plate that moves along its normal" if scene.swings else ""
-
-
-def _no_bore(scene: Scene) -> str:
-    return "part.bore is not given" if scene.recipe.part.bore is None else ""
 
 
 def _no_dwell(scene: Scene) -> str:
@@ -274,9 +247,13 @@ def _motion_lost(scene: Scene) -> str:
 CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder, strict=True)
 PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, strict=True)
 BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
-UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
+UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), always(True))
 UNDERCUT_GLOBAL = Declared(
-    "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
+    "undercut-global",
+    ("mm",),
+    lambda scene: scene.roller,
+    why_not=lambda scene: "" if scene.roller else "a convex profile does not intersect itself",
+    field="cam.roller_radius",
 )
 CLOSING = Declared("closing-equation", ("mm",), _named("closing-equation"), why_not=_no_swing)
 RATIO = Declared(
@@ -306,9 +283,20 @@ BREADTH = Declared(
     in_frame=True,
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
-TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate)
+TRAVEL = Declared(
+    CONTACT_TRAVEL,
+    ("mm",),
+    _named(CONTACT_TRAVEL),
+    why_not=lambda scene: "the follower has no plate that moves along its normal" if scene.swings else "",
+)
 FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
-WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
+WHEEL = Declared(
+    "grinding-wheel",
+    ("mm",),
+    lambda scene: scene.recipe.wheel is not None,
+    field="manufacture.wheel",
+    remedy=remedies.smaller_wheel,
+)
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
 DWELL = Declared(
@@ -323,7 +311,7 @@ DWELL = Declared(
 WALL = Declared(
     LEAST_WALL,
     ("mm",),
-    _walled,
+    lambda scene: scene.recipe.part.walled,
     field="part.bore",
     own_field="part.outer",
     remedy=remedies.smaller_bore,
@@ -338,7 +326,13 @@ REACH = Declared("cutter-reach", ("mm",), of_file=_reached)
 UNITS = Declared("units", ("",), of_file=_drawing, field="units")
 CLOSED = Declared("closed", ("", "faults"), of_file=_drawing)
 WATERTIGHT = Declared("watertight", ("", "faults"), of_file=_solid)
-BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
+BORE = Declared(
+    "bore",
+    ("mm",),
+    of_file=_bored,
+    why_not=lambda scene: "part.bore is not given" if scene.recipe.part.bore is None else "",
+    field="part.bore",
+)
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
 MARK = Declared(mark.FEATURE.name, ("mm",), of_file=_marked, field="part.mark")
@@ -357,7 +351,9 @@ SET_SCREW = Declared("set-screw", ("mm",), of_file=_with(set_screw.FEATURE), fie
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)
-NORMALS = Declared("normals", ("mm",), of_file=_of_a_wheel, field="export.tolerance")
+NORMALS = Declared(
+    "normals", ("mm",), of_file=lambda _, file: file.form.ground and "roller" not in file.own, field="export.tolerance"
+)
 STATED_ERROR = Declared("stated-error", ("mm", "deg"), of_file=_stated)
 INTERPOLATION = Declared(
     "interpolation",

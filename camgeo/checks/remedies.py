@@ -48,6 +48,7 @@ from camgeo.recipe.figures import (
     UNBALANCE,
 )
 from camgeo.registry import registry
+from camgeo.registry.capability import always
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,14 +62,10 @@ Entry: TypeAlias = dict[str, Any]
 Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
 
 
-def smaller_swing(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Remedy for a motion that is too steep."""
-    return SMALLER_SWING
-
-
-def more_harmonics(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Remedy for a series that is too far from its law: more harmonics, or the cam of the law itself."""
-    return MORE_HARMONICS
+smaller_swing: Remedy = always(SMALLER_SWING)
+"""Remedy for a motion that is too steep."""
+more_harmonics: Remedy = always(MORE_HARMONICS)
+"""Remedy for a series that is too far from its law: more harmonics, or the cam of the law itself."""
 
 
 def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:

@@ -107,7 +107,6 @@ def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = N
 def judge_files(
     recipe: Recipe,
     paths: list[Path],
-    *,
     tolerance: float | None = None,
     units: float | None = None,
     gap: float | None = None,
@@ -125,7 +124,6 @@ def judge_files(
 def judge_and_show(
     recipe: Recipe,
     paths: list[Path],
-    *,
     tolerance: float | None = None,
     units: float | None = None,
     gap: float | None = None,

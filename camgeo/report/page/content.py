@@ -82,8 +82,8 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     per = outline.Exact.looks(files)
     exacts = {profile.surface.name: outline.Exact.of(design, profile, per) for profile in design.surfaces}
     groups = outline.group_files(files, len(design.discs))
-    drawn = [_drawing_of(group) for group in groups]
-    scene, plots, relative = mechanism(recipe, design, drawn)
+    drawings = [_drawing_of(group) for group in groups]
+    scene, plots, relative = mechanism(recipe, design, drawings)
     plots += curves.preload(recipe, design)
     for capability in registry.in_order(recipe.uses):
         plots += capability.plots(recipe, design)
@@ -160,12 +160,12 @@ def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
     return tuple(Ring(outline.points, outline.bulges) for outline in cut)
 
 
-def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
+def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
     """Return each disc with its hub and mark, the lowest first; discs above it are drawn translucent."""
     several = len(design.discs) > 1
     return [
         cam(
-            [(name, rings[rank]) for name, rings in drawn],
+            [(name, rings[rank]) for name, rings in drawings],
             bore,
             size,
             turned,
@@ -177,9 +177,9 @@ def _discs(design: Design, drawn: list[Drawn], bore: float | None, size: float, 
     ]
 
 
-def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
+def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
-    _, rings_of_discs = drawn[0]
+    _, rings_of_discs = drawings[0]
     reach = max(float(np.hypot(*rings[0].flattened().T).max()) for rings in rings_of_discs)
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contours else "The cam is not made: a check of the exact contour fails."
@@ -193,7 +193,7 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
         from camgeo.report.page.linked import Driven, linkage_bodies, path_bodies
 
         driven = Driven.of(design.driven.mechanism)
-        discs = _discs(design, drawn, bore, size, driven.cam)
+        discs = _discs(design, drawings, bore, size, driven.cam)
         bodies = linkage_bodies(driven, size)
         if recipe.linkage is not None:
             bodies += path_bodies(driven, recipe.linkage.traces, recipe.mm, size)
@@ -211,7 +211,7 @@ def _mechanism(recipe: Recipe, design: Design, drawn: list[Drawn]) -> tuple[Scen
     view = view_of(recipe, design)
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
-    discs = _discs(design, drawn, bore, size, -SHAFT)
+    discs = _discs(design, drawings, bore, size, -SHAFT)
     stage = Stage(view, -SHAFT, SHAFT, reach, size)
     bodies = _under_contacts(overlay_bodies(recipe.export.overlays, stage), bodies)
     return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT

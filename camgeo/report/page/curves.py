@@ -107,10 +107,10 @@ def _same_curves(plot: Plot, other: Plot) -> bool:
     return len(plot.series) == len(other.series) and all(equal(a.values, b.values) for a, b in pairs)
 
 
-def equal(values: Array, others: Array) -> bool:
+def equal(values: Array, other_values: Array) -> bool:
     """Whether two curves differ by less than a picture shows, `SAME` of their range."""
     span = float(np.ptp(values[np.isfinite(values)])) if np.isfinite(values).any() else 0.0
-    return bool(np.allclose(values, others, rtol=1e-12, atol=SAME * span, equal_nan=True))
+    return bool(np.allclose(values, other_values, rtol=1e-12, atol=SAME * span, equal_nan=True))
 
 
 def join_titles(titles: Sequence[str]) -> str:
