@@ -50,21 +50,10 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
 
     `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
     """
-    columns = np.concatenate([np.column_stack([one.columns("gxy"), np.ones(len(one.e))]) for one in deviations])
-    e = np.concatenate([one.e for one in deviations])
-    spans = sum(curve.spans for curve in curves)
     names = ["turned", "shifted along x", "shifted along y", "size"]
-    size = np.sqrt(np.mean(columns**2, axis=0))
-    told = [0, 1, 2, 3] if size[0] > 1e-6 else [1, 2, 3]
-    while conditions(columns[:, told] / size[told]).min() < ILL and 0 in told:
-        told.remove(0)  # nearly round: a turn is a shift
-    chosen = columns[:, told]
-    x = least_squares(chosen, e)
-    left = e - chosen @ x
+    told, chosen, x, covariance, left = _explained(deviations, curves)
     if 0 in told:
         x[told.index(0)] += turned
-    variance = float(left @ left) / max(spans - len(told), 1)  # of a mean over a span, times the points in it
-    covariance = variance * np.linalg.inv(chosen.T @ chosen)
     sds = np.sqrt(np.diag(covariance))
     found = []
     for group in _together(covariance / np.outer(sds, sds)):
@@ -82,6 +71,38 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
         found += _regular_and_local(one, curve, rest)
     certain = [cause for cause in found if abs(cause.value) > cause.uncertainty]
     return sorted(certain, key=lambda cause: -cause.effect)
+
+
+def shift_of(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> tuple[Array, Array]:
+    """Shift (2,) of one part's metal, mm, beside a turn and a size, and its covariance (2, 2), mm^2."""
+    told, _, x, covariance, _ = _explained(deviations, curves)
+    first = told.index(1)
+    return x[first : first + 2], covariance[first : first + 2, first : first + 2]
+
+
+class _Explained(NamedTuple):
+    """Which of turn, shifts and size are told apart, their columns (n, k), values, covariance, and what they leave."""
+
+    told: list[int]
+    columns: Array
+    x: Array
+    covariance: Array
+    left: Array
+
+
+def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _Explained:
+    columns = np.concatenate([np.column_stack([one.columns("gxy"), np.ones(len(one.e))]) for one in deviations])
+    e = np.concatenate([one.e for one in deviations])
+    spans = sum(curve.spans for curve in curves)
+    size = np.sqrt(np.mean(columns**2, axis=0))
+    told = [0, 1, 2, 3] if size[0] > 1e-6 else [1, 2, 3]
+    while conditions(columns[:, told] / size[told]).min() < ILL and 0 in told:
+        told.remove(0)  # nearly round: a turn is a shift
+    chosen = columns[:, told]
+    x = least_squares(chosen, e)
+    left = e - chosen @ x
+    variance = float(left @ left) / max(spans - len(told), 1)  # of a mean over a span, times the points in it
+    return _Explained(told, chosen, x, variance * np.linalg.inv(chosen.T @ chosen), left)
 
 
 def _together(correlation: Array) -> list[list[int]]:

@@ -42,6 +42,7 @@ MANY = 2000  # points that do to tell what they look like
 LIKE = 1.5  # ratio of mean radii within which points may be of this cam
 SHIFT = 0.25  # of the mean radius: a shift above is none
 MIRRORED = 3.0  # times nearer than any other placing points are to be, to look mirrored
+OF_SHAFT = "measure them about the axis of the bearings, or `--align best-fit` with lobes at three heights"
 FACTORS = {25.4: "inch", 1.0 / 25.4: "mm", 10.0: "cm", 1000.0: "m"}  # of points read in mm or inches by mistake
 
 
@@ -302,7 +303,7 @@ def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, b
     x, y = placing.shift
     if math.hypot(x, y) > 1e-3 * size:
         words.append(f"shifted by ({x:.3g}, {y:.3g}) mm")
-        remedies.append("`--align best-fit`" if shiftable else "measure them about the axis of the bearings")
+        remedies.append("`--align best-fit`" if shiftable else OF_SHAFT)
     elif abs(turn) > 0.05 and not aligned:
         remedies.append("`--align rotation`")
     return f"they look {', '.join(words)}: {', then '.join(remedies)}"

@@ -17,14 +17,18 @@ from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
 from camgeo.capabilities.made.reading import label_of, places_of, sorted_out, tables_of
 from camgeo.capabilities.made.refusal import as_call_errors
+from camgeo.capabilities.made.shaft_axis import leaning_of
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import intents
 from kin.contour.arcs import turned
+from kin.made.axis import LEAST_CAMS
+from kin.made.causes import shift_of
 from kin.made.motion import Influence
-from kin.made.points import FACTORS, UnlikePointsError, turned_at
+from kin.made.points import FACTORS, Placing, UnlikePointsError, turned_at
 from kin.made.shaft_alike import LOOKS, OF_LIFTS, OF_POINTS, Rows, lone_turns, radii, standing_together
+from kin.made.smooth import fit
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 from kin.read.points import CRANK, LEAST_POINTS
@@ -35,9 +39,13 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.made.judge import PartMade
     from camgeo.capabilities.made.reading import Call, Probing
+    from camgeo.capabilities.made.shaft_axis import Leaning
     from camgeo.registry.capability import ShaftCam
+    from kin.made.axis import Axis
     from kin.made.lifts import Readings
     from kin.made.motion import Errors
+    from kin.made.points import SurfacePoints
+    from kin.made.smooth import Smooth
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
@@ -45,6 +53,7 @@ MOST_NAMES = 8  # named in a message
 SHIFTED = "shifted along the shaft: count z from the recipe's zero, {0:+.6g} {1}"
 TURNED_OVER = "measured from the other end: z is {0:.6g} {1} less the column, and y turned round"
 TWO = 2
+ROUNDS = 3  # of taking out the lean and finding it anew: each leaves the square of a share
 CERTAIN = 4.0  # times the uncertainty
 WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of what is written
 
@@ -65,6 +74,23 @@ class CamPoints:
     def tables(self) -> tuple[PointTable, ...]:
         """Their rows."""
         return tuple(table for _, table in self.files)
+
+    def heights(self, scale: float) -> Array:
+        """Height of each point (n,), mm: the middle of the cam where no column has it."""
+        middle = 0.5 * (self.cam.low + self.cam.high)
+        tables = (table.columns.get("z", np.full(len(table), middle / scale)) for table in self.tables)
+        return scale * np.concatenate(list(tables))
+
+    def moved(self, axis: Axis, scale: float) -> CamPoints:
+        """The points, turned back by the cam's angle, without the shift of an axis in the shaft's axes."""
+        sign, files, first = np.array([1.0, -1.0 if self.cam.recipe.rotation == "ccw" else 1.0]), [], 0
+        shifts = turned(axis.shifts(self.heights(scale)), np.array(-self.cam.at)) * sign / scale
+        for path, table in self.files:
+            x, y = shifts[first : first + len(table)].T
+            first += len(table)
+            columns = {**table.columns, "x": table.columns["x"] - x, "y": table.columns["y"] - y}
+            files.append((path, replace(table, columns=columns)))
+        return replace(self, files=tuple(files))
 
     def halved(self) -> CamPoints:
         """The lifts with angles half as great."""
@@ -108,21 +134,20 @@ class ShaftMade:
     cams     those that were measured, in the order of the recipe
     missing  names of those that were not
     late     turn of the shaft as one that was taken out, rad; None where none was to be
+    leaning  its axis as the points have it; None of lifts, and of cams at fewer than three heights
     remarks  sentences
     """
 
     cams: tuple[CamMade, ...]
     missing: tuple[str, ...]
     late: float | None
+    leaning: Leaning | None
     remarks: tuple[str, ...]
 
 
 def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> ShaftMade:
     """All that points tell of the cams of a shaft; raises CallError for what is not judged."""
-    if call.probing.align not in {"", "g"}:
-        problem = "a shaft is judged about the axis of its bearings, which is not shifted"
-        raise CallError(f"--align: {problem}: give --align rotation, or none")
-    tables = tables_of(paths)
+    tables, removing = tables_of(paths), call.probing.align == "gxy"
     if len({table.measured for table in tables}) > 1:
         raise CallError("some files have lifts and others places: give them in calls of their own")
     scale, _ = scale_of(cams[0].recipe, tables, call.probing.units)
@@ -136,29 +161,38 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> S
         probing = call.probing
         return _lift_rows(measured, scale, probing) if lifts else _radii(cams, measured, scale, probing)
 
-    late = None
+    late, together = None, []
     if call.probing.align:
         with as_call_errors(paths):
-            together = standing_together(rows())
-            late = _shaft_turn([measured[rank] for rank in np.flatnonzero(together).tolist()], scale, call)
+            together = np.flatnonzero(standing_together(rows())).tolist()
+            late = _shaft_turn([measured[rank] for rank in together], scale, call)
         measured = [points.turned(-late) for points in measured]
     with as_call_errors(paths):
         turns = lone_turns(rows(), aligned=late is not None)
-    alone = {measured[rank].cam.name: turn for rank, turn in turns.items()}
+    alone = [turns.get(rank, 0.0) for rank in range(len(measured))]
+    leaning = None
+    if removing and late is not None:
+        measured, leaning = _without_lean(measured, alone, scale, call.probing)
+        with as_call_errors(paths):
+            left = _shaft_turn([measured[rank] for rank in together], scale, call)  # a shift looks like some turn
+        measured, late = [points.turned(-left) for points in measured], late + left
     results = [
-        _judge_cam(
-            points, replace(call, probing=replace(call.probing, align="", alone=alone.get(points.cam.name, 0.0)))
-        )
-        for points in measured
+        _judge_cam(points, replace(call, probing=replace(call.probing, align="", alone=turn)))
+        for points, turn in zip(measured, alone, strict=True)
     ]
+    if not lifts and not removing:
+        shifts = [_shift(result.surfaces[0].on.points, result.surfaces[0].fit.curve) for result in results]
+        leaning = _leaning(measured, alone, shifts, scale)
     phases = _phases(measured, [result.motion for result in results], call)
     names = {points.cam.name for points in measured}
     return ShaftMade(
         tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True)),
         tuple(cam.name for cam in cams if cam.name not in names),
         late,
+        leaning,
         (
             *([halved] if halved else []),
+            *([] if leaning is None else leaning.remarks()),
             *_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names]),
             *_lone_remarks(measured, phases),
         ),
@@ -380,6 +414,58 @@ def _at_cam_degrees(measured: Sequence[CamPoints], scale: float, probing: Probin
 def _ranks(cams: Sequence[ShaftCam], measured: Sequence[CamPoints]) -> Indices:
     names = [cam.name for cam in cams]
     return np.array([names.index(points.cam.name) for points in measured], dtype=np.intp)
+
+
+# --- the axis ---------------------------------------------------------------------------------------------------------
+
+
+def _without_lean(
+    measured: Sequence[CamPoints], alone: Sequence[float], scale: float, probing: Probing
+) -> tuple[list[CamPoints], Leaning]:
+    """Points with the lean and the shift of the shaft's axis taken out, and that axis.
+
+    Raises CallError for lifts, and for cams at fewer than three heights.
+    """
+    if measured[0].tables[0].measured == "lift":
+        raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
+    moved, total = list(measured), None
+    for _ in range(ROUNDS):
+        shifts = []
+        for points, turn in zip(moved, alone, strict=True):
+            with as_call_errors(points.paths, points.cam.name):
+                (part,) = intents(points.cam.recipe, points.cam.design)
+                pieces = [(i, table, scale) for i, table in enumerate(points.tables)]
+                (on,) = sorted_out(part, pieces, probing)
+                placed = on.points.placed(Placing(turn))
+                shifts.append(_shift(placed, fit(placed.deviations.parameter, placed.deviations.e).curve))
+        leaning = _leaning(moved, alone, shifts, scale, removed=True)
+        if leaning is None:
+            problem = f"lean and shift of a shaft are told by lobes at {LEAST_CAMS} heights or more"
+            raise CallError(f"--align: {problem}: give --align rotation, or none")
+        total = leaning if total is None else total.after(leaning)
+        moved = [points.moved(leaning.axis, scale) for points in moved]
+    assert total is not None
+    return moved, total
+
+
+def _shift(points: SurfacePoints, curve: Smooth) -> tuple[Array, Array]:
+    return shift_of([points.deviations], [curve])
+
+
+def _leaning(
+    measured: Sequence[CamPoints],
+    alone: Sequence[float],
+    shifts: Sequence[tuple[Array, Array]],
+    scale: float,
+    *,
+    removed: bool = False,
+) -> Leaning | None:
+    """The axis of the shaft by the shift of each cam, which is told in its own axes."""
+    rows = [
+        (float(points.heights(scale).mean()), points.cam.at + turn, shift)
+        for points, turn, shift in zip(measured, alone, shifts, strict=True)
+    ]
+    return leaning_of([points.cam.name for points in measured], rows, removed=removed)
 
 
 # --- phases -----------------------------------------------------------------------------------------------------------

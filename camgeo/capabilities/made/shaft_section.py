@@ -36,6 +36,8 @@ def shaft_section(
     }
     if result.late is not None:
         entry["turned_late_deg"] = math.degrees(result.late)
+    if result.leaning is not None:
+        entry["axis"] = result.leaning.section(recipe)
     entry["remarks"] = list(result.remarks)
     return entry
 

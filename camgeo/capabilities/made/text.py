@@ -121,7 +121,7 @@ def _against(own: dict[str, Any], unit: str) -> str:
 
 def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
     """Give what was found of each lobe, row by row; with everything all that a cam alone has."""
-    rows = []
+    rows = _axis(section["axis"]) if "axis" in section else []
     for lobe in section["lobes"]:
         (disc,), motion, phase = lobe["discs"], lobe["motion"], lobe["phase"]
         error = motion["error"]
@@ -134,6 +134,27 @@ def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             rows[-1] = rows[-1][0], f"{rows[-1][1]}; against {section['datum']} {against}"
         own = table_rows(lobe, everything=everything)
         rows += [(f"  {label}", value) for label, value in own if everything or "cause: " in label or "above " in label]
+    return rows
+
+
+def _axis(axis: dict[str, Any]) -> list[tuple[str, str]]:
+    """How far the shaft's axis leans and is shifted, and cams that are certainly off it by themselves."""
+    x, y = axis["shifted"]
+    unit = axis["unit"]
+    leans = (
+        f"leans by {axis['leans_deg']:.3g} +- {axis['uncertainty_deg']:.2g} degrees towards {axis['towards_deg']:.0f}"
+    )
+    shifted = f"shifted by ({x:+.3g}, {y:+.3g}) +- {axis['shift_uncertainty']:.2g} {unit} at z {axis['z']:.6g}"
+    rows = [("axis of the shaft", f"{leans}; {shifted}")]
+    for cam in axis["eccentricity"]:
+        if cam["value"] > cam["uncertainty"]:
+            value = f"{cam['value']:.3g} +- {cam['uncertainty']:.2g} {unit}"
+            rows.append(
+                (
+                    f"  {cam['name']}, eccentric",
+                    f"{value} about it, by ({cam['shifted'][0]:+.3g}, {cam['shifted'][1]:+.3g})",
+                )
+            )
     return rows
 
 

@@ -1,0 +1,95 @@
+"""The axis about which the cams of a measured shaft stand: its lean, its shift, and each cam's own eccentricity."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from camgeo.measures.units import UNIT_NAMES
+from kin.contour.arcs import turned
+from kin.made.axis import CamShift, axis_of
+from kin.made.motion import COVERAGE
+from kin.made.smooth import TRIFLE
+from kin.numeric.angles import degrees
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.recipe import Order
+    from kin.made.axis import Axis
+    from kin.numeric.arrays import Array
+
+CERTAIN = 2.0  # times its expanded uncertainty: from which on a lean is remarked
+
+
+class Leaning(NamedTuple):
+    """The axis of a shaft as its points have it, in the shaft's axes as if not mirrored.
+
+    `names` are those of the cams, `removed` says that lean and shift were taken out of the points.
+    """
+
+    axis: Axis
+    names: Sequence[str]
+    removed: bool
+
+    def after(self, later: Leaning) -> Leaning:
+        """Add what a later round found besides."""
+        axis = replace(later.axis, shift=self.axis.shift + later.axis.shift, lean=self.axis.lean + later.axis.lean)
+        return self._replace(axis=axis)
+
+    def section(self, recipe: Order) -> dict[str, Any]:
+        """Section `axis`: as drawn, lengths in the recipe's unit, angles in degrees."""
+        axis, mm, drawn = self.axis, recipe.mm, np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
+        x, y = (drawn * axis.lean).tolist()
+        return {
+            "unit": UNIT_NAMES[recipe.units],
+            "z": axis.middle / mm,
+            "shifted": (drawn * axis.shift / mm).tolist(),
+            "shift_uncertainty": COVERAGE * float(np.sqrt(np.linalg.eigvalsh(axis.covariance[:2, :2])[-1])) / mm,
+            "leans_deg": math.degrees(math.hypot(x, y)),
+            "uncertainty_deg": math.degrees(COVERAGE * axis.lean_deviation),
+            "towards_deg": degrees(math.atan2(y, x)),
+            "over": axis.length / mm,
+            "removed": self.removed,
+            "eccentricity": [
+                {
+                    "name": name,
+                    "shifted": (drawn * own / mm).tolist(),
+                    "value": float(np.hypot(*own)) / mm,
+                    "uncertainty": COVERAGE * float(sd) / mm,
+                }
+                for name, own, sd in zip(self.names, axis.own, axis.own_deviations.tolist(), strict=True)
+            ],
+        }
+
+    def remarks(self) -> list[str]:
+        """Say that the axis leans, where that is certain, and what is done about it; cams that stand off it."""
+        axis = self.axis
+        lean, unsure = float(np.hypot(*axis.lean)), COVERAGE * axis.lean_deviation
+        told = f"{math.degrees(lean):.3g} +- {math.degrees(unsure):.2g} degrees"
+        if self.removed:
+            return [
+                f"a lean of {told} and a shift of the axis were taken out by --align best-fit: motions show neither"
+            ]
+        if lean <= CERTAIN * unsure:
+            return []
+        over = f"{1e3 * lean * axis.length:.3g} micrometres over {axis.length:.4g} mm"
+        return [f"the axis of the shaft leans by {told}, {over}, against that of z: `--align best-fit` takes it out"]
+
+
+def leaning_of(
+    names: Sequence[str], cams: Sequence[tuple[float, float, tuple[Array, Array]]], *, removed: bool = False
+) -> Leaning | None:
+    """The axis by each cam's height, mm, angle by which its shift was turned back, rad, and that with its covariance.
+
+    None where cams stand at fewer than three heights.
+    """
+    shifts = []
+    for height, angle, (shift, covariance) in cams:
+        back = np.array([turned(column, np.array(angle)) for column in np.eye(2)]).T
+        shifts.append(CamShift(height, back @ shift, back @ (covariance + TRIFLE**2 * np.eye(2)) @ back.T))
+    axis = axis_of(shifts)
+    return None if axis is None else Leaning(axis, names, removed)

@@ -1,0 +1,113 @@
+"""The axis about which a shaft's cams stand, against that of their points: how far it leans, and what is a cam's own.
+
+A cam at a height z is shifted by a + b z where the axis is shifted and leans, and by its own eccentricity besides. The
+line is that of least squares over the shifts, each weighed by its covariance; a cam that stands off the line of the
+others by far more than is uncertain is left out of it, so that its eccentricity does not pass for a lean. What is left
+of the others widens the line's covariance where it is more than theirs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.numeric.arrays import Array, Mask
+
+LEAST_CAMS = 3  # at different heights: two have a line through them whatever they are
+APART = 0.01  # mm: heights that are closer are one
+STANDS_OFF = 4.0  # standard deviations
+UNKNOWNS = 4
+
+
+class CamShift(NamedTuple):
+    """Shift (2,) of a cam across the shaft at a height, mm, and its covariance (2, 2), mm^2."""
+
+    height: float
+    shift: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """The line that most cams stand about.
+
+    middle                 height, mm, at which the shift is told
+    shift, lean (2,)       mm, and mm by mm of height
+    covariance (4, 4)      of both
+    own (m, 2)             eccentricity of each cam about the line, mm
+    own_deviations (m,)    its standard deviation, in the direction in which it is the greatest, mm
+    length                 heights over which the cams lie, mm
+    """
+
+    middle: float
+    shift: Array
+    lean: Array
+    covariance: Array
+    own: Array
+    own_deviations: Array
+    length: float
+
+    @property
+    def lean_deviation(self) -> float:
+        """Standard deviation of the lean in its own direction, mm by mm."""
+        size = float(np.hypot(*self.lean))
+        direction = self.lean / size if size else np.array([1.0, 0.0])
+        return float(np.sqrt(direction @ self.covariance[2:, 2:] @ direction))
+
+    def shifts(self, height: Array) -> Array:
+        """Shift of the axis (n, 2) at heights (n,), mm."""
+        shifts: Array = self.shift + (height - self.middle)[:, None] * self.lean
+        return shifts
+
+
+def heights_of(cams: Sequence[CamShift]) -> int:
+    """Number of different heights at which cams stand."""
+    return len({round(cam.height / APART) for cam in cams})
+
+
+def axis_of(cams: Sequence[CamShift]) -> Axis | None:
+    """The axis of cams; None where they stand at fewer than LEAST_CAMS heights."""
+    if heights_of(cams) < LEAST_CAMS:
+        return None
+    height = np.array([cam.height for cam in cams])
+    middle = float(0.5 * (height.min() + height.max()))
+    rows = [np.hstack([np.eye(2), (z - middle) * np.eye(2)]) for z in height.tolist()]
+    chosen = np.ones(len(cams), dtype=bool)
+    while True:
+        line, covariance = _line(cams, rows, chosen)
+        own = np.stack([cam.shift - row @ line for cam, row in zip(cams, rows, strict=True)])
+        off = np.zeros(len(cams))
+        for k in np.flatnonzero(chosen).tolist():
+            without = chosen.copy()
+            without[k] = False
+            if heights_of([cam for cam, kept in zip(cams, without.tolist(), strict=True) if kept]) >= LEAST_CAMS:
+                others, of_others = _line(cams, rows, without)
+                apart = cams[k].shift - rows[k] @ others
+                spread = cams[k].covariance + rows[k] @ of_others @ rows[k].T
+                off[k] = float(np.sqrt(apart @ np.linalg.solve(spread, apart)))
+        if off.max() <= STANDS_OFF:
+            break
+        chosen[int(np.argmax(off))] = False
+    deviations = [_greatest(cam.covariance + row @ covariance @ row.T) for cam, row in zip(cams, rows, strict=True)]
+    return Axis(middle, line[:2], line[2:], covariance, own, np.array(deviations), float(height.max() - height.min()))
+
+
+def _line(cams: Sequence[CamShift], rows: Sequence[Array], chosen: Mask) -> tuple[Array, Array]:
+    """Shift and lean (4,) of the line through chosen cams, and their covariance (4, 4), widened by what is left."""
+    kept = np.flatnonzero(chosen).tolist()
+    weights = {k: np.linalg.inv(cams[k].covariance) for k in kept}
+    inverse = np.linalg.inv(np.sum([rows[k].T @ weights[k] @ rows[k] for k in kept], axis=0))
+    line = inverse @ np.sum([rows[k].T @ weights[k] @ cams[k].shift for k in kept], axis=0)
+    left = [(cams[k].shift - rows[k] @ line, weights[k]) for k in kept]
+    square = sum(float(rest @ weight @ rest) for rest, weight in left)
+    return line, max(square / max(2 * len(kept) - UNKNOWNS, 1), 1.0) * inverse
+
+
+def _greatest(covariance: Array) -> float:
+    return float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
