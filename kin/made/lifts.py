@@ -19,7 +19,7 @@ from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.made.metal import Metal
 from kin.made.motion import RAISED
-from kin.made.points import MIRRORED, UNLIKE, SurfacePoints, UnlikePointsError
+from kin.made.points import FACTORS, MIRRORED, UNLIKE, SurfacePoints, UnlikePointsError
 from kin.made.shaft_alike import LOOKS, NEAR, SMALL, row
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 
 COARSE_TURNS = 720  # angles at which the zero of the shaft angle is looked for
+GAINS = 7200  # angles between which gains are interpolated
 FEW = 2000  # readings that do for that
 STEPS = 12
 STILL = 1e-12  # rad
@@ -119,12 +120,14 @@ def points_of_lifts(readings: Readings, *, aligned: bool = False, alone: bool = 
     what they look like; those of a cam that is known to be turned `alone` may be so however it is turned.
     """
     follower, side, shaft, lift, touch, _ = readings
-    late = lateness([readings])
+    late = lateness([readings if aligned else readings.few()])  # else it is put back, so that near it will do
     _demand_alike(readings, late if aligned or alone else 0.0, aligned=aligned)
     exact = readings.exact
     expected, places = exact(shaft - late)
     zero = float((lift - expected).mean())
-    gain = (exact(shaft - late, RAISED)[0] - exact(shaft - late, -RAISED)[0]) / (2.0 * RAISED)
+    every = equal_steps(GAINS)
+    gains = (exact(every, RAISED)[0] - exact(every, -RAISED)[0]) / (2.0 * RAISED)
+    gain = np.interp(np.mod(shaft - late, TURN), every, gains, period=TURN)
     frame = follower.envelope.frames(places)
     if touch is not None:
         _demand_on_face(probe_of(follower, side, touch), frame.points, shaft - late)
@@ -162,22 +165,27 @@ def lateness(readings: Sequence[Readings]) -> float:
         )
 
     late = min(every.tolist(), key=scatter)
-    return math.remainder(
-        _least_squares_lateness(readings, _least_squares_lateness(few, late, variances), variances), TURN
-    )
+    slopes = [(np.roll(table, -1) - np.roll(table, 1)) * (0.5 * COARSE_TURNS / TURN) for table in tables]
+    for some in (few, readings):
+        late = _least_squares_lateness(some, late, variances, slopes)
+    return math.remainder(late, TURN)
 
 
-def _least_squares_lateness(readings: Sequence[Readings], late: float, variances: Sequence[float]) -> float:
-    """The lateness of least squares near one, rad: Gauss and Newton. Each cam counts by its share of its variance."""
-    h = TURN / COARSE_TURNS / 8.0
+def _least_squares_lateness(
+    readings: Sequence[Readings], late: float, variances: Sequence[float], slopes: Sequence[Array]
+) -> float:
+    """The lateness of least squares near one, rad: Gauss and Newton. Each cam counts by its share of its variance.
+
+    `slopes` are those of its lift over equal steps: steps need no more of them.
+    """
+    every = equal_steps(COARSE_TURNS)
     for _ in range(STEPS):
         square, product = 0.0, 0.0
-        for one, variance in zip(readings, variances, strict=True):
-            before, here, after = (one.exact(one.shaft - late + d)[0] for d in (-h, 0.0, h))
-            slope = (after - before) / (2.0 * h)
+        for one, variance, table in zip(readings, variances, slopes, strict=True):
+            slope = np.interp(np.mod(one.shaft - late, TURN), every, table, period=TURN)
             slope -= slope.mean()
             square += float(slope @ slope) / variance
-            product -= float(slope @ (one.lift - here)) / variance
+            product -= float(slope @ (one.lift - one.exact(one.shaft - late)[0])) / variance
         step = product / square if square > 0.0 else 0.0
         late += step
         if abs(step) < STILL:
@@ -201,8 +209,8 @@ def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
     """What the angles of several cams have to be multiplied by to be those of their cams; None where by nothing."""
     few = [one.few() for one in readings]
     longest = max(few, key=lambda one: float(np.ptp(one.shaft)))
-    for other in _factors(longest)[1:]:
-        if _fit(few, other.factor) and not _fit(few, 1.0):
+    for other in _factors(longest):
+        if other.factor in {CRANK, 1.0 / CRANK} and _fit(few, other.factor) and not _fit(few, 1.0):
             return other
     return None
 
@@ -229,6 +237,10 @@ def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
     high = float(np.ptp(few.lift)) / stroke
     if few.follower.unit == "deg" and NEAR > math.degrees(high) > 1.0 / NEAR:
         raise UnlikePointsError(f"{problem}: they look like radians read as degrees: head their column lift_rad")
+    factor = next((value for value in FACTORS if 1.0 / NEAR < value * high < NEAR), None)
+    if factor is not None and few.follower.unit == "mm":
+        large, word = max(factor, 1.0 / factor), "small" if factor > 1.0 else "large"
+        raise UnlikePointsError(f"{problem}: they look {large:.6g} times too {word}: `--units {FACTORS[factor]}`")
     if not 0.8 < high < 1.25:
         raise UnlikePointsError(
             f"{problem}: their stroke is {high:.4g} times that of the cam: look at their unit, `--units`"
@@ -239,11 +251,12 @@ def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
 
 
 class _Factor(NamedTuple):
-    """What angles may have to be multiplied by, what they then look, and remedies."""
+    """What angles, and lifts, may have to be multiplied by, what they then look, and remedies."""
 
     factor: float
     words: list[str]
     remedies: list[str]
+    lift: float = 1.0
 
 
 class _Look(NamedTuple):
@@ -255,9 +268,11 @@ class _Look(NamedTuple):
 
 
 def _factors(readings: Readings) -> list[_Factor]:
-    """By what angles may have to be multiplied: by nothing, and where they span as much for that of another shaft."""
+    """What may have happened to angles and lifts; nothing is the first, those of another shaft are the last."""
     span = float(np.ptp(readings.shaft))
-    factors = [_Factor(1.0, [], [])]
+    factors = [_Factor(1.0, [], []), _Factor(1.0, ["to fall as the follower rises"], ["turn their sign round"], -1.0)]
+    if abs(math.degrees(span) / TURN - 1.0) < 1.0 - BETWEEN:
+        factors.append(_Factor(math.degrees(1.0), ["to have angles in radians"], ["head their column angle_rad"]))
     if readings.halved and span < BETWEEN * TURN:
         factors.append(_Factor(CRANK, ["to be at the camshaft's own angles"], ["head their column cam_deg"]))
     elif not readings.halved and span > TURN / BETWEEN:
@@ -268,7 +283,7 @@ def _factors(readings: Readings) -> list[_Factor]:
 def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Iterator[_Look]:
     """Readings with their angles multiplied and turned in either sense."""
     for sense in (1.0, -1.0):
-        seen = readings._replace(shaft=sense * other.factor * readings.shaft)
+        seen = readings._replace(shaft=sense * other.factor * readings.shaft, lift=other.lift * readings.lift)
         late = lateness([seen])
         words, remedies = [*other.words], [*other.remedies]
         if sense < 0.0:
@@ -277,6 +292,6 @@ def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Itera
         if abs(late) > SMALL:
             words.append(f"turned by {math.degrees(late):.3g} degrees")
             remedies += [] if aligned else ["`--align rotation`"]
-        left = float(np.std(seen.off(late))) * (MIRRORED if sense < 0.0 else 1.0)
-        alone = sense > 0.0 and other.factor == 1.0
+        left = float(np.std(seen.off(late))) * (MIRRORED if min(sense, other.lift) < 0.0 else 1.0)
+        alone = sense > 0.0 and not other.words
         yield _Look(left, f"{', '.join(words)}: {', then '.join(remedies)}", turned_alone=alone)

@@ -209,7 +209,7 @@ def _without_heading(rows: Rows, path: Path) -> PointTable:
 
 
 def _with_heading(rows: Rows, path: Path) -> PointTable:
-    known = [_column(cell) for cell in rows.heading]
+    known = _columns(rows.heading, path)
     names = [name for name, _, _ in known]
     surfaces = list(dict.fromkeys(prefix for name, prefix, _ in known if name == "x" and prefix))
     first = surfaces[0] if surfaces and ("x", "") not in {(name, prefix) for name, prefix, _ in known} else ""
@@ -285,8 +285,28 @@ def _group(known: list[tuple[str, str, str]], prefix: str, wanted: Sequence[str]
     return group
 
 
-def _column(cell: str) -> tuple[str, str, str]:
-    """Name, surface and unit of a heading's cell: `inner_x_mm` is x of `inner` in mm; the name is empty if unknown."""
+def _columns(heading: Sequence[str], path: Path) -> list[tuple[str, str, str]]:
+    """Name, surface and unit of each cell of a heading; the name is empty if unknown.
+
+    Raises ReadError where only by their first words several columns are the same, as `X set` and `X found` are.
+    """
+    named, known = [_column(cell) for cell in heading], []
+    sure = {(name, prefix) for name, prefix, _, certain in named if certain}
+    first: dict[str, str] = {}
+    for (name, prefix, unit, certain), cell in zip(named, heading, strict=True):
+        kept = name if certain or (name, prefix) not in sure else ""
+        if kept and not certain and first.setdefault(kept, cell) is not cell:
+            both, remedy = short(f"{first[kept]} and {cell}"), f"head those that were measured {kept}"
+            raise ReadError("unsupported", f"its columns {both} may both be {kept}; {remedy}", path)
+        known.append((kept, prefix, unit))
+    return known
+
+
+def _column(cell: str) -> tuple[str, str, str, bool]:
+    """Name, surface and unit of a cell: `inner_x_mm` is x of `inner` in mm; and whether more than its first word says.
+
+    The name is empty if unknown.
+    """
     text = cell.strip().strip('"').strip().lower()
     heading = HEADING.match(text)
     name, unit = text, ""
@@ -296,10 +316,14 @@ def _column(cell: str) -> tuple[str, str, str]:
             name, unit = heading["name"].strip(), stated
     words = [word for word in re.split(r"[ _]+", name) if word]
     if not words or "cutter" in words:  # where a cutter stands is no metal
-        return "", "", unit
-    known = NAMES.get("".join(words)) or NAMES.get(words[-1]) or NAMES.get(words[0], "")
-    prefix = "_".join(words[:-1]) if known in {"x", "y", "nx", "ny", "nz", "z"} and len(words) > 1 else ""
-    return known, prefix, unit
+        return "", "", unit, True
+    known = NAMES.get("".join(words), "")
+    if known:
+        return known, "", unit, True
+    known = NAMES.get(words[-1], "")
+    if known:
+        return known, "_".join(words[:-1]) if known in {"x", "y", "nx", "ny", "nz", "z"} else "", unit, True
+    return NAMES.get(words[0], ""), "", unit, False
 
 
 def _demand_sound(table: PointTable, path: Path) -> PointTable:

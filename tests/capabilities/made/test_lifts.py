@@ -119,3 +119,37 @@ def test_lifts_of_another_cam(tmp_path):
     )
     with pytest.raises(CallError, match=r"however they are turned: they look like those of another cam"):
         camgeo.verify(recipe, file)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"lift": -1.0}, "to fall as the follower rises: turn their sign round"),
+        ({"angles": (math.pi / 180.0,)}, "to have angles in radians: head their column angle_rad"),
+        ({"lift": 1.0 / 25.4, "heading": "angle_deg,lift"}, "25.4 times too small: `--units inch`"),
+    ],
+)
+def test_what_lifts_look_like(change, told, tmp_path, capsys):
+    recipe, file = lifts(tmp_path, ROLLER, **change)
+    assert main(["verify", str(recipe), str(file)]) == 2
+    assert f"they look {told}\n" in capsys.readouterr().err
+
+
+def test_columns_by_their_first_words(tmp_path, capsys):
+    """`X pos` is x; of two that may be, the one whose name is known counts, and else none is guessed."""
+    recipe, file = tmp_path / "part.yaml", tmp_path / "points.csv"
+    recipe.write_text(ROLLER, "utf-8")
+    ((_, _, surface),) = surfaces(ROLLER)
+    places = surface.gauge.envelope.points(np.radians(np.arange(0.0, 360.0, 5.0)))
+    rows = [f"{x + 9:.7f},{y:.7f},{x:.7f},{y:.7f}" for x, y in places]
+    for heading, code in (
+        ("X nom [mm],Y nom [mm],X act [mm],Y act [mm]", 0),
+        ("X nom [mm],Y nom [mm],x_mm,y_mm", 0),
+        ("other,more,X pos [mm],Y pos [mm]", 0),
+        ("X set [mm],Y set [mm],X found [mm],Y found [mm]", 2),
+    ):
+        file.write_text("\n".join([heading, *rows]), "utf-8")
+        assert main(["verify", str(recipe), str(file)]) == code
+    assert (
+        "columns X set [mm] and X found [mm] may both be x; head those that were measured x" in capsys.readouterr().err
+    )
