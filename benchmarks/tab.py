@@ -37,7 +37,7 @@ MOVES = """(async () => {
   const slider = document.querySelector('#form [type=range]');
   const shown = () =>
     new Promise((done) => new MutationObserver(done).observe(document.body, { attributeFilter: ["data-shown"] }));
-  const judged = () => document.body.dataset.answered === String(asked);
+  const judged = () => document.body.dataset.answered === String(changeCount);
   const taken = [];
   for (let i = 1; i <= COUNT; i++) {
     const before = document.body.dataset.shown;

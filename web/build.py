@@ -179,10 +179,10 @@ def licences() -> str:
         (ROOT / "LICENSE").read_text("utf-8"),
     ]
     for name in ("numpy", "PyYAML", "ezdxf", "fonttools", "pyparsing", "typing_extensions"):
-        found = metadata.distribution(name)
-        kept = [path for path in found.files or () if path.name.upper().startswith(("LICENSE", "LICENCE", "COPYING"))]
-        words = "\n\n".join(path.read_text("utf-8") for path in kept) or found.metadata["License"]
-        texts.append(f"{name} {found.version}\n\n{words}")
+        package = metadata.distribution(name)
+        kept = [path for path in package.files or () if path.name.upper().startswith(("LICENSE", "LICENCE", "COPYING"))]
+        words = "\n\n".join(path.read_text("utf-8") for path in kept) or package.metadata["License"]
+        texts.append(f"{name} {package.version}\n\n{words}")
     return f"\n\n{'=' * 72}\n\n".join(texts)
 
 
@@ -202,12 +202,12 @@ def starters() -> list[dict[str, object]]:
     from camgeo.registry.root import CAM
 
     entries: list[dict[str, object]] = []
-    for name, one in STARTERS.items():
-        if one.root == CAM and one.kind:
+    for name, entry in STARTERS.items():
+        if entry.root == CAM and entry.kind:
             text = starter(name)
             design = camgeo.design(camgeo.load(text))
             picture = drawing(design.recipe, design.exact)
-            entries.append({"name": name, "title": one.title, "text": text, "tables": {}, "picture": picture})
+            entries.append({"name": name, "title": entry.title, "text": text, "tables": {}, "picture": picture})
     for path in sorted((ROOT / "recipes").glob("*.yaml")):
         recipe = camgeo.load(path)
         text = path.read_text("utf-8")
@@ -258,11 +258,11 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         shutil.copyfile(pyodide / "node_modules" / "pyodide" / name, target / "pyodide" / name)
     (target / "pyodide" / LIBRARY).write_bytes(repacked(pyodide / "node_modules" / "pyodide" / LIBRARY, 2))
     shown = starters()
-    for one in shown:
-        (target / "pictures" / f"{one['name']}{'-shipped' if 'shipped' in one else ''}.svg").write_text(
-            str(one.pop("picture")), "utf-8"
+    for entry in shown:
+        (target / "pictures" / f"{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg").write_text(
+            str(entry.pop("picture")), "utf-8"
         )
-    first = next(one for one in shown if one["name"] == FIRST)
+    first = next(entry for entry in shown if entry["name"] == FIRST)
     text = str(first["text"])
     judged = first_page(text)
     scene = dict(camgeo.design(camgeo.load(text)).scene())

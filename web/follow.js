@@ -55,7 +55,7 @@ byId("follow-form").addEventListener("submit", async (event) => {
   if (!answer.recipe) return;
   const button = element("button", { type: "button" }, "Make it the recipe");
   button.addEventListener("click", () => {
-    loaded({ name: answer.name, text: answer.recipe, tables: answer.tables });
+    beginRecipe({ name: answer.name, text: answer.recipe, tables: answer.tables });
     byId("main").scrollIntoView();
   });
   byId("files").append(element("li", {}, button));

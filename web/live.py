@@ -86,10 +86,10 @@ def _sentence(text: str) -> dict[str, Any]:
 
 
 def _fault(error: RecipeError) -> dict[str, Any]:
-    given = f", given {error.value}" if error.value is not None else ""
+    value = f", given {error.value}" if error.value is not None else ""
     remedy = f"; {error.remedy}" if error.remedy else ""
     place = f"{error.path}: " if error.path else ""
-    text = f"{place}{error.problem}{given}{remedy}".replace(f"{FOLDER}/", "")
+    text = f"{place}{error.problem}{value}{remedy}".replace(f"{FOLDER}/", "")
     return {"line": error.line, "column": error.column, "path": error.path, "text": text}
 
 
@@ -290,12 +290,12 @@ def more(name: str, text: str) -> dict[str, Any]:
 
 def _absent(reader: Reader, node: Mapping, table: Table, path: str = "") -> Iterator[dict[str, Any]]:
     """The fields that the mappings of a recipe could have besides, with what each is and what it is by default."""
-    given = entries(node)
-    chosen = [set(names) for name, names in table.alternatives if name in given]
+    present = entries(node)
+    chosen = [set(names) for name, names in table.alternatives if name in present]
     rivals = {name for name, names in table.alternatives for name in (name, *names)}
     for field in table.fields:
         below = join(path, field.name)
-        held = given.get(field.name)
+        held = present.get(field.name)
         if held is None and (field.name not in rivals or any(field.name in names for names in chosen)):
             yield {"path": below, "about": field.about, "default": field.default, "wanted": reader.wanted(field)}
         elif isinstance(held, Mapping):
@@ -360,10 +360,10 @@ def _brief(value: float) -> str:
 
 def _alike(first: Recipe, second: Recipe) -> bool:
     """Whether two recipes make the same cam, to a millionth of its size."""
-    one, other = camgeo.design(first), camgeo.design(second)
-    pairs = list(zip(_points(one), _points(other), strict=True))
+    cam, other = camgeo.design(first), camgeo.design(second)
+    pairs = list(zip(_points(cam), _points(other), strict=True))
     turn = np.linspace(0.0, 2.0 * np.pi, 720)
-    pairs.append((one.motion(turn), other.motion(turn)))
+    pairs.append((cam.motion(turn), other.motion(turn)))
     return all(bool(np.allclose(a, b, rtol=ALIKE, atol=ALIKE * float(np.abs(a).max() + 1.0))) for a, b in pairs)
 
 
@@ -473,8 +473,8 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     output |= {"name": stem, "recipe": recipe, "tables": {table: followed.lifts()}}
     if followed.at == (0.0, 0.0):
         report = judged_by_recipe(followed)
-        told = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
-        output |= {"page": report.page or "", "ok": report.ok, "verdict": told}
+        verdict = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
+        output |= {"page": report.page or "", "ok": report.ok, "verdict": verdict}
     return output
 
 

@@ -25,7 +25,7 @@ class Work {
 
   heard(data) {
     if (data.broken) {
-      told(`Python could not be loaded: ${data.broken}. Reload the page; it needs a server, and a browser of 2023 or later.`);
+      tell(`Python could not be loaded: ${data.broken}. Reload the page; it needs a server, and a browser of 2023 or later.`);
       byId("loading").hidden = true;
       return;
     }
@@ -46,7 +46,7 @@ class Work {
   // a promise of the answer; of a picture or a design that a newer one replaces it is null
   ask(call, input, files = {}) {
     return new Promise((done) => {
-      const older = this.waiting.findIndex((one) => OF_NEWEST.includes(one.call));
+      const older = this.waiting.findIndex((waiting) => OF_NEWEST.includes(waiting.call));
       if (OF_NEWEST.includes(call) && older >= 0) this.waiting.splice(older, 1)[0].done(null);
       this.waiting.push({ call, input, files, done });
       this.next();
@@ -65,7 +65,7 @@ class Work {
     const ended = [this.current, ...this.waiting].filter(Boolean);
     this.waiting = [];
     this.start();
-    for (const one of ended) one.done(null);
+    for (const request of ended) request.done(null);
   }
 }
 
@@ -80,19 +80,19 @@ const recipe = {
   done: [],
 };
 
-function kept() {
+function snapshot() {
   return { name: recipe.name, text: recipe.text, tables: recipe.tables };
 }
 
 // a step that can be undone; what belongs to one movement of a slider is one step
 let step = null;
-function noted(of) {
-  if (of === null || of !== step) {
-    recipe.done.push(kept());
+function noteStep(movement) {
+  if (movement === null || movement !== step) {
+    recipe.done.push(snapshot());
     if (recipe.done.length > 200) recipe.done.shift();
     recipe.undone = [];
   }
-  step = of;
+  step = movement;
   showSteps();
 }
 
@@ -103,7 +103,7 @@ function showSteps() {
 
 function back(from, to) {
   if (!from.length) return;
-  to.push(kept());
+  to.push(snapshot());
   step = null;
   put(from.pop());
 }
@@ -115,8 +115,8 @@ function put({ name, text, tables }) {
   changed();
 }
 
-function loaded(next) {
-  noted(null);
+function beginRecipe(next) {
+  noteStep(null);
   put({ tables: {}, ...next });
 }
 
@@ -125,7 +125,7 @@ function loaded(next) {
 const work = new Work();
 let endPlayer = null;
 let formOf = "";
-let asked = 0; // changes of the recipe; the last that was answered stands in the page
+let changeCount = 0; // changes of the recipe; the last that was answered stands in the page
 
 function encodedTables() {
   const encoder = new TextEncoder();
@@ -137,7 +137,7 @@ let judgedText = ""; // of the recipe that was made or judged last
 
 async function changed() {
   byId("since").textContent = recipe.text === judgedText ? "" : "The recipe has changed since.";
-  const turn = ++asked;
+  const turn = ++changeCount;
   await designed(recipe.name, recipe.text);
   tab.dataset.answered = String(turn);
 }
@@ -216,7 +216,7 @@ function element(name, properties = {}, ...children) {
   return made;
 }
 
-function told(text) {
+function tell(text) {
   byId("faults").replaceChildren(element("li", {}, element("b", {}, text)));
 }
 
@@ -282,8 +282,8 @@ function goTo(line, column) {
 
 let typed = 0;
 byId("text").addEventListener("input", () => {
-  noted("text");
-  asked += 1;
+  noteStep("text");
+  changeCount += 1;
   recipe.text = byId("text").value;
   recipe.fields = [];
   numberLines([]);
@@ -304,8 +304,8 @@ byId("text").addEventListener("keydown", (event) => {
 // --- the form -------------------------------------------------------------------------------------------------------
 
 // puts texts in the place of the values of fields, and moves the places behind them
-function edit(changes, of) {
-  noted(of);
+function edit(changes, movement) {
+  noteStep(movement);
   const ordered = [...changes].sort(([a], [b]) => b.start - a.start);
   for (const [field, text] of ordered) {
     recipe.text = recipe.text.slice(0, field.start) + text + recipe.text.slice(field.end);
@@ -426,8 +426,8 @@ function row(field, index) {
     const boxes = field.choices.map((word) => {
       const tick = element("input", { type: "checkbox", value: word });
       tick.addEventListener("change", () => {
-        const ticked = [...made.querySelectorAll("input")].filter((one) => one.checked).map((one) => one.value);
-        const kept = recipe.fields[index].words.filter((one) => ticked.includes(one));
+        const ticked = [...made.querySelectorAll("input")].filter((entry) => entry.checked).map((entry) => entry.value);
+        const kept = recipe.fields[index].words.filter((entry) => ticked.includes(entry));
         if (!ticked.length) tick.checked = true;
         else edit([[recipe.fields[index], `[${[...new Set([...kept, ...ticked])].join(", ")}]`]], null);
       });
@@ -495,14 +495,14 @@ function partner(field) {
   const place = /^(.*\bmotion)\[(\d+)\]\.(over|dwell|rise|return)$/.exec(field.path);
   if (!place) return null;
   const [, motion, index, key] = place;
-  const numbers = recipe.fields.filter((one) => one.kind === "number" && one.path.startsWith(`${motion}[`));
-  const count = 1 + Math.max(...numbers.map((one) => Number(/\[(\d+)\]/.exec(one.path.slice(motion.length))[1])));
-  const at = (i, keys) => numbers.find((one) => keys.some((word) => one.path === `${motion}[${(i + count) % count}].${word}`));
+  const numbers = recipe.fields.filter((entry) => entry.kind === "number" && entry.path.startsWith(`${motion}[`));
+  const count = 1 + Math.max(...numbers.map((entry) => Number(/\[(\d+)\]/.exec(entry.path.slice(motion.length))[1])));
+  const fieldAt = (i, keys) => numbers.find((entry) => keys.some((word) => entry.path === `${motion}[${(i + count) % count}].${word}`));
   const wanted = { over: ["over", "dwell"], dwell: ["over", "dwell"], rise: ["return"], return: ["rise"] }[key];
   const way = key === "return" ? -1 : 1;
   for (let i = 1; i < count; i++) {
-    const found = at(Number(index) + way * i, wanted);
-    if (found) return { field: found, value: found.value, opposite: key === "over" || key === "dwell" };
+    const other = fieldAt(Number(index) + way * i, wanted);
+    if (other) return { field: other, value: other.value, opposite: key === "over" || key === "dwell" };
   }
   return null;
 }
@@ -542,7 +542,7 @@ async function rewritten(call, input) {
   const answer = await work.ask(call, { name, text, ...input }, encodedTables());
   if (!answer || recipe.text !== text) return false;
   if (answer.faults) showFaults(answer.faults, answer.trace);
-  else loaded({ ...kept(), text: answer.text });
+  else beginRecipe({ ...snapshot(), text: answer.text });
   return !answer.faults;
 }
 
@@ -573,9 +573,9 @@ async function packedAddress() {
 }
 
 async function unpackedAddress(hash) {
-  const found = /^#r=([\w-]+)$/.exec(hash);
-  if (!found) return null;
-  const letters = atob(found[1].replace(/-/g, "+").replace(/_/g, "/"));
+  const packed = /^#r=([\w-]+)$/.exec(hash);
+  if (!packed) return null;
+  const letters = atob(packed[1].replace(/-/g, "+").replace(/_/g, "/"));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
   const [name, text, tables] = JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw"))));
   if (typeof name !== "string" || typeof text !== "string" || !tables || typeof tables !== "object") throw new TypeError("no recipe");
@@ -596,11 +596,11 @@ function remember() {
 async function arrived() {
   if (location.hash === own) return false;
   try {
-    const found = await unpackedAddress(location.hash);
-    if (found) loaded(found);
-    return Boolean(found);
+    const next = await unpackedAddress(location.hash);
+    if (next) beginRecipe(next);
+    return Boolean(next);
   } catch {
-    told("The address holds no whole recipe: it was cut short on its way.");
+    tell("The address holds no whole recipe: it was cut short on its way.");
     return false;
   }
 }
@@ -611,17 +611,17 @@ window.addEventListener("hashchange", arrived);
 async function listStarters() {
   const answer = await fetch(tab.dataset.starters);
   const starters = await answer.json();
-  for (const one of starters) {
-    const picture = element("img", { alt: "", loading: "lazy", src: `pictures/${one.name}${one.shipped ? "-shipped" : ""}.svg` });
-    const button = element("button", { type: "button" }, picture, element("b", {}, one.name), one.title);
+  for (const starter of starters) {
+    const picture = element("img", { alt: "", loading: "lazy", src: `pictures/${starter.name}${starter.shipped ? "-shipped" : ""}.svg` });
+    const button = element("button", { type: "button" }, picture, element("b", {}, starter.name), starter.title);
     button.addEventListener("click", () => {
       byId("begin").open = false;
-      loaded({ name: one.name, text: one.text, tables: one.tables });
+      beginRecipe({ name: starter.name, text: starter.text, tables: starter.tables });
       byId("desk-head").scrollIntoView({ block: "nearest" });
     });
     const item = element("li", {}, button);
-    item.dataset.words = `${one.name} ${one.title}`.toLowerCase();
-    byId(one.shipped ? "shipped" : "starters").append(item);
+    item.dataset.words = `${starter.name} ${starter.title}`.toLowerCase();
+    byId(starter.shipped ? "shipped" : "starters").append(item);
   }
 }
 byId("begin").addEventListener("toggle", () => !byId("starters").children.length && listStarters());
@@ -710,15 +710,15 @@ byId("stop").addEventListener("click", () => {
 let somebodys = null; // a drawing or a solid: its name and its bytes
 const MOST = 60e6; // bytes of a file; a browser's Python has 2 GB
 
-async function taken(list) {
+async function takeFiles(list) {
   for (const file of list) {
     const name = clean(file.name);
     const end = name.split(".").at(-1).toLowerCase();
-    if (file.size > MOST) told(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; this page takes up to ${MOST / 1e6} MB. camgeo on your machine takes more.`);
-    else if (["yaml", "yml"].includes(end)) loaded({ name: name.replace(/\.ya?ml$/i, ""), text: await file.text(), tables: recipe.tables });
+    if (file.size > MOST) tell(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; this page takes up to ${MOST / 1e6} MB. camgeo on your machine takes more.`);
+    else if (["yaml", "yml"].includes(end)) beginRecipe({ name: name.replace(/\.ya?ml$/i, ""), text: await file.text(), tables: recipe.tables });
     else if (end === "csv" || end === "txt") {
-      noted(null);
-      put({ ...kept(), tables: { ...recipe.tables, [name]: await file.text() } });
+      noteStep(null);
+      put({ ...snapshot(), tables: { ...recipe.tables, [name]: await file.text() } });
       byId("busy").textContent = `the recipe can name ${name} now`;
     } else {
       somebodys = { name, bytes: new Uint8Array(await file.arrayBuffer()) };
@@ -748,7 +748,7 @@ byId("verify").addEventListener("click", async () => {
 byId("judge-form").addEventListener("submit", (event) => event.preventDefault());
 for (const id of ["open", "choose"]) byId(id).addEventListener("click", () => byId("file").click());
 byId("file").addEventListener("change", async (event) => {
-  await taken(event.target.files);
+  await takeFiles(event.target.files);
   event.target.value = "";
 });
 for (const kind of ["dragover", "dragleave", "drop"]) {
@@ -756,7 +756,7 @@ for (const kind of ["dragover", "dragleave", "drop"]) {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
     tab.classList.toggle("dropping", kind === "dragover");
-    if (kind === "drop") taken(event.dataTransfer.files);
+    if (kind === "drop") takeFiles(event.dataTransfer.files);
   });
 }
 
@@ -792,6 +792,6 @@ document.addEventListener("keydown", (event) => {
 
 play(JSON.parse(byId("first").textContent));
 numberLines([]);
-arrived().then((found) => {
-  if (!found) changed();
+arrived().then((begun) => {
+  if (!begun) changed();
 });

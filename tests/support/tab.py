@@ -82,7 +82,7 @@ class Tab:
 
     def settle(self) -> None:
         """Wait until every change of the recipe is answered, and the worker rests."""
-        self.wait("document.body.dataset.answered === String(asked) && !work.current")
+        self.wait("document.body.dataset.answered === String(changeCount) && !work.current")
 
     def ask(self, expression: str) -> Any:
         """Value of an expression in the page."""
@@ -119,7 +119,7 @@ class Tab:
 
     def load(self, name: str, text: str, tables: dict[str, str] | None = None) -> None:
         """Begin with a recipe, as a starter does."""
-        self.ask(f"loaded({json.dumps({'name': name, 'text': text, 'tables': tables or {}})})")
+        self.ask(f"beginRecipe({json.dumps({'name': name, 'text': text, 'tables': tables or {}})})")
         self.settle()
 
     def choose(self, name: str, value: str) -> None:
@@ -153,7 +153,9 @@ class Tab:
     def drop(self, name: str, data: bytes) -> None:
         """Give the page a file, as dropping it does."""
         packed = base64.b64encode(data).decode()
-        self.ask(f"taken([new File([Uint8Array.from(atob({packed!r}), (c) => c.charCodeAt(0))], {json.dumps(name)})])")
+        self.ask(
+            f"takeFiles([new File([Uint8Array.from(atob({packed!r}), (c) => c.charCodeAt(0))], {json.dumps(name)})])"
+        )
 
 
 def _row(path: str) -> str:

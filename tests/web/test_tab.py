@@ -286,7 +286,7 @@ def test_a_file_of_five_megabytes_is_judged(page: tab.Tab, tmp_path: Path) -> No
 
 
 def test_what_is_too_large_is_refused_before_it_is_read(page: tab.Tab) -> None:
-    page.ask("taken([{ name: 'huge.stl', size: 1e9 }])")
+    page.ask("takeFiles([{ name: 'huge.stl', size: 1e9 }])")
     assert "1000 MB" in page.text_of("faults")
 
 
@@ -310,6 +310,25 @@ def test_of_designs_that_wait_the_newest_is_made(page: tab.Tab) -> None:
     assert page.text == TEXTS["disc-roller"]
 
 
+def test_no_verdict_stands_beside_another_number(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    verdicts = page.ask("""(async () => {
+      const slider = document.querySelector('[data-path="cam.base_radius"] [type=range]');
+      const before = document.body.dataset.shown;
+      slider.value = 37;
+      slider.dispatchEvent(new Event("input"));
+      const told = [byId("verdict").textContent];
+      while (document.body.dataset.shown === before) await new Promise(requestAnimationFrame);
+      told.push(byId("verdict").textContent, String(document.body.classList.contains("unjudged")));
+      slider.dispatchEvent(new Event("change"));
+      return told.join(" ");
+    })()""")
+    assert verdicts == "judging… judging… true"
+    page.settle()
+    assert page.text_of("verdict") == "every check of the design holds"
+    assert not page.ask("document.body.classList.contains('unjudged')")
+
+
 def test_a_file_that_the_server_lacks_is_told(tmp_path: Path) -> None:
     site = tab.built(tmp_path / "site")
     (site / "camgeo.zip").unlink()
@@ -330,7 +349,7 @@ def test_stop_ends_the_worker_and_another_one_goes_on(page: tab.Tab) -> None:
     assert page.ask("byId('stop').disabled")
     page.slide("linkage.ground", 81)
     assert "81" in page.text_of("form") or "ground: 81" in page.text
-    assert page.ask("document.body.dataset.answered") == str(page.ask("asked"))
+    assert page.ask("document.body.dataset.answered") == str(page.ask("changeCount"))
 
 
 def test_a_reload_and_a_link_keep_the_recipe_with_its_tables(page: tab.Tab) -> None:
