@@ -134,6 +134,17 @@ def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_p
     assert camgeo.verify(tmp_path / "part.yaml", *(report.path / file["path"] for file in report["files"])).ok
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["roller on a stem", "knife edge on a stem", "ring", "flat", "flat on an arm"])
+def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
+    text = plain(RECIPES[kind]).replace("cycloidal", "harmonic")
+    files = "{dxf: {as: arcs, correct: 1}}, {dxf: {as: spline, correct: 1}}, {svg: {correct: 1}}"
+    report = camgeo.export(
+        written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), files), tmp_path / "out"
+    )
+    assert [check for check in report["checks"] if not check["ok"]] == []
+
+
 @pytest.mark.parametrize("kind", ["roller on a stem", pytest.param("flat", marks=pytest.mark.slow)])
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
